@@ -1,0 +1,5 @@
+//! The mechanics of jammed packings.
+
+pub mod observe;
+pub mod packing;
+pub mod vector;

@@ -1,0 +1,335 @@
+//! [`Packing<D>`]: centres, radii, the domain, and which disks are held.
+//!
+//! A centre is an unevaluated sum of a position and a much smaller correction. Readers and writers see the position;
+//! the mechanics use both, which lowers the rounding floor of the residual by orders of magnitude (a single number per
+//! coordinate is known to 10⁻¹⁴ in a box of side 100, two touching disks need 10⁻¹⁶).
+
+pub mod domain;
+pub mod mixture;
+
+use std::f64::consts::PI;
+
+pub use domain::Domain;
+pub use mixture::{Component, Mixture};
+
+use crate::vector::{Vector, two_sum};
+
+/// Disks (D = 2) or balls (D = 3) in a domain.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Packing<const D: usize> {
+    domain: Domain<D>,
+    positions: Vec<Vector<D>>,
+    corrections: Vec<Vector<D>>,
+    radii: Vec<f64>,
+    held: Vec<bool>,
+    labels: Vec<u64>,
+}
+
+/// What is wrong with the disks given.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PackingError {
+    /// Not a single disk.
+    #[error("a packing needs at least one disk")]
+    NoDisks,
+    /// The columns differ in length.
+    #[error("{positions} positions but {radii} radii")]
+    LengthsDiffer {
+        /// Number of positions.
+        positions: usize,
+        /// Number of radii.
+        radii: usize,
+    },
+    /// More disks than an index holds.
+    #[error("{count} disks: at most {} are supported", u32::MAX)]
+    TooManyDisks {
+        /// Number of disks.
+        count: usize,
+    },
+    /// NaN or infinite coordinate.
+    #[error("disk {disk}: coordinate {axis} is {value}, not a finite number")]
+    PositionNotFinite {
+        /// Index of the disk, from 0.
+        disk: usize,
+        /// Axis, from 0.
+        axis: usize,
+        /// The value found.
+        value: f64,
+    },
+    /// A radius that is not a positive finite number.
+    #[error("disk {disk}: radius is {radius}, not a positive number")]
+    RadiusNotPositive {
+        /// Index of the disk, from 0.
+        disk: usize,
+        /// The value found.
+        radius: f64,
+    },
+    /// A kind of disk in a mixture with a radius that is not a positive finite number.
+    #[error("mixture component {component}: radius is {radius}, not a positive number")]
+    MixtureRadiusNotPositive {
+        /// Index of the component, from 0.
+        component: usize,
+        /// The value found.
+        radius: f64,
+    },
+    /// A kind of disk in a mixture with a share that is not a positive finite number.
+    #[error("mixture component {component}: share is {share}, not a positive number")]
+    MixtureShareNotPositive {
+        /// Index of the component, from 0.
+        component: usize,
+        /// The value found.
+        share: f64,
+    },
+    /// A box without extent.
+    #[error("box axis {axis}: side {length} from {corner} is not a finite box of positive length")]
+    BoxNotPositive {
+        /// Axis, from 0.
+        axis: usize,
+        /// Side found.
+        length: f64,
+        /// Lower end found.
+        corner: f64,
+    },
+    /// The box is so small that a disk would touch two images of one neighbour.
+    #[error(
+        "box axis {axis}: side {length} is below twice the longest contact range {range}, so a pair has more than one image in contact"
+    )]
+    BoxTooSmall {
+        /// Axis, from 0.
+        axis: usize,
+        /// Side found.
+        length: f64,
+        /// Largest distance of two touching disks.
+        range: f64,
+    },
+    /// Two centres at one point: the direction of their force is undefined.
+    #[error("disks {first} and {second} have the same centre: the direction of their contact force is undefined")]
+    CoincidentCentres {
+        /// Index of the first disk, from 0.
+        first: usize,
+        /// Index of the second disk, from 0.
+        second: usize,
+    },
+}
+
+impl<const D: usize> Packing<D> {
+    /// Disks in a domain, none held, labelled 0, 1, 2, …
+    ///
+    /// # Shape
+    /// `positions` and `radii` have one entry a disk.
+    ///
+    /// # Errors
+    /// [`PackingError`] names the disk and the value.
+    pub fn new(domain: Domain<D>, positions: Vec<Vector<D>>, radii: Vec<f64>) -> Result<Self, PackingError> {
+        let count = positions.len();
+        if count == 0 {
+            return Err(PackingError::NoDisks);
+        }
+        if count != radii.len() {
+            return Err(PackingError::LengthsDiffer { positions: count, radii: radii.len() });
+        }
+        if count > u32::MAX as usize {
+            return Err(PackingError::TooManyDisks { count });
+        }
+        domain.check()?;
+        for (disk, (position, &radius)) in positions.iter().zip(&radii).enumerate() {
+            if let Some(axis) = position.iter().position(|value| !value.is_finite()) {
+                return Err(PackingError::PositionNotFinite { disk, axis, value: position[axis] });
+            }
+            if !(radius.is_finite() && radius > 0.0) {
+                return Err(PackingError::RadiusNotPositive { disk, radius });
+            }
+        }
+        Ok(Packing {
+            domain,
+            corrections: vec![[0.0; D]; count],
+            positions,
+            radii,
+            held: vec![false; count],
+            labels: (0..count as u64).collect(),
+        })
+    }
+
+    /// The same packing with the low parts of its centres: centre = position + correction.
+    ///
+    /// # Errors
+    /// One correction a disk, all finite.
+    pub fn with_corrections(mut self, corrections: Vec<Vector<D>>) -> Result<Self, PackingError> {
+        if corrections.len() != self.len() {
+            return Err(PackingError::LengthsDiffer { positions: corrections.len(), radii: self.len() });
+        }
+        for (disk, correction) in corrections.iter().enumerate() {
+            if let Some(axis) = correction.iter().position(|value| !value.is_finite()) {
+                return Err(PackingError::PositionNotFinite { disk, axis, value: correction[axis] });
+            }
+        }
+        for (disk, correction) in corrections.iter().enumerate() {
+            self.corrections[disk] = [0.0; D];
+            self.displace(disk, *correction);
+        }
+        Ok(self)
+    }
+
+    /// The same packing with these labels (a number of the caller's own for every disk; repeats are allowed).
+    ///
+    /// # Errors
+    /// One label a disk.
+    pub fn with_labels(mut self, labels: Vec<u64>) -> Result<Self, PackingError> {
+        if labels.len() != self.len() {
+            return Err(PackingError::LengthsDiffer { positions: labels.len(), radii: self.len() });
+        }
+        self.labels = labels;
+        Ok(self)
+    }
+
+    /// The same packing with these disks held: they push others and are never moved.
+    ///
+    /// # Errors
+    /// One flag a disk.
+    pub fn with_held(mut self, held: Vec<bool>) -> Result<Self, PackingError> {
+        if held.len() != self.len() {
+            return Err(PackingError::LengthsDiffer { positions: held.len(), radii: self.len() });
+        }
+        self.held = held;
+        Ok(self)
+    }
+
+    /// The same packing with another radius for one disk.
+    ///
+    /// # Errors
+    /// The radius must be positive and finite.
+    ///
+    /// # Panics
+    /// If there is no such disk.
+    pub fn with_radius(mut self, disk: usize, radius: f64) -> Result<Self, PackingError> {
+        if !(radius.is_finite() && radius > 0.0) {
+            return Err(PackingError::RadiusNotPositive { disk, radius });
+        }
+        self.radii[disk] = radius;
+        Ok(self)
+    }
+
+    /// Number of disks, held ones included.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Never true: a packing has at least one disk.
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
+    /// The domain.
+    pub fn domain(&self) -> &Domain<D> {
+        &self.domain
+    }
+
+    /// Centres, rounded to one number a coordinate \[length\].
+    pub fn positions(&self) -> &[Vector<D>] {
+        &self.positions
+    }
+
+    /// What rounding the centres to [`Packing::positions`] took away \[length\].
+    pub fn corrections(&self) -> &[Vector<D>] {
+        &self.corrections
+    }
+
+    /// The centre of a disk as position and correction.
+    #[inline]
+    pub fn centre(&self, disk: usize) -> (Vector<D>, Vector<D>) {
+        (self.positions[disk], self.corrections[disk])
+    }
+
+    /// Radii \[length\].
+    pub fn radii(&self) -> &[f64] {
+        &self.radii
+    }
+
+    /// Which disks are held in place.
+    pub fn held(&self) -> &[bool] {
+        &self.held
+    }
+
+    /// The caller's own numbers of the disks.
+    pub fn labels(&self) -> &[u64] {
+        &self.labels
+    }
+
+    /// From disk `second` to disk `first` along the nearest image.
+    pub fn separation(&self, first: usize, second: usize) -> Vector<D> {
+        self.domain.separation(self.centre(first), self.centre(second))
+    }
+
+    /// Moves a disk by `displacement`; the sum is kept without rounding as long as the displacement is small.
+    pub(crate) fn displace(&mut self, disk: usize, displacement: Vector<D>) {
+        for d in 0..D {
+            let (high, low) = two_sum(self.positions[disk][d], displacement[d]);
+            (self.positions[disk][d], self.corrections[disk][d]) = two_sum(high, low + self.corrections[disk][d]);
+        }
+    }
+
+    /// The same disks in a periodic box scaled by `factor` in all directions, positions with it, radii kept.
+    pub(crate) fn rescaled(mut self, factor: f64) -> Self {
+        if let Domain::Periodic { corner, lengths } = &mut self.domain {
+            for d in 0..D {
+                corner[d] *= factor;
+                lengths[d] *= factor;
+            }
+        }
+        for (position, correction) in self.positions.iter_mut().zip(&mut self.corrections) {
+            for d in 0..D {
+                (position[d], correction[d]) = two_sum(position[d] * factor, correction[d] * factor);
+            }
+        }
+        self
+    }
+
+    /// Volume of all disks over the volume of the box; `None` in the open plane.
+    ///
+    /// ```text
+    /// φ = Σ π R_i² / (L_x L_y)          D = 3: Σ (4/3) π R_i³ / (L_x L_y L_z)
+    /// ```
+    pub fn packing_fraction(&self) -> Option<f64> {
+        let solid: f64 = self.radii.iter().map(|&radius| ball_volume::<D>(radius)).sum();
+        self.domain.volume().map(|volume| solid / volume)
+    }
+}
+
+/// Area of a disk (D = 2) or volume of a ball (D = 3).
+///
+/// # Panics
+/// For other D.
+pub fn ball_volume<const D: usize>(radius: f64) -> f64 {
+    match D {
+        2 => PI * radius * radius,
+        3 => 4.0 / 3.0 * PI * radius * radius * radius,
+        _ => panic!("the mechanics is defined for two and three dimensions, not {D}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bad_disks_are_named() {
+        let domain = Domain::<2>::cube(10.0);
+        assert_eq!(Packing::new(domain, vec![], vec![]), Err(PackingError::NoDisks));
+        assert_eq!(
+            Packing::new(domain, vec![[1.0, 1.0]], vec![-0.5]),
+            Err(PackingError::RadiusNotPositive { disk: 0, radius: -0.5 })
+        );
+        let nan = Packing::new(domain, vec![[1.0, f64::NAN]], vec![0.5]);
+        assert!(matches!(nan, Err(PackingError::PositionNotFinite { disk: 0, axis: 1, .. })));
+    }
+
+    #[test]
+    fn a_displacement_below_the_rounding_of_the_position_is_kept() {
+        let mut packing = Packing::new(Domain::<2>::cube(100.0), vec![[64.0, 1.0]], vec![0.5]).expect("valid");
+        let tiny = (-55f64).exp2();
+        for _ in 0..8 {
+            packing.displace(0, [tiny, 0.0]);
+        }
+        assert_eq!(packing.centre(0), ([64.0, 1.0], [8.0 * tiny, 0.0]));
+    }
+}
