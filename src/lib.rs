@@ -1,5 +1,7 @@
 //! The mechanics of jammed packings.
 
+pub mod contact;
 pub mod observe;
 pub mod packing;
+pub mod relax;
 pub mod vector;

@@ -268,6 +268,13 @@ impl<const D: usize> Packing<D> {
         }
     }
 
+    /// Puts a disk at `position + correction`.
+    pub(crate) fn place(&mut self, disk: usize, position: Vector<D>, correction: Vector<D>) {
+        for d in 0..D {
+            (self.positions[disk][d], self.corrections[disk][d]) = two_sum(position[d], correction[d]);
+        }
+    }
+
     /// The same disks in a periodic box scaled by `factor` in all directions, positions with it, radii kept.
     pub(crate) fn rescaled(mut self, factor: f64) -> Self {
         if let Domain::Periodic { corner, lengths } = &mut self.domain {

@@ -1,0 +1,280 @@
+//! Contact laws: force, energy and stiffness of one overlap.
+//!
+//! Every law here is a power of the overlap δ, with a coefficient c that depends on the two radii alone:
+//!
+//! ```text
+//! F(δ) = c δ^(α−1)      u(δ) = F δ / α      F'(δ) = (α − 1) F / δ      for δ > 0, all 0 otherwise
+//! ```
+//!
+//! | law | α | c |
+//! |---|---|---|
+//! | [`Hertzian`] | 5/2 | k' √R_ij, R_ij = R_i R_j / (R_i + R_j) |
+//! | [`Hookean`] | 2 | k' |
+//! | [`PowerLaw`] | any ≥ 2 | ε / σ_ij^α, σ_ij = R_i + R_j |
+//!
+//! The law is a type: the loop over contacts is compiled once for each and holds no branch on it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::contact::damping::{DampingLaw, MassDamping, ViscoelasticDamping, effective_radius};
+
+/// What happens where two disks touch: a pure function of the overlap and of a coefficient made once a pair.
+pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
+    /// The viscoelastic damping that goes with this law.
+    type Viscoelastic: DampingLaw;
+
+    /// That damping with the rate γ.
+    fn viscoelastic(&self, rate: f64) -> Self::Viscoelastic;
+
+    /// Coefficient c of a pair \[force / length^(α−1)\].
+    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64;
+
+    /// Repulsive force F(δ) for an overlap δ ≥ 0 \[force\]. A NaN stays one.
+    fn force(&self, coefficient: f64, overlap: f64) -> f64;
+
+    /// Exponent α of the energy \[1\].
+    fn exponent(&self) -> f64;
+
+    /// Energy u(δ) from the force at that overlap \[energy\].
+    #[inline(always)]
+    fn energy(&self, force: f64, overlap: f64) -> f64 {
+        force * overlap / self.exponent()
+    }
+
+    /// Stiffness F'(δ) from the force at that overlap, 0 where there is none \[force / length\].
+    #[inline(always)]
+    fn stiffness(&self, force: f64, overlap: f64) -> f64 {
+        if overlap > 0.0 { (self.exponent() - 1.0) * force / overlap } else { 0.0 }
+    }
+
+    /// The force of a disk pressed against its like by its own radius: the scale on which a force counts as none.
+    fn force_scale(&self, radius: f64) -> f64 {
+        self.force(self.coefficient(radius, radius), radius)
+    }
+}
+
+/// Hertzian contact.
+///
+/// ```text
+/// F = k' √(δ R_ij) δ        u = (2/5) F δ        R_ij = R_i R_j / (R_i + R_j)
+/// ```
+///
+/// # Source
+/// Johnson, Contact Mechanics (1985), §4.2; in this form LAMMPS `pair_style gran/hertz`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hertzian {
+    /// Stiffness constant k' \[force / length²\].
+    pub stiffness: f64,
+}
+
+/// Hookean contact, `F = k' δ`, `u = k' δ² / 2`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hookean {
+    /// Stiffness constant k' \[force / length\].
+    pub stiffness: f64,
+}
+
+/// The dimensionless power law, `u = (ε/α) (1 − r/σ_ij)^α` with `σ_ij = R_i + R_j`.
+///
+/// α = 2 is the harmonic law and α = 5/2 the "Hertzian" one of much of the jamming literature; neither equals
+/// [`Hookean`] or [`Hertzian`], whose coefficients depend on the radii in another way.
+///
+/// # Source
+/// O'Hern, Silbert, Liu, Nagel (2003), Phys. Rev. E 68, 011306, eq. (1).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PowerLaw {
+    /// Energy scale ε \[energy\].
+    pub energy_scale: f64,
+    /// Exponent α ≥ 2 \[1\].
+    pub exponent: f64,
+}
+
+/// Default stiffness k' of both laws in the units of the model. Source: the model of design §4 (k' = 2·10⁵).
+pub const MODEL_STIFFNESS: f64 = 2e5;
+
+impl Default for Hertzian {
+    fn default() -> Self {
+        Hertzian { stiffness: MODEL_STIFFNESS }
+    }
+}
+
+impl Default for Hookean {
+    fn default() -> Self {
+        Hookean { stiffness: MODEL_STIFFNESS }
+    }
+}
+
+impl PairLaw for Hertzian {
+    type Viscoelastic = ViscoelasticDamping;
+    #[inline(always)]
+    fn viscoelastic(&self, rate: f64) -> ViscoelasticDamping {
+        ViscoelasticDamping { rate }
+    }
+    #[inline(always)]
+    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
+        self.stiffness * effective_radius(first_radius, second_radius).sqrt()
+    }
+    #[inline(always)]
+    fn force(&self, coefficient: f64, overlap: f64) -> f64 {
+        coefficient * overlap * overlap.sqrt()
+    }
+    #[inline(always)]
+    fn exponent(&self) -> f64 {
+        2.5
+    }
+}
+
+impl PairLaw for Hookean {
+    type Viscoelastic = MassDamping;
+    #[inline(always)]
+    fn viscoelastic(&self, rate: f64) -> MassDamping {
+        MassDamping { rate }
+    }
+    #[inline(always)]
+    fn coefficient(&self, _first_radius: f64, _second_radius: f64) -> f64 {
+        self.stiffness
+    }
+    #[inline(always)]
+    fn force(&self, coefficient: f64, overlap: f64) -> f64 {
+        coefficient * overlap
+    }
+    #[inline(always)]
+    fn exponent(&self) -> f64 {
+        2.0
+    }
+}
+
+impl PairLaw for PowerLaw {
+    type Viscoelastic = MassDamping;
+    #[inline(always)]
+    fn viscoelastic(&self, rate: f64) -> MassDamping {
+        MassDamping { rate }
+    }
+    #[inline(always)]
+    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
+        self.energy_scale * (first_radius + second_radius).powf(-self.exponent)
+    }
+    #[inline(always)]
+    fn force(&self, coefficient: f64, overlap: f64) -> f64 {
+        coefficient * libm::pow(overlap, self.exponent - 1.0)
+    }
+    #[inline(always)]
+    fn exponent(&self) -> f64 {
+        self.exponent
+    }
+}
+
+/// A contact law chosen at run time, as a scene or a command line names it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LawChoice {
+    /// [`Hertzian`].
+    Hertzian(Hertzian),
+    /// [`Hookean`].
+    Hookean(Hookean),
+    /// [`PowerLaw`].
+    PowerLaw(PowerLaw),
+}
+
+impl Default for LawChoice {
+    fn default() -> Self {
+        LawChoice::Hertzian(Hertzian::default())
+    }
+}
+
+/// A number of a law that makes no sense.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LawError {
+    /// The stiffness or energy scale must be positive and finite.
+    #[error("the stiffness of the contact law is {stiffness}, not a positive number")]
+    StiffnessNotPositive {
+        /// The value found.
+        stiffness: f64,
+    },
+    /// The energy must have a continuous force: α ≥ 2.
+    #[error("the exponent of the contact law is {exponent}, not a number of at least 2")]
+    ExponentTooSmall {
+        /// The value found.
+        exponent: f64,
+    },
+}
+
+impl LawChoice {
+    /// Whether the numbers make sense.
+    ///
+    /// # Errors
+    /// [`LawError`] names the number.
+    pub fn check(&self) -> Result<(), LawError> {
+        let (stiffness, exponent) = match self {
+            LawChoice::Hertzian(law) => (law.stiffness, law.exponent()),
+            LawChoice::Hookean(law) => (law.stiffness, law.exponent()),
+            LawChoice::PowerLaw(law) => (law.energy_scale, law.exponent),
+        };
+        if !(stiffness.is_finite() && stiffness > 0.0) {
+            return Err(LawError::StiffnessNotPositive { stiffness });
+        }
+        if !(exponent.is_finite() && exponent >= 2.0) {
+            return Err(LawError::ExponentTooSmall { exponent });
+        }
+        Ok(())
+    }
+
+    /// Exponent α of the energy.
+    pub fn exponent(&self) -> f64 {
+        match self {
+            LawChoice::Hertzian(law) => law.exponent(),
+            LawChoice::Hookean(law) => law.exponent(),
+            LawChoice::PowerLaw(law) => law.exponent(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check_law(law: impl PairLaw) {
+        let coefficient = law.coefficient(0.5, 0.7);
+        assert_eq!(law.force(coefficient, 0.0), 0.0);
+        assert!(law.force(coefficient, f64::NAN).is_nan());
+        for overlap in [1e-3, 0.05, 0.3] {
+            let energy = |x: f64| law.energy(law.force(coefficient, x), x);
+            let h = 1e-5 * overlap;
+            let slope = (energy(overlap + h) - energy(overlap - h)) / (2.0 * h);
+            let force = law.force(coefficient, overlap);
+            // Central difference: truncation (h/δ)² ≈ 1e-10, rounding ε/(h/δ) ≈ 2e-11; a few of each.
+            assert!((slope / force - 1.0).abs() < 1e-9, "{law:?} force at {overlap}");
+            let slope = (law.force(coefficient, overlap + h) - law.force(coefficient, overlap - h)) / (2.0 * h);
+            assert!((slope / law.stiffness(force, overlap) - 1.0).abs() < 1e-9, "{law:?} stiffness at {overlap}");
+        }
+    }
+
+    #[test]
+    fn force_and_stiffness_are_derivatives() {
+        check_law(Hertzian::default());
+        check_law(Hookean::default());
+        check_law(PowerLaw { energy_scale: 3.0, exponent: 2.0 });
+        check_law(PowerLaw { energy_scale: 3.0, exponent: 3.7 });
+    }
+
+    #[test]
+    fn the_power_law_is_the_formula_of_its_source() {
+        // r = 1.1, σ = 1.2, α = 5/2, ε = 1: u = 0.4 (1 − r/σ)^2.5, to rounding times the powers taken.
+        let law = PowerLaw { energy_scale: 1.0, exponent: 2.5 };
+        let overlap = 0.1;
+        let energy = law.energy(law.force(law.coefficient(0.5, 0.7), overlap), overlap);
+        assert!((energy / (0.4 * (overlap / 1.2f64).powf(2.5)) - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn nonsense_is_named() {
+        let law = LawChoice::Hertzian(Hertzian { stiffness: -1.0 });
+        assert_eq!(law.check(), Err(LawError::StiffnessNotPositive { stiffness: -1.0 }));
+        let law = LawChoice::PowerLaw(PowerLaw { energy_scale: 1.0, exponent: 1.5 });
+        assert_eq!(law.check(), Err(LawError::ExponentTooSmall { exponent: 1.5 }));
+    }
+}

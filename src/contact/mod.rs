@@ -1,0 +1,14 @@
+//! What happens where two disks touch: [`law`], [`damping`], the neighbour list, the hot loop and the contact network.
+//!
+//! Start from [`ContactNetwork`] to look at a packing, from [`Assembly`] to move one.
+
+pub mod assembly;
+pub mod damping;
+pub mod forces;
+pub mod law;
+pub mod neighbours;
+pub mod network;
+
+pub use assembly::Assembly;
+pub use law::{Hertzian, Hookean, LawChoice, PairLaw, PowerLaw};
+pub use network::{Contact, ContactNetwork};

@@ -1,0 +1,254 @@
+//! Which pairs may touch: a cell grid, a list with a skin, and when the list must be made anew.
+//!
+//! The list holds every pair closer than `R_i + R_j + skin`, held–held pairs left out. It stays complete until some
+//! disk has moved by half the skin. Each pair carries its separation at the anchors, so the box and its images are
+//! looked at only while the list is built.
+
+use crate::packing::{Domain, PackingError};
+use crate::vector::{Vector, difference, dot, sum};
+
+/// Pairs that may touch, as parallel columns.
+#[derive(Debug, Clone, Default)]
+pub struct PairList<const D: usize> {
+    /// First disk of each pair.
+    pub first: Vec<u32>,
+    /// Second disk of each pair.
+    pub second: Vec<u32>,
+    /// From the anchor of the second to that of the first along the nearest image \[length\].
+    pub separation: Vec<Vector<D>>,
+    /// Distance at which the pair touches, R_i + R_j \[length\].
+    pub reach: Vec<f64>,
+    /// Coefficient of the contact law for this pair.
+    pub coefficient: Vec<f64>,
+}
+
+impl<const D: usize> PairList<D> {
+    /// Number of pairs.
+    pub fn len(&self) -> usize {
+        self.first.len()
+    }
+
+    /// Whether no pair may touch.
+    pub fn is_empty(&self) -> bool {
+        self.first.is_empty()
+    }
+
+    fn clear(&mut self) {
+        self.first.clear();
+        self.second.clear();
+        self.separation.clear();
+        self.reach.clear();
+        self.coefficient.clear();
+    }
+}
+
+/// The disks as the list builder sees them: mobile ones first, then the held ones.
+pub struct Disks<'a, const D: usize> {
+    /// The domain.
+    pub domain: &'a Domain<D>,
+    /// Positions, rounded to one number a coordinate.
+    pub anchors: &'a [Vector<D>],
+    /// Centre minus position.
+    pub displacements: &'a [Vector<D>],
+    /// Radii.
+    pub radii: &'a [f64],
+    /// How many of them, from the front, are mobile.
+    pub mobile_count: usize,
+}
+
+/// Cells no smaller than the range, and the disks in each, in ascending order.
+struct CellGrid<const D: usize> {
+    counts: [usize; D],
+    cell_of: Vec<u32>,
+    starts: Vec<u32>,
+    members: Vec<u32>,
+}
+
+impl<const D: usize> CellGrid<D> {
+    fn new(domain: &Domain<D>, points: &[Vector<D>], range: f64) -> Self {
+        let (corner, lengths) = match domain {
+            Domain::Periodic { corner, lengths } => (*corner, *lengths),
+            Domain::Open => bounding_box(points),
+        };
+        // No more cells than disks: an open plane with one disk far away must not ask for the memory of its box.
+        let most = (points.len() as f64).powf(1.0 / D as f64).ceil().max(1.0);
+        let counts: [usize; D] = std::array::from_fn(|d| (lengths[d] / range).floor().clamp(1.0, 4.0 * most) as usize);
+        let cell_count: usize = counts.iter().product();
+        let cell_of: Vec<u32> = points
+            .iter()
+            .map(|point| {
+                let mut cell = 0;
+                for d in (0..D).rev() {
+                    let fraction = (point[d] - corner[d]) / lengths[d];
+                    let fraction = if matches!(domain, Domain::Open) { fraction } else { fraction - fraction.floor() };
+                    cell = cell * counts[d] + ((fraction * counts[d] as f64) as usize).min(counts[d] - 1);
+                }
+                cell as u32
+            })
+            .collect();
+        let mut starts = vec![0u32; cell_count + 1];
+        for &cell in &cell_of {
+            starts[cell as usize + 1] += 1;
+        }
+        for cell in 0..cell_count {
+            starts[cell + 1] += starts[cell];
+        }
+        let mut next = starts.clone();
+        let mut members = vec![0u32; points.len()];
+        for (disk, &cell) in cell_of.iter().enumerate() {
+            members[next[cell as usize] as usize] = disk as u32;
+            next[cell as usize] += 1;
+        }
+        CellGrid { counts, cell_of, starts, members }
+    }
+
+    /// The cell and its neighbours, each once, in ascending order.
+    fn neighbourhood(&self, cell: usize, periodic: bool, cells: &mut Vec<usize>) {
+        let mut index = [0usize; D];
+        let mut rest = cell;
+        for d in 0..D {
+            index[d] = rest % self.counts[d];
+            rest /= self.counts[d];
+        }
+        cells.clear();
+        for code in 0..3usize.pow(D as u32) {
+            let mut digits = code;
+            let mut neighbour = 0;
+            let mut stride = 1;
+            let mut inside = true;
+            for d in 0..D {
+                let step = digits % 3; // 0, 1, 2 for −1, 0, +1
+                digits /= 3;
+                let count = self.counts[d];
+                let shifted = index[d] + step;
+                inside &= periodic || (shifted >= 1 && shifted <= count);
+                neighbour += stride * ((shifted + count - 1) % count);
+                stride *= count;
+            }
+            if inside {
+                cells.push(neighbour);
+            }
+        }
+        cells.sort_unstable();
+        cells.dedup();
+    }
+}
+
+fn bounding_box<const D: usize>(points: &[Vector<D>]) -> (Vector<D>, Vector<D>) {
+    let mut low = [f64::INFINITY; D];
+    let mut high = [f64::NEG_INFINITY; D];
+    for point in points {
+        for d in 0..D {
+            low[d] = low[d].min(point[d]);
+            high[d] = high[d].max(point[d]);
+        }
+    }
+    // A box of no extent (one disk, or all on a line) still needs a side to divide by.
+    (low, std::array::from_fn(|d| (high[d] - low[d]).max(f64::MIN_POSITIVE)))
+}
+
+/// Order of the disks cell by cell in rows, mobile ones before held ones: neighbours in space are neighbours in memory.
+pub fn spatial_order<const D: usize>(domain: &Domain<D>, points: &[Vector<D>], radii: &[f64], held: &[bool]) -> Vec<u32> {
+    let range = 2.0 * radii.iter().copied().fold(0.0, f64::max);
+    let grid = CellGrid::new(domain, points, range);
+    let mut order: Vec<u32> = (0..points.len() as u32).collect();
+    order.sort_by_key(|&disk| (held[disk as usize], grid.cell_of[disk as usize]));
+    order
+}
+
+/// Makes the list: every pair closer than reach + `skin`, in ascending order of (first, second).
+///
+/// # Errors
+/// A box too small for one image a pair, or two disks with the same centre.
+///
+/// # Cost
+/// Linear in the number of disks; no allocation beyond the grid once the columns have grown.
+pub fn build_pairs<const D: usize>(
+    disks: &Disks<'_, D>,
+    skin: f64,
+    coefficient: impl Fn(f64, f64) -> f64,
+    pairs: &mut PairList<D>,
+) -> Result<(), PackingError> {
+    let largest = disks.radii.iter().copied().fold(0.0, f64::max);
+    if let Some(lengths) = disks.domain.lengths() {
+        // Two images of one disk are a side apart, so both can lie within the range only below this side.
+        if let Some(axis) = lengths.iter().position(|&length| length < 4.0 * largest) {
+            return Err(PackingError::BoxTooSmall { axis, length: lengths[axis], range: 2.0 * largest });
+        }
+    }
+    let periodic = matches!(disks.domain, Domain::Periodic { .. });
+    let points: Vec<Vector<D>> = disks.anchors.iter().zip(disks.displacements).map(|(&a, &u)| sum(a, u)).collect();
+    let grid = CellGrid::new(disks.domain, &points, 2.0 * largest + skin);
+    pairs.clear();
+    let mut cells = Vec::new();
+    let mut current = usize::MAX;
+    let mut row: Vec<u32> = Vec::new();
+    for first in 0..disks.mobile_count {
+        let cell = grid.cell_of[first] as usize;
+        if cell != current {
+            grid.neighbourhood(cell, periodic, &mut cells);
+            current = cell;
+        }
+        row.clear();
+        for &cell in &cells {
+            for &second in &grid.members[grid.starts[cell] as usize..grid.starts[cell + 1] as usize] {
+                if second as usize > first {
+                    row.push(second);
+                }
+            }
+        }
+        let (anchor, displacement, radius) = (disks.anchors[first], disks.displacements[first], disks.radii[first]);
+        let from = pairs.len();
+        for &second in &row {
+            let other = second as usize;
+            let reach = radius + disks.radii[other];
+            // A first look with rounded coordinates; the margin covers their rounding.
+            if !maybe_within(disks.domain, points[first], points[other], reach + skin) {
+                continue;
+            }
+            let centres = ((anchor, displacement), (disks.anchors[other], disks.displacements[other]));
+            let apart = disks.domain.separation(centres.0, centres.1);
+            let distance_squared = dot(apart, apart);
+            if distance_squared == 0.0 {
+                return Err(PackingError::CoincidentCentres { first, second: other });
+            }
+            if distance_squared < (reach + skin) * (reach + skin) {
+                pairs.first.push(first as u32);
+                pairs.second.push(second);
+                pairs.separation.push(anchor_separation(disks, first, other, apart));
+                pairs.reach.push(reach);
+                pairs.coefficient.push(coefficient(radius, disks.radii[other]));
+            }
+        }
+        debug_assert!(pairs.second[from..].iter().all(|&second| second as usize > first));
+    }
+    Ok(())
+}
+
+/// Separation of the anchors along the image that is nearest for the centres.
+fn anchor_separation<const D: usize>(disks: &Disks<'_, D>, first: usize, second: usize, apart: Vector<D>) -> Vector<D> {
+    let zero = [0.0; D];
+    let anchors = disks.domain.separation((disks.anchors[first], zero), (disks.anchors[second], zero));
+    // Displacements within half a box keep the image; the caller re-anchors at every rebuild, so they are tiny here.
+    debug_assert!({
+        let moved = difference(disks.displacements[first], disks.displacements[second]);
+        (0..D).all(|d| (anchors[d] + moved[d] - apart[d]).abs() < 1e-9 * (1.0 + apart[d].abs()))
+    });
+    anchors
+}
+
+fn maybe_within<const D: usize>(domain: &Domain<D>, a: Vector<D>, b: Vector<D>, range: f64) -> bool {
+    let mut squared = 0.0;
+    let mut scale = 0.0f64;
+    for d in 0..D {
+        let mut apart = (a[d] - b[d]).abs();
+        if let Domain::Periodic { lengths, .. } = domain {
+            apart -= (apart / lengths[d]).round() * lengths[d];
+        }
+        squared += apart * apart;
+        scale = scale.max(a[d].abs()).max(b[d].abs());
+    }
+    // Rounding of the coordinates: a few ulp of the largest one.
+    let margin = range + 16.0 * f64::EPSILON * scale;
+    squared <= margin * margin
+}

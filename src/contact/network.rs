@@ -1,0 +1,224 @@
+//! [`ContactNetwork`]: who touches whom, rattlers, the backbone, coordination and pressure.
+//!
+//! A rattler is a mobile disk with fewer than D + 1 contacts; removing it may make others rattlers, so it is done until
+//! none is left. What remains is the backbone. The order of removal does not matter: the backbone is the largest set of
+//! disks that has D + 1 contacts each within itself and with held disks.
+//!
+//! # Source
+//! Goodrich, Liu, Nagel (2012), Phys. Rev. Lett. 109, 095704; design §4.
+
+use crate::contact::assembly::Assembly;
+use crate::contact::law::PairLaw;
+use crate::packing::{Packing, PackingError};
+use crate::vector::{Vector, norm};
+
+/// Two disks that press on each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact<const D: usize> {
+    /// First disk.
+    pub first: u32,
+    /// Second disk.
+    pub second: u32,
+    /// Overlap δ > 0 \[length\].
+    pub overlap: f64,
+    /// Force F(δ) \[force\].
+    pub force: f64,
+    /// Energy u(δ) \[energy\].
+    pub energy: f64,
+    /// From the centre of the second to that of the first \[length\].
+    pub separation: Vector<D>,
+}
+
+/// All contacts of a packing and what follows from them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactNetwork<const D: usize> {
+    /// Contacts, held–held ones left out, in ascending order of (first, second).
+    pub contacts: Vec<Contact<D>>,
+    /// Whether each disk belongs to the backbone (held disks do).
+    pub backbone: Vec<bool>,
+    held: Vec<bool>,
+    forces: Vec<Vector<D>>,
+}
+
+/// Which disks remain after rattlers are removed, held ones among them.
+///
+/// # Shape
+/// One entry a disk; `contacts` gives pairs of indices below `held.len()`.
+///
+/// # Cost
+/// Linear in disks and contacts.
+pub fn backbone<const D: usize>(held: &[bool], contacts: &[(u32, u32)]) -> Vec<bool> {
+    let count = held.len();
+    let mut starts = vec![0u32; count + 1];
+    for &(first, second) in contacts {
+        starts[first as usize + 1] += 1;
+        starts[second as usize + 1] += 1;
+    }
+    let mut degree: Vec<u32> = starts[1..].to_vec();
+    for disk in 0..count {
+        starts[disk + 1] += starts[disk];
+    }
+    let mut next = starts.clone();
+    let mut neighbours = vec![0u32; 2 * contacts.len()];
+    for &(first, second) in contacts {
+        for (a, b) in [(first, second), (second, first)] {
+            neighbours[next[a as usize] as usize] = b;
+            next[a as usize] += 1;
+        }
+    }
+    let least = D as u32 + 1;
+    let mut remains = vec![true; count];
+    let mut doomed: Vec<usize> = (0..count).filter(|&disk| !held[disk] && degree[disk] < least).collect();
+    for &disk in &doomed {
+        remains[disk] = false;
+    }
+    while let Some(disk) = doomed.pop() {
+        for &other in &neighbours[starts[disk] as usize..starts[disk + 1] as usize] {
+            let other = other as usize;
+            degree[other] -= 1;
+            if remains[other] && !held[other] && degree[other] < least {
+                remains[other] = false;
+                doomed.push(other);
+            }
+        }
+    }
+    remains
+}
+
+impl<const D: usize> ContactNetwork<D> {
+    /// The contacts of a packing under a law, in the packing's own numbering.
+    ///
+    /// # Errors
+    /// As [`Assembly::new`].
+    pub fn new<L: PairLaw>(packing: &Packing<D>, law: &L) -> Result<Self, PackingError> {
+        let mut assembly = Assembly::new(packing, *law)?;
+        assembly.evaluate();
+        let order = assembly.order();
+        let mut contacts: Vec<Contact<D>> = working_contacts(&assembly)
+            .into_iter()
+            .map(|contact| {
+                let (a, b) = (order[contact.first as usize], order[contact.second as usize]);
+                if a < b {
+                    Contact { first: a, second: b, ..contact }
+                } else {
+                    let separation = std::array::from_fn(|d| -contact.separation[d]);
+                    Contact { first: b, second: a, separation, ..contact }
+                }
+            })
+            .collect();
+        contacts.sort_unstable_by_key(|contact| (contact.first, contact.second));
+        let links: Vec<(u32, u32)> = contacts.iter().map(|contact| (contact.first, contact.second)).collect();
+        let mut forces = vec![[0.0; D]; packing.len()];
+        for (&disk, force) in order.iter().zip(&assembly.forces) {
+            forces[disk as usize] = *force;
+        }
+        Ok(ContactNetwork { backbone: backbone::<D>(packing.held(), &links), contacts, held: packing.held().to_vec(), forces })
+    }
+
+    /// Net elastic force on each disk \[force\].
+    pub fn forces(&self) -> &[Vector<D>] {
+        &self.forces
+    }
+
+    /// Largest net force on a mobile disk \[force\]; NaN if any is.
+    pub fn largest_net_force(&self) -> f64 {
+        let mobile = self.forces.iter().zip(&self.held).filter(|(_, held)| !**held);
+        mobile.fold(0.0, |most, (force, _)| crate::vector::larger(norm(*force), most))
+    }
+
+    /// Elastic energy \[energy\].
+    pub fn energy(&self) -> f64 {
+        self.contacts.iter().map(|contact| contact.energy).sum()
+    }
+
+    /// Mobile disks that are not on the backbone.
+    pub fn rattlers(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.held.len()).filter(|&disk| !self.backbone[disk])
+    }
+
+    /// Number of mobile disks on the backbone.
+    pub fn backbone_count(&self) -> usize {
+        self.backbone.iter().zip(&self.held).filter(|&(&member, &held)| member && !held).count()
+    }
+
+    /// Whether both disks of a contact belong to the backbone.
+    pub fn on_backbone(&self, contact: &Contact<D>) -> bool {
+        self.backbone[contact.first as usize] && self.backbone[contact.second as usize]
+    }
+
+    /// Contacts between disks of the backbone.
+    pub fn backbone_contacts(&self) -> impl Iterator<Item = &Contact<D>> + '_ {
+        self.contacts.iter().filter(|contact| self.on_backbone(contact))
+    }
+
+    /// Mean number of contacts of a mobile disk of the backbone, Z; 0 without a backbone.
+    pub fn coordination(&self) -> f64 {
+        let count = self.backbone_count();
+        if count == 0 {
+            return 0.0;
+        }
+        let mobile = |disk: u32| usize::from(!self.held[disk as usize]);
+        let ends: usize = self.backbone_contacts().map(|contact| mobile(contact.first) + mobile(contact.second)).sum();
+        ends as f64 / count as f64
+    }
+
+    /// Mean force of the contacts of the backbone; 0 without a backbone \[force\].
+    pub fn mean_contact_force(&self) -> f64 {
+        let (count, total) =
+            self.backbone_contacts().fold((0usize, 0.0), |(count, total), contact| (count + 1, total + contact.force));
+        if count == 0 { 0.0 } else { total / count as f64 }
+    }
+
+    /// Virial tensor over a volume, positive in compression \[force / length^(D−1)\].
+    ///
+    /// ```text
+    /// σ_ab = Σ F r_a r_b / (r V)        p = tr σ / D
+    /// ```
+    pub fn stress(&self, volume: f64) -> [[f64; D]; D] {
+        let mut stress = [[0.0; D]; D];
+        for contact in &self.contacts {
+            let factor = contact.force / norm(contact.separation);
+            for a in 0..D {
+                for b in 0..D {
+                    stress[a][b] += factor * (contact.separation[a] * contact.separation[b]);
+                }
+            }
+        }
+        stress.map(|row| row.map(|value| value / volume))
+    }
+
+    /// Pressure p = Σ F r / (D V) \[force / length^(D−1)\].
+    pub fn pressure(&self, volume: f64) -> f64 {
+        let virial: f64 = self.contacts.iter().map(|contact| contact.force * norm(contact.separation)).sum();
+        virial / (D as f64 * volume)
+    }
+
+    /// Pressure of a cluster of disks with a held rim: contacts for which `rim` holds at one end count half.
+    pub fn cluster_pressure(&self, volume: f64, rim: impl Fn(usize) -> bool) -> f64 {
+        let virial: f64 = self
+            .contacts
+            .iter()
+            .map(|contact| {
+                let share = if rim(contact.first as usize) || rim(contact.second as usize) { 0.5 } else { 1.0 };
+                share * contact.force * norm(contact.separation)
+            })
+            .sum();
+        virial / (D as f64 * volume)
+    }
+}
+
+/// The contacts of an assembly, in working numbering and order of the list.
+pub fn working_contacts<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> Vec<Contact<D>> {
+    let (pairs, law) = (assembly.pairs(), assembly.law());
+    (0..pairs.len())
+        .filter_map(|pair| {
+            let separation = assembly.separation(pair);
+            let overlap = pairs.reach[pair] - norm(separation);
+            (overlap > 0.0).then(|| {
+                let force = law.force(pairs.coefficient[pair], overlap);
+                let energy = law.energy(force, overlap);
+                Contact { first: pairs.first[pair], second: pairs.second[pair], overlap, force, energy, separation }
+            })
+        })
+        .collect()
+}

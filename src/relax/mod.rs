@@ -1,0 +1,212 @@
+//! Bringing a packing to rest: [`Relaxer`], its [`Outcome`], and [`Relaxed`], which only a converged outcome can make.
+//!
+//! The residual is the largest net force on a mobile disk of the backbone over the mean contact force of the backbone.
+//! Held disks never count. Rattlers are held to the square root of the limit only: their contacts open algebraically
+//! slowly, without touching the backbone.
+
+pub mod damped;
+pub mod fire;
+mod flat;
+mod monitor;
+
+use serde::{Deserialize, Serialize};
+
+use crate::contact::PairLaw;
+use crate::packing::{Packing, PackingError};
+
+pub use damped::{DampedDynamics, Motion, NetForce, TimeStep};
+pub use fire::Fire;
+pub use monitor::rounding_floor;
+
+/// When a packing counts as being at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ForceLimit {
+    /// Largest net force on a mobile disk of the backbone over the mean contact force \[1\].
+    Relative(f64),
+    /// Largest net force on a mobile disk of the backbone, of any mobile disk where there is no backbone \[force\].
+    Absolute(f64),
+}
+
+impl Default for ForceLimit {
+    /// 10⁻⁸ of the mean contact force. Source: design §7 (an absolute limit means 2·10⁻⁶ at p = 0.04 and 10⁻¹⁰ at 860).
+    fn default() -> Self {
+        ForceLimit::Relative(1e-8)
+    }
+}
+
+impl ForceLimit {
+    /// The number, whatever it is relative to.
+    pub fn value(&self) -> f64 {
+        match *self {
+            ForceLimit::Relative(value) | ForceLimit::Absolute(value) => value,
+        }
+    }
+}
+
+/// Contact forces below this share of the force at an overlap of one radius count as none: the packing is unjammed.
+///
+/// 10⁻¹² is 3.5·10⁻⁸ for the Hertzian disks of the model, where a packing at p = 0.05 has contact forces of 0.05.
+pub const UNJAMMED_FORCE: f64 = 1e-12;
+
+/// Which limit a converged state met.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Criterion {
+    /// The relative residual.
+    RelativeForce,
+    /// The absolute residual.
+    AbsoluteForce,
+    /// Every contact force and every net force vanished, see [`UNJAMMED_FORCE`].
+    Unjammed,
+}
+
+/// Why a relaxer stopped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stop {
+    /// At rest by this criterion.
+    Converged(Criterion),
+    /// The number of steps allowed is used up.
+    StepLimit,
+    /// The residual fluctuates at the rounding floor, above the limit asked for.
+    RoundingFloor,
+    /// A force became NaN or infinite.
+    NonFinite,
+}
+
+/// How far from equilibrium a state is.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Residual {
+    /// Largest net force on a mobile disk of the backbone \[force\].
+    pub largest_net_force: f64,
+    /// Mean contact force of the backbone \[force\].
+    pub mean_contact_force: f64,
+}
+
+impl Residual {
+    /// The first over the second; 0 where there is no force at all \[1\].
+    pub fn relative(&self) -> f64 {
+        if self.largest_net_force == 0.0 { 0.0 } else { self.largest_net_force / self.mean_contact_force }
+    }
+}
+
+/// What a relaxer gives back, converged or not.
+#[must_use]
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome<T> {
+    /// Where it stopped.
+    pub state: T,
+    /// Why it stopped.
+    pub stop: Stop,
+    /// The residual reached.
+    pub residual: Residual,
+    /// What rounding alone makes of the relative residual, by the estimate of [`rounding_floor`] \[1\].
+    pub rounding_floor: f64,
+    /// What it cost.
+    pub cost: Cost,
+}
+
+/// What a relaxation cost.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Cost {
+    /// Steps taken.
+    pub step_count: usize,
+    /// Evaluations of all forces.
+    pub force_evaluation_count: usize,
+    /// Neighbour lists made.
+    pub rebuild_count: usize,
+    /// Wall time \[s\]; never written where two runs must agree to the byte.
+    #[serde(skip)]
+    pub seconds: f64,
+}
+
+impl Cost {
+    /// Both together.
+    pub fn plus(self, other: Cost) -> Cost {
+        Cost {
+            step_count: self.step_count + other.step_count,
+            force_evaluation_count: self.force_evaluation_count + other.force_evaluation_count,
+            rebuild_count: self.rebuild_count + other.rebuild_count,
+            seconds: self.seconds + other.seconds,
+        }
+    }
+}
+
+/// A state at rest, proven by its type: only [`Outcome::converged`] makes one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Relaxed<T>(T);
+
+impl<T> Relaxed<T> {
+    /// The state.
+    pub fn get(&self) -> &T {
+        &self.0
+    }
+
+    /// The state, no longer known to be at rest.
+    pub fn into_inner(self) -> T {
+        self.0
+    }
+}
+
+impl<T> Outcome<T> {
+    /// The state if it is at rest, otherwise the whole outcome back.
+    ///
+    /// # Errors
+    /// The outcome itself, with why it stopped and the residual.
+    #[allow(clippy::result_large_err, reason = "the error is the outcome: the state is wanted in both cases")]
+    pub fn converged(self) -> Result<Relaxed<T>, Self> {
+        if matches!(self.stop, Stop::Converged(_)) { Ok(Relaxed(self.state)) } else { Err(self) }
+    }
+}
+
+/// What a relaxer tells while it works; `()` hears nothing and costs nothing.
+pub trait Trace {
+    /// Whether anything listens; lets the caller leave out what only a listener needs.
+    const ACTIVE: bool = true;
+
+    /// Called at every look at the residual.
+    fn look(&mut self, look: &Look);
+}
+
+/// One look at a relaxation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Look {
+    /// Steps taken so far.
+    pub step_count: usize,
+    /// Elastic energy \[energy\].
+    pub energy: f64,
+    /// Kinetic energy \[energy\].
+    pub kinetic_energy: f64,
+    /// Relative residual, with the backbone of the last refresh \[1\].
+    pub residual: f64,
+    /// Time step \[time\].
+    pub time_step: f64,
+    /// The relaxer restarted from rest here; its energies at restarts never increase.
+    pub restart: bool,
+}
+
+impl Trace for () {
+    const ACTIVE: bool = false;
+    fn look(&mut self, _look: &Look) {}
+}
+
+impl<F: FnMut(&Look)> Trace for F {
+    fn look(&mut self, look: &Look) {
+        self(look);
+    }
+}
+
+/// A way to bring a packing to rest.
+pub trait Relaxer {
+    /// Moves the mobile disks until they are at rest or a limit is met.
+    ///
+    /// # Errors
+    /// Only what makes forces undefined: a box too small, two disks with the same centre.
+    fn relax<const D: usize, L: PairLaw>(
+        &self,
+        packing: Packing<D>,
+        law: &L,
+        trace: &mut impl Trace,
+    ) -> Result<Outcome<Packing<D>>, PackingError>;
+}

@@ -1,0 +1,179 @@
+//! When to stop: the residual on the backbone, looked at now and then, and the rounding floor.
+
+use crate::contact::assembly::Assembly;
+use crate::contact::forces::Totals;
+use crate::contact::law::PairLaw;
+use crate::contact::network::{backbone, working_contacts};
+use crate::relax::{Criterion, ForceLimit, Look, Residual, Stop, Trace, UNJAMMED_FORCE};
+use crate::vector::{Vector, dot, larger};
+
+/// Evaluations between two looks at the residual. A look costs a tenth of an evaluation.
+pub const LOOK_EVERY: usize = 10;
+
+/// Looks after which the backbone is determined anew even if nothing suggests convergence.
+const REFRESH_EVERY: usize = 20;
+
+/// Looks without progress near the rounding floor after which it counts as reached.
+const PATIENCE: usize = 300;
+
+/// Watches one relaxation.
+pub struct Monitor {
+    limit: ForceLimit,
+    unjammed_force: f64,
+    backbone: Vec<bool>,
+    look_count: usize,
+    best: f64,
+    best_look: usize,
+    floor: f64,
+    last: Residual,
+}
+
+impl Monitor {
+    /// A watch with this limit.
+    pub fn new<const D: usize, L: PairLaw>(limit: ForceLimit, assembly: &Assembly<D, L>) -> Self {
+        let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
+        Monitor {
+            limit,
+            unjammed_force: UNJAMMED_FORCE * assembly.law().force_scale(radius),
+            backbone: vec![true; assembly.len()],
+            look_count: 0,
+            best: f64::INFINITY,
+            best_look: 0,
+            floor: 0.0,
+            last: Residual { largest_net_force: f64::INFINITY, mean_contact_force: 1.0 },
+        }
+    }
+
+    /// Looks at the net forces just evaluated, one a mobile disk.
+    pub fn look<const D: usize, L: PairLaw>(
+        &mut self,
+        assembly: &Assembly<D, L>,
+        net_forces: &[Vector<D>],
+        totals: &Totals<D>,
+        report: Look,
+        trace: &mut impl Trace,
+    ) -> Option<Stop> {
+        self.look_count += 1;
+        let (inner, outer) = self.largest(net_forces);
+        let mean = totals.mean_contact_force();
+        self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
+        trace.look(&Look { residual: self.last.relative(), ..report });
+        if !(inner + outer + totals.energy).is_finite() {
+            return Some(Stop::NonFinite);
+        }
+        if larger(inner, outer) <= self.unjammed_force && mean <= self.unjammed_force {
+            return Some(Stop::Converged(Criterion::Unjammed));
+        }
+        let promising = self.within(inner, mean);
+        if promising || self.look_count.is_multiple_of(REFRESH_EVERY) || self.look_count == 1 {
+            if let Some(stop) = self.refresh(assembly, net_forces) {
+                return Some(stop);
+            }
+        }
+        self.at_the_floor().then_some(Stop::RoundingFloor)
+    }
+
+    /// Determines the backbone and the residual on it; whether it is within the limit.
+    fn refresh<const D: usize, L: PairLaw>(
+        &mut self,
+        assembly: &Assembly<D, L>,
+        net_forces: &[Vector<D>],
+    ) -> Option<Stop> {
+        let contacts = working_contacts(assembly);
+        let links: Vec<(u32, u32)> = contacts.iter().map(|contact| (contact.first, contact.second)).collect();
+        let held: Vec<bool> = (0..assembly.len()).map(|disk| disk >= assembly.mobile_count()).collect();
+        self.backbone = backbone::<D>(&held, &links);
+        let members = &self.backbone;
+        let (count, total) = contacts
+            .iter()
+            .filter(|contact| members[contact.first as usize] && members[contact.second as usize])
+            .fold((0usize, 0.0), |(count, total), contact| (count + 1, total + contact.force));
+        let mean = if count == 0 { 0.0 } else { total / count as f64 };
+        let (inner, outer) = self.largest(net_forces);
+        let rigid = members[..assembly.mobile_count()].iter().any(|&member| member);
+        self.floor = floor_of(assembly, members, mean);
+        self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
+        let stop = match self.limit {
+            ForceLimit::Relative(limit) => {
+                (rigid && inner <= limit * mean && outer <= limit.sqrt() * mean).then_some(Criterion::RelativeForce)
+            }
+            ForceLimit::Absolute(limit) if rigid => {
+                (inner <= limit && outer <= limit.sqrt() * mean.max(limit)).then_some(Criterion::AbsoluteForce)
+            }
+            ForceLimit::Absolute(limit) => (outer <= limit).then_some(Criterion::AbsoluteForce),
+        };
+        stop.map(Stop::Converged)
+    }
+
+    /// Largest net force on the backbone, and off it.
+    fn largest<const D: usize>(&self, net_forces: &[Vector<D>]) -> (f64, f64) {
+        let mut largest = [0.0; 2];
+        for (force, &member) in net_forces.iter().zip(&self.backbone) {
+            let slot = usize::from(!member);
+            largest[slot] = larger(dot(*force, *force), largest[slot]);
+        }
+        (largest[0].sqrt(), largest[1].sqrt())
+    }
+
+    fn within(&self, largest: f64, mean: f64) -> bool {
+        match self.limit {
+            ForceLimit::Relative(limit) => largest <= limit * mean,
+            ForceLimit::Absolute(limit) => largest <= limit,
+        }
+    }
+
+    fn at_the_floor(&mut self) -> bool {
+        let residual = self.last.relative();
+        // A tenth less counts as progress; fluctuations at the floor are larger, so the best one there stays.
+        if residual < 0.9 * self.best {
+            self.best = residual;
+            self.best_look = self.look_count;
+        }
+        residual <= 16.0 * self.floor && self.look_count - self.best_look >= PATIENCE
+    }
+
+    /// The residual and the floor for the outcome, with the backbone determined anew.
+    pub fn finish<const D: usize, L: PairLaw>(
+        mut self,
+        assembly: &Assembly<D, L>,
+        net_forces: &[Vector<D>],
+    ) -> (Residual, f64) {
+        let _ = self.refresh(assembly, net_forces);
+        (self.last, self.floor)
+    }
+}
+
+/// What rounding alone makes of the relative residual.
+///
+/// ```text
+/// max_i Σ_j F'(δ_ij) 2 u r_ij / ⟨F⟩          u = 2⁻⁵³
+/// ```
+///
+/// The distance of a pair is known to about 2 u of itself (three roundings in the separation, the squares and the root);
+/// every contact turns that into a force by its stiffness. With one number a coordinate it would be about
+/// `5 F' ulp(L) / ⟨F⟩`, the side L of the box in place of the distance.
+pub fn rounding_floor<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> f64 {
+    let held: Vec<bool> = (0..assembly.len()).map(|disk| disk >= assembly.mobile_count()).collect();
+    let contacts = working_contacts(assembly);
+    let links: Vec<(u32, u32)> = contacts.iter().map(|contact| (contact.first, contact.second)).collect();
+    let members = backbone::<D>(&held, &links);
+    let forces: Vec<f64> = contacts
+        .iter()
+        .filter(|contact| members[contact.first as usize] && members[contact.second as usize])
+        .map(|contact| contact.force)
+        .collect();
+    if forces.is_empty() { 0.0 } else { floor_of(assembly, &members, forces.iter().sum::<f64>() / forces.len() as f64) }
+}
+
+fn floor_of<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, members: &[bool], mean: f64) -> f64 {
+    if mean == 0.0 {
+        return 0.0;
+    }
+    let mut row = Vec::new();
+    let reach = &assembly.pairs().reach;
+    // The rows count a contact of two mobile disks twice (for Gershgorin), so u in place of 2 u; next to held disks the
+    // estimate is low by half.
+    assembly.row_bound(&mut row, |pair, _, stiffness| stiffness * reach[pair]);
+    let most = row.iter().zip(members).filter(|&(_, &member)| member).fold(0.0, |most, (&value, _)| larger(value, most));
+    most * 0.5 * f64::EPSILON / mean
+}
