@@ -3,5 +3,6 @@
 pub mod contact;
 pub mod observe;
 pub mod packing;
+pub mod preparation;
 pub mod relax;
 pub mod vector;

@@ -65,6 +65,41 @@ pub fn extended_sum(a: (f64, f64), b: f64) -> (f64, f64) {
     (high, low)
 }
 
+/// `a · b` without error: the rounded product and what rounding took away (no overflow for |a|, |b| < 2⁹⁹⁵).
+///
+/// # Source
+/// Dekker (1971), Numer. Math. 18, 224 (no fused operation needed, so the same bits everywhere).
+#[inline(always)]
+pub fn two_product(a: f64, b: f64) -> (f64, f64) {
+    // 2²⁷ + 1 splits 53 bits in two halves.
+    const SPLIT: f64 = 134_217_729.0;
+    let halves = |x: f64| {
+        let shifted = SPLIT * x;
+        let high = shifted - (shifted - x);
+        (high, x - high)
+    };
+    let ((a_high, a_low), (b_high, b_low)) = (halves(a), halves(b));
+    let high = a * b;
+    (high, ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low)
+}
+
+/// Length of the unevaluated sum of two vectors, as a rounded number and its remainder; the error is below 2⁻¹⁰⁰ of it.
+pub fn extended_norm<const D: usize>(high: Vector<D>, low: Vector<D>) -> (f64, f64) {
+    let mut square = (0.0, 0.0);
+    for d in 0..D {
+        let (product, rest) = two_product(high[d], high[d]);
+        let (total, lost) = two_sum(square.0, product);
+        square = two_sum(total, square.1 + (lost + rest + 2.0 * high[d] * low[d]));
+    }
+    let root = square.0.sqrt();
+    if root == 0.0 {
+        return (0.0, 0.0);
+    }
+    let (product, rest) = two_product(root, root);
+    // One Newton step of the root, its residual taken without cancellation.
+    two_sum(root, ((square.0 - product) - rest + square.1) / (2.0 * root))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -75,6 +110,20 @@ mod tests {
         let tiny = (-60f64).exp2();
         assert_eq!(two_sum(1.0, tiny), (1.0, tiny));
         assert_eq!(two_sum(tiny, 1.0), (1.0, tiny));
+    }
+
+    #[test]
+    fn extended_norm_is_right_to_twice_the_digits() {
+        // (1 + ε)² + 0 = the square of an unevaluated sum; and 3-4-5 with a low part: |(3 + e, 4)| = 5 + 3e/5 + O(e²).
+        let tiny = (-70f64).exp2();
+        assert_eq!(extended_norm([1.0, 0.0], [tiny, 0.0]), (1.0, tiny));
+        let (high, low) = extended_norm([3.0, 4.0], [tiny, 0.0]);
+        assert_eq!(high, 5.0);
+        assert!((low / (0.6 * tiny) - 1.0).abs() < 1e-12);
+        // √2 to 32 digits: 1.41421356237309504880168872420969807.
+        let (high, low) = extended_norm([1.0, 1.0], [0.0, 0.0]);
+        assert_eq!(high, std::f64::consts::SQRT_2);
+        assert!((low - -9.667_293_313_452_913e-17).abs() < 1e-31);
     }
 
     #[test]

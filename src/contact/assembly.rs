@@ -9,7 +9,7 @@ use crate::contact::forces::{self, Totals};
 use crate::contact::law::PairLaw;
 use crate::contact::neighbours::{Disks, PairList, build_pairs, spatial_order};
 use crate::packing::{Domain, Packing, PackingError};
-use crate::vector::{Vector, difference, dot, sum, two_sum};
+use crate::vector::{Vector, difference, dot, two_sum};
 
 /// Width of the skin over the smallest radius \[1\]. Changes speed only.
 ///
@@ -131,14 +131,6 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.rebuild_count
     }
 
-    /// From the centre of the second to that of the first disk of a listed pair.
-    #[inline]
-    pub fn separation(&self, pair: usize) -> Vector<D> {
-        let (i, j) = (self.pairs.first[pair] as usize, self.pairs.second[pair] as usize);
-        let moved = difference(self.displacements[i], self.displacements[j]);
-        sum(self.pairs.separation[pair], moved)
-    }
-
     /// Forces of the present displacements into [`Assembly::forces`].
     pub fn evaluate(&mut self) {
         forces::forces(&self.law, &self.pairs, &self.displacements, &mut self.forces);
@@ -194,6 +186,20 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
         self.displacements.clone_from(&self.checkpoint);
         self.keep_listed(f64::INFINITY).map(|_| ())
+    }
+
+    /// Longest displacement of a disk from its anchor \[length\]: what the rounding of overlaps is relative to.
+    pub fn longest_displacement(&self) -> f64 {
+        let squared = self.displacements[..self.mobile_count].iter().map(|&u| dot(u, u));
+        squared.fold(0.0, |most, value| if value > most { value } else { most }).sqrt()
+    }
+
+    /// Lets the anchors take over the displacements and makes the list anew; the disks stay where they are.
+    ///
+    /// # Errors
+    /// Two disks with the same centre.
+    pub fn reanchor(&mut self) -> Result<(), PackingError> {
+        self.rebuild()
     }
 
     fn rebuild(&mut self) -> Result<(), PackingError> {

@@ -1,10 +1,13 @@
 //! The hot loop: energy, forces and virial of all contacts in one pass.
 //!
 //! ```text
-//! r_ij = D_ij + (u_i − u_j)     δ = R_i + R_j − |r_ij|     f_i += F(δ) r_ij/|r_ij|,  f_j −= the same
+//! r_ij = D_ij + w     w = u_i − u_j     δ = δ⁰_ij − w·(2 D_ij + w) / (|r_ij| + |D_ij|)
+//! f_i += F(δ) r_ij/|r_ij|,  f_j −= the same
 //! ```
 //!
-//! D_ij is the separation of the anchors, u a displacement from them. Pairs are taken in blocks of [`BLOCK`]: first the
+//! D_ij is the separation of the anchors, u a displacement from them, δ⁰_ij the overlap at the anchors, known to full
+//! relative accuracy. The overlap follows from its change, so it carries the rounding of the displacements (10⁻¹⁶ w) and of
+//! itself, not that of the distance (10⁻¹⁶), nor that of positions in a box (10⁻¹⁴ and more). Pairs are taken in blocks of [`BLOCK`]: first the
 //! separations are gathered, then all arithmetic is done column by column (which the compiler turns into vector
 //! instructions), then the forces are scattered. The order of every sum is fixed, so the bits do not depend on the
 //! machine's vector width.
@@ -46,6 +49,7 @@ impl<const D: usize> Totals<D> {
 
 /// One block of pairs, column by column.
 struct Block<const D: usize> {
+    moved: [[f64; BLOCK]; D],
     apart: [[f64; BLOCK]; D],
     overlap: [f64; BLOCK],
     force: [f64; BLOCK],
@@ -56,7 +60,13 @@ struct Block<const D: usize> {
 impl<const D: usize> Block<D> {
     #[inline(always)]
     fn new() -> Self {
-        Block { apart: [[0.0; BLOCK]; D], overlap: [0.0; BLOCK], force: [0.0; BLOCK], factor: [0.0; BLOCK] }
+        Block {
+            moved: [[0.0; BLOCK]; D],
+            apart: [[0.0; BLOCK]; D],
+            overlap: [0.0; BLOCK],
+            force: [0.0; BLOCK],
+            factor: [0.0; BLOCK],
+        }
     }
 }
 
@@ -66,7 +76,7 @@ impl<const D: usize> Block<D> {
 /// `displacements` and `forces` have one entry a disk.
 ///
 /// # Accuracy
-/// An overlap is known to about an ulp of the distance, 2·10⁻¹⁶ for touching disks of diameter 1.
+/// An overlap is known to a few units in the last place of itself and of the relative displacement w.
 pub fn forces<const D: usize, L: PairLaw>(
     law: &L,
     pairs: &PairList<D>,
@@ -111,7 +121,8 @@ fn sweep<const D: usize, L: PairLaw, const TOTALS: bool>(
         let range = start..start + count;
         let (first, second) = (&pairs.first[range.clone()], &pairs.second[range.clone()]);
         gather(&mut block, first, second, &pairs.separation[range.clone()], displacements);
-        evaluate(law, &mut block, &pairs.reach[range.clone()], &pairs.coefficient[range]);
+        let (distance, overlap) = (&pairs.distance[range.clone()], &pairs.overlap[range.clone()]);
+        evaluate(law, &mut block, distance, overlap, &pairs.coefficient[range]);
         if TOTALS {
             tally(law, &block, count, totals);
         }
@@ -131,20 +142,33 @@ fn gather<const D: usize>(
     for (k, ((&i, &j), &anchor)) in first.iter().zip(second).zip(separation).enumerate() {
         let (a, b) = (displacements[i as usize], displacements[j as usize]);
         for d in 0..D {
-            block.apart[d][k] = anchor[d] + (a[d] - b[d]);
+            let moved = a[d] - b[d];
+            block.moved[d][k] = moved;
+            block.apart[d][k] = anchor[d] + moved;
         }
     }
 }
 
 #[inline(always)]
-fn evaluate<const D: usize, L: PairLaw>(law: &L, block: &mut Block<D>, reach: &[f64], coefficient: &[f64]) {
-    for (k, (&reach, &coefficient)) in reach.iter().zip(coefficient).enumerate() {
-        let mut squared = block.apart[0][k] * block.apart[0][k];
-        for d in 1..D {
-            squared += block.apart[d][k] * block.apart[d][k];
+fn evaluate<const D: usize, L: PairLaw>(
+    law: &L,
+    block: &mut Block<D>,
+    anchor_distance: &[f64],
+    anchor_overlap: &[f64],
+    coefficient: &[f64],
+) {
+    let columns = anchor_distance.iter().zip(anchor_overlap).zip(coefficient);
+    for (k, ((&anchor_distance, &anchor_overlap), &coefficient)) in columns.enumerate() {
+        let mut squared = 0.0;
+        let mut change = 0.0;
+        for d in 0..D {
+            let (apart, moved) = (block.apart[d][k], block.moved[d][k]);
+            squared += apart * apart;
+            // 2 D + w = (D + w) + D = 2 apart − moved.
+            change += moved * (2.0 * apart - moved);
         }
         let distance = squared.sqrt();
-        let gap = reach - distance;
+        let gap = anchor_overlap - change / (distance + anchor_distance);
         // Written so that NaN stays NaN.
         let overlap = if gap < 0.0 { 0.0 } else { gap };
         let force = law.force(coefficient, overlap);
@@ -152,6 +176,27 @@ fn evaluate<const D: usize, L: PairLaw>(law: &L, block: &mut Block<D>, reach: &[
         block.force[k] = force;
         block.factor[k] = force / distance;
     }
+}
+
+/// Separation, distance and overlap of one listed pair, by the same formula as the loop; a negative overlap is a gap.
+#[inline(always)]
+pub fn geometry<const D: usize>(
+    pairs: &PairList<D>,
+    pair: usize,
+    displacements: &[Vector<D>],
+) -> (Vector<D>, f64, f64) {
+    let (a, b) = (displacements[pairs.first[pair] as usize], displacements[pairs.second[pair] as usize]);
+    let mut apart = [0.0; D];
+    let mut squared = 0.0;
+    let mut change = 0.0;
+    for d in 0..D {
+        let moved = a[d] - b[d];
+        apart[d] = pairs.separation[pair][d] + moved;
+        squared += apart[d] * apart[d];
+        change += moved * (2.0 * apart[d] - moved);
+    }
+    let distance = squared.sqrt();
+    (apart, distance, pairs.overlap[pair] - change / (distance + pairs.distance[pair]))
 }
 
 #[inline(always)]
@@ -204,16 +249,9 @@ pub fn add_damping<const D: usize, C: DampingLaw>(
     let mut dissipation = 0.0;
     for k in 0..pairs.len() {
         let (i, j) = (pairs.first[k] as usize, pairs.second[k] as usize);
-        let apart: Vector<D> =
-            std::array::from_fn(|d| pairs.separation[k][d] + (displacements[i][d] - displacements[j][d]));
-        let mut squared = apart[0] * apart[0];
-        for d in 1..D {
-            squared += apart[d] * apart[d];
-        }
-        let reach = pairs.reach[k];
-        if squared < reach * reach {
-            let distance = squared.sqrt();
-            let damping = law.damping(damping_coefficient[k], reach - distance);
+        let (apart, distance, overlap) = geometry(pairs, k, displacements);
+        if overlap > 0.0 {
+            let damping = law.damping(damping_coefficient[k], overlap);
             let mut along = 0.0;
             for d in 0..D {
                 along += (velocities[i][d] - velocities[j][d]) * apart[d];
@@ -248,14 +286,8 @@ pub fn stiffness_rows<const D: usize, L: PairLaw>(
     row.fill(0.0);
     for k in 0..pairs.len() {
         let (i, j) = (pairs.first[k] as usize, pairs.second[k] as usize);
-        let mut squared = 0.0;
-        for d in 0..D {
-            let apart = pairs.separation[k][d] + (displacements[i][d] - displacements[j][d]);
-            squared += apart * apart;
-        }
-        let reach = pairs.reach[k];
-        if squared < reach * reach {
-            let overlap = reach - squared.sqrt();
+        let (_, _, overlap) = geometry(pairs, k, displacements);
+        if overlap > 0.0 {
             let stiffness = law.stiffness(law.force(pairs.coefficient[k], overlap), overlap);
             let value = weight(k, overlap, stiffness);
             if j < mobile_count {

@@ -5,7 +5,7 @@
 //! looked at only while the list is built.
 
 use crate::packing::{Domain, PackingError};
-use crate::vector::{Vector, difference, dot, sum};
+use crate::vector::{Vector, difference, dot, extended_norm, sum, two_sum};
 
 /// Pairs that may touch, as parallel columns.
 #[derive(Debug, Clone, Default)]
@@ -14,10 +14,12 @@ pub struct PairList<const D: usize> {
     pub first: Vec<u32>,
     /// Second disk of each pair.
     pub second: Vec<u32>,
-    /// From the anchor of the second to that of the first along the nearest image \[length\].
+    /// From the anchor of the second to that of the first along the nearest image, D \[length\].
     pub separation: Vec<Vector<D>>,
-    /// Distance at which the pair touches, R_i + R_j \[length\].
-    pub reach: Vec<f64>,
+    /// Distance of the anchors, |D| \[length\].
+    pub distance: Vec<f64>,
+    /// Overlap at the anchors, R_i + R_j − |D|, rounded once only; negative for a pair apart \[length\].
+    pub overlap: Vec<f64>,
     /// Coefficient of the contact law for this pair.
     pub coefficient: Vec<f64>,
 }
@@ -37,7 +39,8 @@ impl<const D: usize> PairList<D> {
         self.first.clear();
         self.second.clear();
         self.separation.clear();
-        self.reach.clear();
+        self.distance.clear();
+        self.overlap.clear();
         self.coefficient.clear();
     }
 }
@@ -215,8 +218,12 @@ pub fn build_pairs<const D: usize>(
             if distance_squared < (reach + skin) * (reach + skin) {
                 pairs.first.push(first as u32);
                 pairs.second.push(second);
-                pairs.separation.push(anchor_separation(disks, first, other, apart));
-                pairs.reach.push(reach);
+                let (separation, rest) = anchor_separation(disks, first, other, apart);
+                let (distance, distance_rest) = extended_norm(separation, rest);
+                pairs.separation.push(separation);
+                pairs.distance.push(distance);
+                let (gap, gap_rest) = two_sum(reach, -distance);
+                pairs.overlap.push(gap + (gap_rest - distance_rest));
                 pairs.coefficient.push(coefficient(radius, disks.radii[other]));
             }
         }
@@ -226,15 +233,20 @@ pub fn build_pairs<const D: usize>(
 }
 
 /// Separation of the anchors along the image that is nearest for the centres.
-fn anchor_separation<const D: usize>(disks: &Disks<'_, D>, first: usize, second: usize, apart: Vector<D>) -> Vector<D> {
+fn anchor_separation<const D: usize>(
+    disks: &Disks<'_, D>,
+    first: usize,
+    second: usize,
+    apart: Vector<D>,
+) -> (Vector<D>, Vector<D>) {
     let zero = [0.0; D];
-    let anchors = disks.domain.separation((disks.anchors[first], zero), (disks.anchors[second], zero));
+    let (anchors, rest) = disks.domain.separation_extended((disks.anchors[first], zero), (disks.anchors[second], zero));
     // Displacements within half a box keep the image; the caller re-anchors at every rebuild, so they are tiny here.
     debug_assert!({
         let moved = difference(disks.displacements[first], disks.displacements[second]);
         (0..D).all(|d| (anchors[d] + moved[d] - apart[d]).abs() < 1e-9 * (1.0 + apart[d].abs()))
     });
-    anchors
+    (anchors, rest)
 }
 
 fn maybe_within<const D: usize>(domain: &Domain<D>, a: Vector<D>, b: Vector<D>, range: f64) -> bool {

@@ -8,6 +8,7 @@
 //! Goodrich, Liu, Nagel (2012), Phys. Rev. Lett. 109, 095704; design §4.
 
 use crate::contact::assembly::Assembly;
+use crate::contact::forces::geometry;
 use crate::contact::law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::vector::{Vector, norm};
@@ -212,8 +213,7 @@ pub fn working_contacts<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -
     let (pairs, law) = (assembly.pairs(), assembly.law());
     (0..pairs.len())
         .filter_map(|pair| {
-            let separation = assembly.separation(pair);
-            let overlap = pairs.reach[pair] - norm(separation);
+            let (separation, _, overlap) = geometry(pairs, pair, &assembly.displacements);
             (overlap > 0.0).then(|| {
                 let force = law.force(pairs.coefficient[pair], overlap);
                 let energy = law.energy(force, overlap);

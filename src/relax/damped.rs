@@ -138,6 +138,10 @@ impl DampedDynamics {
                 if let Some(stop) = monitor.look(&motion.assembly, net_forces, &totals, look, trace) {
                     break stop;
                 }
+                if monitor.takes_new_anchors() {
+                    motion.assembly.reanchor()?;
+                    motion.set_damping_coefficients();
+                }
             }
             if step_count >= self.step_limit {
                 break Stop::StepLimit;

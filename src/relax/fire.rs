@@ -137,6 +137,9 @@ impl Run<'_> {
                 if let Some(stop) = monitor.look(assembly, &assembly.forces[..mobile], totals, look, trace) {
                     return Ok((stop, self.cost()));
                 }
+                if monitor.takes_new_anchors() {
+                    assembly.reanchor()?;
+                }
             }
             if self.step_count >= settings.step_limit {
                 return Ok((Stop::StepLimit, self.cost()));

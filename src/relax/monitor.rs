@@ -25,6 +25,7 @@ pub struct Monitor {
     best: f64,
     best_look: usize,
     floor: f64,
+    anchors_felt: bool,
     last: Residual,
 }
 
@@ -40,6 +41,7 @@ impl Monitor {
             best: f64::INFINITY,
             best_look: 0,
             floor: 0.0,
+            anchors_felt: false,
             last: Residual { largest_net_force: f64::INFINITY, mean_contact_force: 1.0 },
         }
     }
@@ -91,8 +93,11 @@ impl Monitor {
         let mean = if count == 0 { 0.0 } else { total / count as f64 };
         let (inner, outer) = self.largest(net_forces);
         let rigid = members[..assembly.mobile_count()].iter().any(|&member| member);
-        self.floor = floor_of(assembly, members, mean);
+        self.floor = floor_of(assembly, members, mean, assembly.longest_displacement());
         self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
+        // Felt: within a factor 20 of the residual, and new anchors would lower the floor by more than 4.
+        self.anchors_felt = self.floor > 0.05 * self.last.relative()
+            && self.floor > 4.0 * floor_of(assembly, members, mean, 0.0);
         let stop = match self.limit {
             ForceLimit::Relative(limit) => {
                 (rigid && inner <= limit * mean && outer <= limit.sqrt() * mean).then_some(Criterion::RelativeForce)
@@ -132,6 +137,11 @@ impl Monitor {
         residual <= 16.0 * self.floor && self.look_count - self.best_look >= PATIENCE
     }
 
+    /// Whether the rounding of displacements from the anchors is felt, so that the caller should re-anchor; asked once a look.
+    pub fn takes_new_anchors(&mut self) -> bool {
+        std::mem::take(&mut self.anchors_felt)
+    }
+
     /// The residual and the floor for the outcome, with the backbone determined anew.
     pub fn finish<const D: usize, L: PairLaw>(
         mut self,
@@ -146,12 +156,11 @@ impl Monitor {
 /// What rounding alone makes of the relative residual.
 ///
 /// ```text
-/// max_i Σ_j F'(δ_ij) 2 u r_ij / ⟨F⟩          u = 2⁻⁵³
+/// max_i Σ_j [F'(δ_ij) 4 u w + 4 u F(δ_ij)] / ⟨F⟩          u = 2⁻⁵³
 /// ```
 ///
-/// The distance of a pair is known to about 2 u of itself (three roundings in the separation, the squares and the root);
-/// every contact turns that into a force by its stiffness. With one number a coordinate it would be about
-/// `5 F' ulp(L) / ⟨F⟩`, the side L of the box in place of the distance.
+/// w is the longest displacement from the anchors: an overlap is known to about 4 u of the relative displacement and a
+/// force to about 4 u of itself. With one number a coordinate it would be about `5 F' ulp(L) / ⟨F⟩`, L the side of the box.
 pub fn rounding_floor<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> f64 {
     let held: Vec<bool> = (0..assembly.len()).map(|disk| disk >= assembly.mobile_count()).collect();
     let contacts = working_contacts(assembly);
@@ -162,18 +171,19 @@ pub fn rounding_floor<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> 
         .filter(|contact| members[contact.first as usize] && members[contact.second as usize])
         .map(|contact| contact.force)
         .collect();
-    if forces.is_empty() { 0.0 } else { floor_of(assembly, &members, forces.iter().sum::<f64>() / forces.len() as f64) }
+    if forces.is_empty() { 0.0 } else { floor_of(assembly, &members, forces.iter().sum::<f64>() / forces.len() as f64, assembly.longest_displacement()) }
 }
 
-fn floor_of<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, members: &[bool], mean: f64) -> f64 {
+fn floor_of<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, members: &[bool], mean: f64, moved: f64) -> f64 {
     if mean == 0.0 {
         return 0.0;
     }
     let mut row = Vec::new();
-    let reach = &assembly.pairs().reach;
-    // The rows count a contact of two mobile disks twice (for Gershgorin), so u in place of 2 u; next to held disks the
-    // estimate is low by half.
-    assembly.row_bound(&mut row, |pair, _, stiffness| stiffness * reach[pair]);
+    let exponent = assembly.law().exponent();
+    // F = F' δ / (α − 1). The rows count a contact of two mobile disks twice (for Gershgorin), hence 2 u for 4 u; next to
+    // held disks the estimate is low by half.
+    let noise = |_: usize, overlap: f64, stiffness: f64| stiffness * (moved + overlap / (exponent - 1.0));
+    assembly.row_bound(&mut row, noise);
     let most = row.iter().zip(members).filter(|&(_, &member)| member).fold(0.0, |most, (&value, _)| larger(value, most));
-    most * 0.5 * f64::EPSILON / mean
+    most * f64::EPSILON / mean
 }

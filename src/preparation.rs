@@ -1,0 +1,332 @@
+//! Random points in a periodic box, quenched to a jammed (or unjammed) packing at a packing fraction or at a pressure.
+//!
+//! At a packing fraction φ the points are drawn uniformly and relaxed once: this is the protocol of the study. At a
+//! pressure, the points are relaxed at the packing fraction that should give it and the box is then scaled, positions
+//! with it, and relaxed again until the pressure is met. Close to jamming
+//!
+//! ```text
+//! p^(1/(α−1)) ∝ φ − φ_J
+//! ```
+//!
+//! so the search goes by secants in that quantity; where a step ends in an unjammed packing the last jammed one is taken
+//! again with half the step.
+//!
+//! # Source
+//! O'Hern, Silbert, Liu, Nagel (2003), Phys. Rev. E 68, 011306 (quench, scaling of the pressure); design §4.
+
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use serde::{Deserialize, Serialize};
+
+use crate::contact::{ContactNetwork, PairLaw};
+use crate::packing::{Domain, Mixture, Packing, PackingError, ball_volume};
+use crate::relax::{Cost, Criterion, Outcome, Relaxed, Relaxer, Residual, Stop, Trace};
+
+/// What the packing is prepared for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Target {
+    /// Packing fraction of the quench \[1\].
+    PackingFraction(f64),
+    /// Pressure of the packing \[force / length^(D−1)\], met to the relative tolerance of [`Preparation::tolerance`].
+    Pressure(f64),
+}
+
+/// How a packing is made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Preparation {
+    /// Number of disks.
+    pub disk_count: usize,
+    /// Their radii.
+    pub mixture: Mixture,
+    /// Packing fraction or pressure.
+    pub target: Target,
+    /// Largest relative deviation of the pressure from the target \[1\].
+    pub tolerance: f64,
+    /// Seed of the random points.
+    pub seed: u64,
+}
+
+/// A packing at rest and what it took.
+#[derive(Debug, Clone)]
+pub struct Prepared<const D: usize> {
+    /// The packing.
+    pub packing: Relaxed<Packing<D>>,
+    /// Its pressure \[force / length^(D−1)\].
+    pub pressure: f64,
+    /// Its packing fraction \[1\].
+    pub packing_fraction: f64,
+    /// Packing fraction at which the random points were quenched \[1\].
+    pub quench_packing_fraction: f64,
+    /// Residual of the final relaxation.
+    pub residual: Residual,
+    /// Rounding floor of the relative residual \[1\].
+    pub rounding_floor: f64,
+    /// Which limit the final relaxation met.
+    pub criterion: Criterion,
+    /// Number of relaxations, the quench included.
+    pub relaxation_count: usize,
+    /// Cost of all relaxations.
+    pub cost: Cost,
+}
+
+/// Why a packing could not be had.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PreparationError {
+    /// The disks themselves are at fault.
+    #[error(transparent)]
+    Packing(#[from] PackingError),
+    /// φ must be above 0 and below 4: there every disk overlaps all of a dozen neighbours.
+    #[error("packing_fraction is {packing_fraction}, not a number between 0 and 4")]
+    PackingFractionOutOfRange {
+        /// The value asked for.
+        packing_fraction: f64,
+    },
+    /// p must be positive: p = 0 leaves the packing fraction open.
+    #[error("pressure is {pressure}, not a positive number (for an unjammed packing name a packing_fraction below jamming)")]
+    PressureNotPositive {
+        /// The value asked for.
+        pressure: f64,
+    },
+    /// The tolerance on the pressure must lie between 0 and 1.
+    #[error("pressure tolerance is {tolerance}, not a number between 0 and 1")]
+    ToleranceOutOfRange {
+        /// The value asked for.
+        tolerance: f64,
+    },
+    /// A relaxation did not end at rest.
+    #[error(
+        "at packing fraction {packing_fraction} the relaxation stopped with {stop:?} after {step_count} steps, residual {residual:e}"
+    )]
+    NotAtRest {
+        /// Packing fraction of that relaxation.
+        packing_fraction: f64,
+        /// Why it stopped.
+        stop: Stop,
+        /// Steps taken.
+        step_count: usize,
+        /// Relative residual reached.
+        residual: f64,
+    },
+    /// The search for the pressure ended elsewhere.
+    #[error(
+        "pressure {target} not met within {tolerance} after {relaxation_count} relaxations: nearest {nearest} at packing fraction {packing_fraction}"
+    )]
+    PressureNotReached {
+        /// Pressure asked for.
+        target: f64,
+        /// Tolerance asked for.
+        tolerance: f64,
+        /// Relaxations done.
+        relaxation_count: usize,
+        /// Nearest pressure met.
+        nearest: f64,
+        /// Packing fraction there.
+        packing_fraction: f64,
+    },
+}
+
+/// Relaxations a search for a pressure may take; secants need 3 to 8.
+const RELAXATION_LIMIT: usize = 60;
+
+/// Jamming of random bidisperse packings, to start a search from. Source: O'Hern et al. (2003), table II.
+fn jamming_fraction<const D: usize>() -> f64 {
+    if D == 2 { 0.842 } else { 0.648 }
+}
+
+/// Uniformly random points in a periodic cube at a packing fraction, with radii of a mixture.
+///
+/// # Errors
+/// A mixture or packing fraction that makes no sense.
+pub fn random_points<const D: usize>(
+    disk_count: usize,
+    mixture: &Mixture,
+    packing_fraction: f64,
+    seed: u64,
+) -> Result<Packing<D>, PreparationError> {
+    if !(packing_fraction > 0.0 && packing_fraction < 4.0) {
+        return Err(PreparationError::PackingFractionOutOfRange { packing_fraction });
+    }
+    let radii = mixture.radii(disk_count)?;
+    let solid: f64 = radii.iter().map(|&radius| ball_volume::<D>(radius)).sum();
+    let side = (solid / packing_fraction).powf(1.0 / D as f64);
+    let mut generator = Pcg64::seed_from_u64(seed);
+    let positions = radii.iter().map(|_| std::array::from_fn(|_| side * generator.random::<f64>())).collect();
+    Ok(Packing::new(Domain::cube(side), positions, radii)?)
+}
+
+/// Prepares a packing.
+///
+/// # Errors
+/// [`PreparationError`] says what cannot be had, with numbers.
+pub fn prepare<const D: usize, L: PairLaw>(
+    preparation: &Preparation,
+    law: &L,
+    relaxer: &impl Relaxer,
+    trace: &mut impl Trace,
+) -> Result<Prepared<D>, PreparationError> {
+    let Preparation { disk_count, mixture, target, tolerance, seed } = preparation;
+    match *target {
+        Target::PackingFraction(packing_fraction) => {
+            let points = random_points::<D>(*disk_count, mixture, packing_fraction, *seed)?;
+            Ok(Search { law, relaxer, cost: Cost::default(), count: 0, quench: packing_fraction }.rest(points, trace)?.0)
+        }
+        Target::Pressure(pressure) => {
+            if !(pressure.is_finite() && pressure > 0.0) {
+                return Err(PreparationError::PressureNotPositive { pressure });
+            }
+            if !(*tolerance > 0.0 && *tolerance < 1.0) {
+                return Err(PreparationError::ToleranceOutOfRange { tolerance: *tolerance });
+            }
+            let quench = quench_fraction::<D, L>(law, mixture, pressure)?;
+            let points = random_points::<D>(*disk_count, mixture, quench, *seed)?;
+            Search { law, relaxer, cost: Cost::default(), count: 0, quench }.meet(points, pressure, *tolerance, trace)
+        }
+    }
+}
+
+/// Pressure that affine compression from jamming would give; packings have 0.6 to 0.8 of it.
+fn affine_pressure<const D: usize, L: PairLaw>(law: &L, mixture: &Mixture, packing_fraction: f64) -> f64 {
+    let total: f64 = mixture.components.iter().map(|kind| kind.share).sum();
+    let mean = |f: &dyn Fn(f64) -> f64| mixture.components.iter().map(|kind| kind.share * f(kind.radius)).sum::<f64>() / total;
+    let radius = mean(&|r| r);
+    let density = packing_fraction / mean(&|r| ball_volume::<D>(r));
+    let reach = 2.0 * radius;
+    let overlap = reach * ((packing_fraction / jamming_fraction::<D>()).powf(1.0 / D as f64) - 1.0).max(0.0);
+    // Z / (2 D) contacts a disk and dimension, Z slightly above isostatic.
+    1.15 * density * reach * law.force(law.coefficient(radius, radius), overlap)
+}
+
+/// Packing fraction at which random points are quenched for a pressure.
+fn quench_fraction<const D: usize, L: PairLaw>(law: &L, mixture: &Mixture, pressure: f64) -> Result<f64, PreparationError> {
+    // Quenching closer to jamming than this is slow and often ends unjammed; the search decompresses from here.
+    let lowest = jamming_fraction::<D>() + 0.004;
+    let (mut low, mut high) = (lowest, 4.0);
+    if 0.7 * affine_pressure::<D, L>(law, mixture, high) < pressure {
+        return Err(PreparationError::PackingFractionOutOfRange { packing_fraction: f64::INFINITY });
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if 0.7 * affine_pressure::<D, L>(law, mixture, middle) < pressure { low = middle } else { high = middle }
+    }
+    Ok(low)
+}
+
+/// One jammed state of the search.
+struct State<const D: usize> {
+    prepared: Prepared<D>,
+    /// p^(1/(α−1)), linear in φ near jamming.
+    root: f64,
+}
+
+struct Search<'a, L, R> {
+    law: &'a L,
+    relaxer: &'a R,
+    cost: Cost,
+    count: usize,
+    quench: f64,
+}
+
+impl<L: PairLaw, R: Relaxer> Search<'_, L, R> {
+    /// Relaxes a packing and measures its pressure.
+    fn rest<const D: usize>(
+        &mut self,
+        packing: Packing<D>,
+        trace: &mut impl Trace,
+    ) -> Result<(Prepared<D>, f64), PreparationError> {
+        let packing_fraction = packing.packing_fraction().unwrap_or(0.0);
+        let outcome = self.relaxer.relax(packing, self.law, trace)?;
+        self.cost = self.cost.plus(outcome.cost);
+        self.count += 1;
+        let Outcome { stop, residual, rounding_floor, cost: Cost { step_count, .. }, .. } = outcome;
+        let (Stop::Converged(criterion), Ok(packing)) = (stop, outcome.converged()) else {
+            let residual = residual.relative();
+            return Err(PreparationError::NotAtRest { packing_fraction, stop, step_count, residual });
+        };
+        let pressure = match criterion {
+            Criterion::Unjammed => 0.0,
+            _ => {
+                let volume = packing.get().domain().volume().unwrap_or(f64::INFINITY);
+                ContactNetwork::new(packing.get(), self.law)?.pressure(volume)
+            }
+        };
+        let prepared = Prepared {
+            packing,
+            pressure,
+            packing_fraction,
+            quench_packing_fraction: self.quench,
+            residual,
+            rounding_floor,
+            criterion,
+            relaxation_count: self.count,
+            cost: self.cost,
+        };
+        let root = pressure.powf(1.0 / (self.law.exponent() - 1.0));
+        Ok((prepared, root))
+    }
+
+    fn meet<const D: usize>(
+        &mut self,
+        points: Packing<D>,
+        target: f64,
+        tolerance: f64,
+        trace: &mut impl Trace,
+    ) -> Result<Prepared<D>, PreparationError> {
+        let wanted = target.powf(1.0 / (self.law.exponent() - 1.0));
+        let (prepared, root) = self.rest(points, trace)?;
+        let mut state = State { prepared, root };
+        // Slope of the root against φ: where it is not known yet, that of a straight line from jamming.
+        let mut slope = wanted.max(state.root) / (state.prepared.packing_fraction - jamming_fraction::<D>()).max(0.004);
+        let mut nearest = (state.prepared.pressure, state.prepared.packing_fraction);
+        let mut step_share = 1.0;
+        let mut unjammed_above: f64 = 0.0;
+        while self.count < RELAXATION_LIMIT {
+            let (pressure, fraction) = (state.prepared.pressure, state.prepared.packing_fraction);
+            if (pressure - target).abs() < (nearest.0 - target).abs() {
+                nearest = (pressure, fraction);
+            }
+            if (pressure / target - 1.0).abs() <= tolerance {
+                state.prepared.relaxation_count = self.count;
+                state.prepared.cost = self.cost;
+                return Ok(state.prepared);
+            }
+            let mut step = step_share * (wanted - state.root) / slope;
+            // One step changes φ by a tenth at most, and never into what is known to be unjammed.
+            step = step.clamp(-0.1 * fraction, 0.1 * fraction);
+            if fraction + step <= unjammed_above {
+                step = 0.5 * (unjammed_above - fraction);
+            }
+            let next = fraction + step;
+            let packing = state.prepared.packing.get().clone().rescaled((fraction / next).powf(1.0 / D as f64));
+            let (prepared, root) = self.rest(packing, trace)?;
+            if root == 0.0 {
+                if state.root == 0.0 {
+                    // Still unjammed on the way up: go on from here with longer steps.
+                    step_share *= 2.0;
+                    state = State { prepared, root };
+                } else {
+                    unjammed_above = unjammed_above.max(next);
+                    step_share *= 0.5;
+                }
+                continue;
+            }
+            step_share = 1.0;
+            let measured = (root - state.root) / (prepared.packing_fraction - fraction);
+            if measured.is_finite() && measured > 0.0 {
+                slope = measured.clamp(0.2 * slope, 5.0 * slope);
+            }
+            state = State { prepared, root };
+            if unjammed_above >= state.prepared.packing_fraction {
+                unjammed_above = 0.0;
+            }
+        }
+        Err(PreparationError::PressureNotReached {
+            target,
+            tolerance,
+            relaxation_count: self.count,
+            nearest: nearest.0,
+            packing_fraction: nearest.1,
+        })
+    }
+}
