@@ -84,7 +84,9 @@ pub enum PreparationError {
         packing_fraction: f64,
     },
     /// p must be positive: p = 0 leaves the packing fraction open.
-    #[error("pressure is {pressure}, not a positive number (for an unjammed packing name a packing_fraction below jamming)")]
+    #[error(
+        "pressure is {pressure}, not a positive number (for an unjammed packing name a packing_fraction below jamming)"
+    )]
     PressureNotPositive {
         /// The value asked for.
         pressure: f64,
@@ -170,7 +172,9 @@ pub fn prepare<const D: usize, L: PairLaw>(
     match *target {
         Target::PackingFraction(packing_fraction) => {
             let points = random_points::<D>(*disk_count, mixture, packing_fraction, *seed)?;
-            Ok(Search { law, relaxer, cost: Cost::default(), count: 0, quench: packing_fraction }.rest(points, trace)?.0)
+            Ok(Search { law, relaxer, cost: Cost::default(), count: 0, quench: packing_fraction }
+                .rest(points, trace)?
+                .0)
         }
         Target::Pressure(pressure) => {
             if !(pressure.is_finite() && pressure > 0.0) {
@@ -189,7 +193,8 @@ pub fn prepare<const D: usize, L: PairLaw>(
 /// Pressure that affine compression from jamming would give; packings have 0.6 to 0.8 of it.
 fn affine_pressure<const D: usize, L: PairLaw>(law: &L, mixture: &Mixture, packing_fraction: f64) -> f64 {
     let total: f64 = mixture.components.iter().map(|kind| kind.share).sum();
-    let mean = |f: &dyn Fn(f64) -> f64| mixture.components.iter().map(|kind| kind.share * f(kind.radius)).sum::<f64>() / total;
+    let mean =
+        |f: &dyn Fn(f64) -> f64| mixture.components.iter().map(|kind| kind.share * f(kind.radius)).sum::<f64>() / total;
     let radius = mean(&|r| r);
     let density = packing_fraction / mean(&|r| ball_volume::<D>(r));
     let reach = 2.0 * radius;
@@ -199,7 +204,11 @@ fn affine_pressure<const D: usize, L: PairLaw>(law: &L, mixture: &Mixture, packi
 }
 
 /// Packing fraction at which random points are quenched for a pressure.
-fn quench_fraction<const D: usize, L: PairLaw>(law: &L, mixture: &Mixture, pressure: f64) -> Result<f64, PreparationError> {
+fn quench_fraction<const D: usize, L: PairLaw>(
+    law: &L,
+    mixture: &Mixture,
+    pressure: f64,
+) -> Result<f64, PreparationError> {
     // Quenching closer to jamming than this is slow and often ends unjammed; the search decompresses from here.
     let lowest = jamming_fraction::<D>() + 0.004;
     let (mut low, mut high) = (lowest, 4.0);

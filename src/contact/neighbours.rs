@@ -151,7 +151,12 @@ fn bounding_box<const D: usize>(points: &[Vector<D>]) -> (Vector<D>, Vector<D>) 
 }
 
 /// Order of the disks cell by cell in rows, mobile ones before held ones: neighbours in space are neighbours in memory.
-pub fn spatial_order<const D: usize>(domain: &Domain<D>, points: &[Vector<D>], radii: &[f64], held: &[bool]) -> Vec<u32> {
+pub fn spatial_order<const D: usize>(
+    domain: &Domain<D>,
+    points: &[Vector<D>],
+    radii: &[f64],
+    held: &[bool],
+) -> Vec<u32> {
     let range = 2.0 * radii.iter().copied().fold(0.0, f64::max);
     let grid = CellGrid::new(domain, points, range);
     let mut order: Vec<u32> = (0..points.len() as u32).collect();

@@ -113,7 +113,12 @@ impl<const D: usize> ContactNetwork<D> {
         for (&disk, force) in order.iter().zip(&assembly.forces) {
             forces[disk as usize] = *force;
         }
-        Ok(ContactNetwork { backbone: backbone::<D>(packing.held(), &links), contacts, held: packing.held().to_vec(), forces })
+        Ok(ContactNetwork {
+            backbone: backbone::<D>(packing.held(), &links),
+            contacts,
+            held: packing.held().to_vec(),
+            forces,
+        })
     }
 
     /// Net elastic force on each disk \[force\].

@@ -1,6 +1,12 @@
 //! [`RadialProfile`]: the mean radial displacement in rings around the inflated disk.
+//!
+//! ```text
+//! ⟨d_r⟩_k = (1/n_k) Σ_{i in ring k} d_r,i        ring k: a + k w ≤ r_i < a + (k+1) w,  up to R
+//! ```
 
 use serde::{Deserialize, Serialize};
+
+use crate::displacement::DisplacementField;
 
 /// One ring of a radial profile.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -13,7 +19,7 @@ pub struct Ring {
     pub mean: f64,
     /// Standard deviation of d_r within the ring \[length\].
     pub spread: f64,
-    /// Standard error of the mean \[length\].
+    /// Standard error of the mean, spread/√n: as if the disks were independent \[length\].
     pub standard_error: f64,
 }
 
@@ -22,4 +28,38 @@ pub struct Ring {
 pub struct RadialProfile {
     /// The rings that hold at least one disk.
     pub rings: Vec<Ring>,
+}
+
+impl RadialProfile {
+    /// The profile of a field in rings of this width \[length\], on the disks that count.
+    ///
+    /// # Panics
+    /// If the width is not positive.
+    pub fn of<const D: usize>(field: &DisplacementField<D>, ring_width: f64) -> Self {
+        assert!(ring_width > 0.0, "a ring has a positive width, not {ring_width}");
+        let count = ((field.outer_radius - field.inner_radius) / ring_width).ceil().max(1.0) as usize;
+        let mut members: Vec<Vec<(f64, f64)>> = vec![Vec::new(); count];
+        for disk in field.counted() {
+            let ring = (disk.distance - field.inner_radius) / ring_width;
+            if ring >= 0.0 && (ring as usize) < count {
+                members[ring as usize].push((disk.distance, disk.radial));
+            }
+        }
+        RadialProfile { rings: members.iter().filter_map(|ring| Ring::of(ring)).collect() }
+    }
+}
+
+impl Ring {
+    /// Statistics of (distance, radial displacement) pairs; `None` for an empty ring.
+    fn of(disks: &[(f64, f64)]) -> Option<Self> {
+        let count = disks.len() as f64;
+        if disks.is_empty() {
+            return None;
+        }
+        let radius = disks.iter().map(|disk| disk.0).sum::<f64>() / count;
+        let mean = disks.iter().map(|disk| disk.1).sum::<f64>() / count;
+        let squares: f64 = disks.iter().map(|disk| (disk.1 - mean) * (disk.1 - mean)).sum();
+        let spread = if disks.len() > 1 { (squares / (count - 1.0)).sqrt() } else { 0.0 };
+        Some(Ring { radius, disk_count: disks.len(), mean, spread, standard_error: spread / count.sqrt() })
+    }
 }

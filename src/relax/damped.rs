@@ -296,8 +296,7 @@ mod tests {
             motion.step(time / step_count as f64).expect("no coincidence");
         }
         let omega = (2.0 * stiffness - rate * rate).sqrt();
-        let exact =
-            first * (-rate * time).exp() * ((omega * time).cos() + rate / omega * (omega * time).sin());
+        let exact = first * (-rate * time).exp() * ((omega * time).cos() + rate / omega * (omega * time).sin());
         let placed = motion.assembly.placed(packing);
         let overlap = 1.2 - crate::vector::norm(placed.separation(0, 1));
         (overlap - exact).abs()

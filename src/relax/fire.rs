@@ -193,7 +193,14 @@ impl Run<'_> {
             let keep = 1.0 - mixing;
             let (forces, displacements) = (&assembly.forces[..mobile], &mut assembly.displacements[..mobile]);
             let displacements = displacements.as_flattened_mut();
-            kick_and_drift(keep, keep * time_step + turn, time_step, forces.as_flattened(), &mut velocity, displacements);
+            kick_and_drift(
+                keep,
+                keep * time_step + turn,
+                time_step,
+                forces.as_flattened(),
+                &mut velocity,
+                displacements,
+            );
             self.step_count += 1;
             // |v| ≤ |v + dt F| after mixing, and no disk moves further than the whole vector does.
             assembly.keep_listed(time_step * kicked.max(0.0).sqrt())?;

@@ -210,3 +210,51 @@ pub trait Relaxer {
         trace: &mut impl Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError>;
 }
+
+/// A relaxer chosen at run time, as a scene names it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RelaxerChoice {
+    /// [`Fire`].
+    Fire(Fire),
+    /// [`DampedDynamics`].
+    Damped(DampedDynamics),
+}
+
+impl Default for RelaxerChoice {
+    fn default() -> Self {
+        RelaxerChoice::Fire(Fire::default())
+    }
+}
+
+impl RelaxerChoice {
+    /// Its force limit.
+    pub fn limit(&self) -> ForceLimit {
+        match self {
+            RelaxerChoice::Fire(fire) => fire.limit,
+            RelaxerChoice::Damped(damped) => damped.limit,
+        }
+    }
+
+    /// Its name in a table.
+    pub fn name(&self) -> &'static str {
+        match self {
+            RelaxerChoice::Fire(_) => "FIRE",
+            RelaxerChoice::Damped(_) => "damped dynamics",
+        }
+    }
+}
+
+impl Relaxer for RelaxerChoice {
+    fn relax<const D: usize, L: PairLaw>(
+        &self,
+        packing: Packing<D>,
+        law: &L,
+        trace: &mut impl Trace,
+    ) -> Result<Outcome<Packing<D>>, PackingError> {
+        match self {
+            RelaxerChoice::Fire(fire) => fire.relax(packing, law, trace),
+            RelaxerChoice::Damped(damped) => damped.relax(packing, law, trace),
+        }
+    }
+}

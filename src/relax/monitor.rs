@@ -96,8 +96,8 @@ impl Monitor {
         self.floor = floor_of(assembly, members, mean, assembly.longest_displacement());
         self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
         // Felt: within a factor 20 of the residual, and new anchors would lower the floor by more than 4.
-        self.anchors_felt = self.floor > 0.05 * self.last.relative()
-            && self.floor > 4.0 * floor_of(assembly, members, mean, 0.0);
+        self.anchors_felt =
+            self.floor > 0.05 * self.last.relative() && self.floor > 4.0 * floor_of(assembly, members, mean, 0.0);
         let stop = match self.limit {
             ForceLimit::Relative(limit) => {
                 (rigid && inner <= limit * mean && outer <= limit.sqrt() * mean).then_some(Criterion::RelativeForce)
@@ -171,7 +171,11 @@ pub fn rounding_floor<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> 
         .filter(|contact| members[contact.first as usize] && members[contact.second as usize])
         .map(|contact| contact.force)
         .collect();
-    if forces.is_empty() { 0.0 } else { floor_of(assembly, &members, forces.iter().sum::<f64>() / forces.len() as f64, assembly.longest_displacement()) }
+    if forces.is_empty() {
+        0.0
+    } else {
+        floor_of(assembly, &members, forces.iter().sum::<f64>() / forces.len() as f64, assembly.longest_displacement())
+    }
 }
 
 fn floor_of<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, members: &[bool], mean: f64, moved: f64) -> f64 {
@@ -184,6 +188,7 @@ fn floor_of<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, members: &[bo
     // held disks the estimate is low by half.
     let noise = |_: usize, overlap: f64, stiffness: f64| stiffness * (moved + overlap / (exponent - 1.0));
     assembly.row_bound(&mut row, noise);
-    let most = row.iter().zip(members).filter(|&(_, &member)| member).fold(0.0, |most, (&value, _)| larger(value, most));
+    let most =
+        row.iter().zip(members).filter(|&(_, &member)| member).fold(0.0, |most, (&value, _)| larger(value, most));
     most * f64::EPSILON / mean
 }

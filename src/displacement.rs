@@ -1,0 +1,114 @@
+//! [`DisplacementField`]: how far every disk moved, in radial and transverse parts, on the backbone.
+//!
+//! ```text
+//! d_i = r_i(after) − r_i(before)      d_r = d·r̂      d_θ = d·θ̂ (D = 2)      r̂ from the centre of the inflated disk
+//! ```
+//!
+//! Made from two [`Relaxed`] packings, so a state that never came to rest cannot reach a figure. Disks that are rattlers
+//! before or after are left out of every observable. An unjammed packing has no backbone: all its disks are rattlers, and
+//! all of them count.
+
+use serde::{Deserialize, Serialize};
+
+use crate::inflation::{Inflated, Rest, displacement};
+use crate::packing::Packing;
+use crate::relax::{Criterion, Relaxed};
+use crate::vector::{Vector, dot, norm, scaled};
+
+/// One disk of a displacement field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moved<const D: usize> {
+    /// Index of the disk in the packings the field was made from.
+    pub disk: usize,
+    /// Position before, from the centre of the inflated disk \[length\].
+    pub position: Vector<D>,
+    /// Distance before from that centre \[length\].
+    pub distance: f64,
+    /// Displacement \[length\].
+    pub displacement: Vector<D>,
+    /// Radial part d_r \[length\].
+    pub radial: f64,
+    /// Whether observables are measured on the disk: it is on the backbone before and after, or the packing is unjammed.
+    pub counted: bool,
+}
+
+impl Moved<2> {
+    /// Angle θ of the position, in (−π, π].
+    pub fn angle(&self) -> f64 {
+        libm::atan2(self.position[1], self.position[0])
+    }
+
+    /// Transverse part d_θ, positive anticlockwise \[length\].
+    pub fn transverse(&self) -> f64 {
+        (self.position[0] * self.displacement[1] - self.position[1] * self.displacement[0]) / self.distance
+    }
+}
+
+/// The displacements of the mobile disks, centre left out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DisplacementField<const D: usize> {
+    /// Mobile disks in the order of the packing.
+    pub disks: Vec<Moved<D>>,
+    /// Radius of the inflated disk before, a \[length\].
+    pub inner_radius: f64,
+    /// r_out, R \[length\].
+    pub outer_radius: f64,
+    /// Which disks count.
+    pub measured_on: MeasuredOn,
+}
+
+/// Which disks the observables of a field are measured on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MeasuredOn {
+    /// Those on the backbone before and after.
+    Backbone,
+    /// All mobile disks: the packing was unjammed before or after.
+    AllDisks,
+}
+
+impl<const D: usize> DisplacementField<D> {
+    /// The response to an inflation.
+    pub fn of_inflation(inflated: &Inflated<D>) -> Self {
+        Self::between(inflated, &inflated.before, &inflated.after)
+    }
+
+    /// What is left of it after the deflation, if there was one.
+    pub fn of_cycle(inflated: &Inflated<D>) -> Option<Self> {
+        inflated.deflated.as_ref().map(|deflated| Self::between(inflated, &inflated.before, deflated))
+    }
+
+    fn between(inflated: &Inflated<D>, before: &Rest<D>, after: &Rest<D>) -> Self {
+        let unjammed = [before, after].iter().any(|rest| rest.criterion == Criterion::Unjammed);
+        let measured_on = if unjammed { MeasuredOn::AllDisks } else { MeasuredOn::Backbone };
+        let counted: Vec<bool> =
+            before.backbone.iter().zip(&after.backbone).map(|(&a, &b)| unjammed || (a && b)).collect();
+        let disks = moved(&before.packing, &after.packing, inflated.centre, &counted);
+        let (inner_radius, outer_radius) = (inflated.inner_radius, inflated.outer_radius);
+        DisplacementField { disks, inner_radius, outer_radius, measured_on }
+    }
+
+    /// The disks observables are measured on.
+    pub fn counted(&self) -> impl Iterator<Item = &Moved<D>> + '_ {
+        self.disks.iter().filter(|disk| disk.counted)
+    }
+}
+
+fn moved<const D: usize>(
+    before: &Relaxed<Packing<D>>,
+    after: &Relaxed<Packing<D>>,
+    centre: usize,
+    counted: &[bool],
+) -> Vec<Moved<D>> {
+    let (before, after) = (before.get(), after.get());
+    (0..before.len())
+        .filter(|&disk| disk != centre && !before.held()[disk])
+        .map(|disk| {
+            let position = before.separation(disk, centre);
+            let distance = norm(position);
+            let displacement = displacement(before, after, disk);
+            let radial = dot(displacement, scaled(1.0 / distance, position));
+            Moved { disk, position, distance, displacement, radial, counted: counted[disk] }
+        })
+        .collect()
+}

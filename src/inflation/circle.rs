@@ -1,0 +1,94 @@
+//! The circle cut out of a periodic packing: mobile disks inside, a held rim around, the disk to inflate in the middle.
+//!
+//! The centre of the chosen disk becomes the origin of the open plane. Disks nearer than `r_out` are mobile; all images
+//! of disks from `r_out` outwards, as far as a mobile disk can reach, are held. Images matter: at the sides of the box
+//! the rim would otherwise have holes as soon as r_out plus the contact range exceeds half a side, so a label can occur
+//! twice in it.
+
+use crate::contact::ContactNetwork;
+use crate::inflation::InflationError;
+use crate::packing::{Domain, Packing, ball_volume};
+use crate::vector::{Vector, dot, norm, two_sum};
+
+/// A circular (D = 2) or spherical (D = 3) piece of a packing with a held rim.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Circle<const D: usize> {
+    /// Mobile disks in the order of the source, then the centre, then the rim; labels are those of the source.
+    pub packing: Packing<D>,
+    /// Index of the centre, equal to the number of mobile disks.
+    pub centre: usize,
+    /// Radius r_out within which disks are mobile \[length\].
+    pub outer_radius: f64,
+}
+
+/// Width of the held rim over the largest radius: a mobile disk at r_out touches held ones up to 2 away, and may be
+/// pushed outwards by up to another 2.
+const RIM_WIDTH: f64 = 4.0;
+
+impl<const D: usize> Circle<D> {
+    /// Cuts the circle of this radius around a disk of a periodic packing.
+    ///
+    /// # Errors
+    /// The packing must be periodic and `outer_radius` must leave mobile disks one image each (at most half a side).
+    pub fn cut(packing: &Packing<D>, centre: usize, outer_radius: f64) -> Result<Self, InflationError> {
+        let lengths = packing.domain().lengths().ok_or(InflationError::NotPeriodic)?;
+        let half = 0.5 * lengths.iter().copied().fold(f64::INFINITY, f64::min);
+        if !(outer_radius > 0.0 && outer_radius <= half) {
+            return Err(InflationError::OuterRadiusOutOfRange { outer_radius, half_side: half });
+        }
+        let largest = packing.radii().iter().copied().fold(0.0, f64::max);
+        let reach = outer_radius + RIM_WIDTH * largest;
+        let mut mobile = Vec::new();
+        let mut rim = Vec::new();
+        for disk in (0..packing.len()).filter(|&disk| disk != centre) {
+            let (high, low) = packing.domain().separation_extended(packing.centre(disk), packing.centre(centre));
+            for shift in images::<D>() {
+                let mut position = ([0.0; D], [0.0; D]);
+                for d in 0..D {
+                    let (value, rest) = two_sum(high[d], shift[d] * lengths[d]);
+                    (position.0[d], position.1[d]) = two_sum(value, rest + low[d]);
+                }
+                let distance = norm(position.0);
+                if shift == [0.0; D] && distance < outer_radius {
+                    mobile.push((disk, position));
+                } else if distance >= outer_radius && distance < reach {
+                    rim.push((disk, position));
+                }
+            }
+        }
+        // The images of the centre itself lie outside as long as r_out is below half a side; near it they can be rim.
+        for shift in images::<D>().filter(|&shift| shift != [0.0; D]) {
+            let position: Vector<D> = std::array::from_fn(|d| shift[d] * lengths[d]);
+            if dot(position, position) < reach * reach {
+                rim.push((centre, (position, [0.0; D])));
+            }
+        }
+        let middle = mobile.len();
+        if middle == 0 {
+            return Err(InflationError::NoMobileDisk { outer_radius });
+        }
+        let all: Vec<_> = mobile.into_iter().chain([(centre, ([0.0; D], [0.0; D]))]).chain(rim).collect();
+        let positions = all.iter().map(|(_, position)| position.0).collect();
+        let radii = all.iter().map(|&(disk, _)| packing.radii()[disk]).collect();
+        let cut = Packing::new(Domain::Open, positions, radii)?
+            .with_corrections(all.iter().map(|(_, position)| position.1).collect())?
+            .with_labels(all.iter().map(|&(disk, _)| packing.labels()[disk]).collect())?
+            .with_held((0..all.len()).map(|index| index >= middle).collect())?;
+        Ok(Circle { packing: cut, centre: middle, outer_radius })
+    }
+
+    /// Number of mobile disks.
+    pub fn mobile_count(&self) -> usize {
+        self.centre
+    }
+
+    /// Pressure of the circle: virial of its disks over π r_out², contacts with the rim counted half.
+    pub fn pressure_of(&self, network: &ContactNetwork<D>) -> f64 {
+        network.cluster_pressure(ball_volume::<D>(self.outer_radius), |disk| disk > self.centre)
+    }
+}
+
+/// The shifts −1, 0, 1 of every axis, in boxes.
+fn images<const D: usize>() -> impl Iterator<Item = Vector<D>> {
+    (0..3usize.pow(D as u32)).map(|code| std::array::from_fn(|d| ((code / 3usize.pow(d as u32)) % 3) as f64 - 1.0))
+}
