@@ -1,7 +1,7 @@
 //! The second line of extended XYZ: `key=value` pairs, values quoted where they hold blanks.
 //!
-//! Read as ASE does: quotes are `"` or `'` with `\` before a quote inside, lists stand in `[ ]` or `{ }`, blanks around
-//! `=` are allowed, a key alone is a flag. Keys are found without regard to case, so that `PBC` is not overlooked.
+//! Read as ASE does: quotes are `"` or `'` with `\` before a quote inside, lists stand in `[ ]` or `{ }`, blanks on both
+//! sides of `=` are allowed, a key alone is a flag. Keys are found without regard to case, so that `PBC` is not overlooked.
 
 /// The pairs of a comment line.
 pub(super) struct CommentLine {
@@ -23,6 +23,7 @@ impl CommentLine {
         let mut rest = text.trim_start();
         while !rest.is_empty() {
             let (key, after) = word(rest, true).map_err(|value| Problem::Unclosed { key: value.clone(), value })?;
+            let spaced = after.starts_with(char::is_whitespace);
             rest = after.trim_start();
             let earlier = pairs.iter().any(|(earlier, _)| earlier.eq_ignore_ascii_case(&key));
             let Some(after) = rest.strip_prefix('=') else {
@@ -32,9 +33,10 @@ impl CommentLine {
                 }
                 continue;
             };
+            // `key = value` has a blank on both sides; a blank on the right alone is how ASE writes an empty value.
+            let after = if spaced { after.trim_start() } else { after };
             let value;
-            (value, rest) =
-                word(after.trim_start(), false).map_err(|value| Problem::Unclosed { key: key.clone(), value })?;
+            (value, rest) = word(after, false).map_err(|value| Problem::Unclosed { key: key.clone(), value })?;
             rest = rest.trim_start();
             if earlier {
                 return Err(Problem::Repeated { key });
@@ -111,7 +113,8 @@ mod tests {
 
     #[test]
     fn values_are_read_as_ase_reads_them() {
-        let line = CommentLine::parse(r#"Lattice="1 0 0" a='b "c"' say="\"hi\" \\" list=[1, 2] flag k = v ="#);
+        let line =
+            CommentLine::parse(r#"Lattice="1 0 0" a='b "c"' say="\"hi\" \\" list=[1, 2] flag k = v none= end=1"#);
         let Ok(line) = line else { panic!("valid line") };
         assert_eq!(line.value("lattice"), Some("1 0 0"));
         assert_eq!(line.value("a"), Some("b \"c\""));
@@ -119,6 +122,7 @@ mod tests {
         assert_eq!(line.value("list").map(list), Some(vec!["1", "2"]));
         assert_eq!(line.value("flag"), Some("T"));
         assert_eq!(line.value("k"), Some("v"));
+        assert_eq!((line.value("none"), line.value("end")), (Some(""), Some("1")));
     }
 
     #[test]

@@ -21,6 +21,9 @@
 //! lattice is periodic, as in ASE; without either the file is refused. For D = 2 the third direction counts for
 //! nothing. `dimension`, where given, must be D.
 //!
+//! ASE reads all digits of a file but writes eight decimals: a packing that went through it is no longer at rest, and its
+//! corrections are gone.
+//!
 //! # Source
 //! ASE, `ase.io.extxyz`; OVITO manual, "XYZ file reader".
 
@@ -122,7 +125,7 @@ fn domain<const D: usize>(source: &Source, line: usize, comment: &CommentLine) -
     let Some(lattice) = lattice else {
         return Err(source.missing(line, "Lattice", comment.keys()));
     };
-    let cell = three_or_nine::<9>(source, line, "Lattice", lattice, "nine numbers")?;
+    let cell = components::<9>(source, line, "Lattice", lattice, "nine numbers")?;
     for (index, &component) in cell.iter().enumerate() {
         let (vector, axis) = (index / 3, index % 3);
         if vector != axis && component != 0.0 {
@@ -131,7 +134,7 @@ fn domain<const D: usize>(source: &Source, line: usize, comment: &CommentLine) -
         }
     }
     let corner = match comment.value("Origin") {
-        Some(value) => three_or_nine::<3>(source, line, "Origin", value, "three numbers")?,
+        Some(value) => components::<3>(source, line, "Origin", value, "three numbers")?,
         None => [0.0; 3],
     };
     let mut lengths = [0.0; D];
@@ -141,7 +144,7 @@ fn domain<const D: usize>(source: &Source, line: usize, comment: &CommentLine) -
     Ok(Domain::Periodic { corner: std::array::from_fn(|axis| corner[axis]), lengths })
 }
 
-fn three_or_nine<const N: usize>(
+fn components<const N: usize>(
     source: &Source,
     line: usize,
     field: &str,

@@ -128,6 +128,9 @@ impl<const D: usize> Header<D> {
                     count = Some((number, line));
                 }
                 [_, "atom", "types"] => type_count = Some(row.whole(0, "atom types")?),
+                [.., "avec" | "bvec" | "cvec"] | [.., "abc", "origin"] => {
+                    return Err(source.tilted(line, "general triclinic box", source.lines[line].trim()));
+                }
                 [low, high, first, second] => {
                     let name = format!("{first} {second}");
                     if let Some(axis) = SIDES.iter().position(|&side| side == name) {
@@ -140,9 +143,6 @@ impl<const D: usize> Header<D> {
                             return Err(source.tilted(line, name, value));
                         }
                     }
-                }
-                [.., "avec" | "bvec" | "cvec"] | [.., "abc", "origin"] => {
-                    return Err(source.tilted(line, "general triclinic box", source.lines[line].trim()));
                 }
                 _ => {}
             }
