@@ -16,9 +16,9 @@ mod comment_line;
 pub mod extended_xyz;
 pub mod lammps_data;
 pub mod lammps_dump;
-pub mod read_error;
+mod read_error;
 mod source;
-pub mod write_packing;
+mod write_packing;
 
 use std::path::Path;
 
@@ -61,7 +61,7 @@ enum Format {
 /// The whole file is held in memory, once.
 ///
 /// # Example
-/// ```no_run
+/// ```
 /// let packing = jamscope::io::read_packing::<2>("fixtures/packings/hertz_N1000_p100.xyz")?;
 /// assert_eq!(packing.len(), 1000);
 /// # Ok::<(), jamscope::io::ReadError>(())
