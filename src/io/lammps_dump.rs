@@ -1,0 +1,234 @@
+//! LAMMPS text dumps (`dump custom`), to a [`Packing`].
+//!
+//! ```text
+//! ITEM: TIMESTEP
+//! 0
+//! ITEM: NUMBER OF ATOMS
+//! 2
+//! ITEM: BOX BOUNDS pp pp pp
+//! 0.0 9.0
+//! 0.0 8.0
+//! -0.5 0.5
+//! ITEM: ATOMS id x y z radius
+//! 1 1.0 2.0 0.0 0.5
+//! 2 2.1 2.0 0.0 0.7
+//! ```
+//!
+//! Needed: `id`, `radius` or `diameter` (the radius goes first), and a position in one of four kinds. Where several kinds
+//! are complete the first of this list is taken:
+//!
+//! | columns | position |
+//! |---|---|
+//! | `x y z` | as it stands |
+//! | `xu yu zu` | as it stands; unwrapped, so perhaps outside the box, which the nearest image takes care of |
+//! | `xs ys zs`, `xsu ysu zsu` | lower end of the box + value × side |
+//!
+//! For D = 2 no z is needed, and one that is there must be 0. Other columns are ignored. LAMMPS writes six digits unless
+//! told otherwise (`dump_modify format float %.17g`). Disks come in ascending order of their ids.
+//!
+//! A box that is not periodic in the directions of the packing is refused, as a dump does not tell its walls.
+//!
+//! # Source
+//! LAMMPS manual, commands `dump` and `dump_modify`.
+
+use crate::io::source::{Disk, Source};
+use crate::io::{Frame, ReadError};
+use crate::packing::{Domain, Packing};
+
+/// The kinds of position, the one preferred first, and whether they are fractions of the box.
+const KINDS: [([&str; 3], bool); 4] =
+    [(["x", "y", "z"], false), (["xu", "yu", "zu"], false), (["xs", "ys", "zs"], true), (["xsu", "ysu", "zsu"], true)];
+
+/// Largest |z| / height at which a scaled z counts as 0 in two dimensions: six digits are what LAMMPS writes by default.
+const SCALED_ZERO: f64 = 1e-5;
+
+/// Reads one frame.
+pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Packing<D>, ReadError> {
+    let lines = &source.lines;
+    let starts: Vec<usize> = (0..lines.len()).filter(|&line| lines[line].trim() == "ITEM: TIMESTEP").collect();
+    if starts.is_empty() {
+        return Err(source.missing(0, "ITEM: TIMESTEP", lines[0]));
+    }
+    let place = source.frame(frame, starts.len())?;
+    let end = starts.get(place + 1).copied().unwrap_or(lines.len());
+    let mut parts = Parts::<D>::default();
+    let mut line = starts[place];
+    while line < end {
+        let next = (line + 1..end).find(|&next| lines[next].starts_with("ITEM:")).unwrap_or(end);
+        if let Some(item) = lines[line].strip_prefix("ITEM:") {
+            parts.take(source, item.trim(), line, next)?;
+        }
+        line = next;
+    }
+    let Some(disks) = parts.disks else {
+        return Err(source.missing(end - 1, "ITEM: ATOMS", "a frame that ends before it"));
+    };
+    let Some((domain, _)) = parts.bounds else {
+        return Err(source.missing(end - 1, "ITEM: BOX BOUNDS", "a frame without it"));
+    };
+    source.packing(domain, &disks, true)
+}
+
+/// What has been read of a frame.
+struct Parts<const D: usize> {
+    count: Option<usize>,
+    bounds: Option<Bounds<D>>,
+    disks: Option<Vec<Disk<D>>>,
+}
+
+impl<const D: usize> Default for Parts<D> {
+    fn default() -> Self {
+        Parts { count: None, bounds: None, disks: None }
+    }
+}
+
+impl<const D: usize> Parts<D> {
+    /// Takes in the item whose title is in line `title` and whose values are in the lines after it, before `end`.
+    fn take(&mut self, source: &Source, item: &str, title: usize, end: usize) -> Result<(), ReadError> {
+        let first = title + 1;
+        let repeated = |earlier| if earlier { Err(source.repeated(title, "item", item, title)) } else { Ok(()) };
+        if item == "NUMBER OF ATOMS" {
+            repeated(self.count.is_some())?;
+            if first == end {
+                return Err(source.truncated(end, "values of ITEM: NUMBER OF ATOMS", 1, 0));
+            }
+            let value = source.lines[first].trim();
+            self.count = Some(value.parse().map_err(|_| source.bad(first, item, value, "a whole number, 0 or more"))?);
+        } else if let Some(flags) = item.strip_prefix("BOX BOUNDS") {
+            repeated(self.bounds.is_some())?;
+            self.bounds = Some(bounds(source, flags, title, end)?);
+        } else if let Some(columns) = item.strip_prefix("ATOMS") {
+            repeated(self.disks.is_some())?;
+            let Some(count) = self.count else {
+                return Err(source.missing(title, "ITEM: NUMBER OF ATOMS", "ITEM: ATOMS before it"));
+            };
+            let Some((_, sides)) = &self.bounds else {
+                return Err(source.missing(title, "ITEM: BOX BOUNDS", "ITEM: ATOMS before it"));
+            };
+            let columns = Columns::new(source, columns, title)?;
+            self.disks = Some(columns.disks(source, sides, first, end, count)?);
+        }
+        Ok(())
+    }
+}
+
+/// A domain, and lower end and length of all three sides.
+type Bounds<const D: usize> = (Domain<D>, [(f64, f64); 3]);
+
+fn bounds<const D: usize>(source: &Source, flags: &str, title: usize, end: usize) -> Result<Bounds<D>, ReadError> {
+    let words: Vec<&str> = flags.split_ascii_whitespace().collect();
+    let (tilted, flags) = match words[..] {
+        ["xy", "xz", "yz", ..] => (true, &words[3..]),
+        ["abc", ..] => return Err(source.tilted(title, "ITEM: BOX BOUNDS", flags.trim())),
+        _ => (false, &words[..]),
+    };
+    if flags.len() != 3 {
+        return Err(source.missing(title, "three boundary flags after ITEM: BOX BOUNDS", flags.join(" ")));
+    }
+    if let Some(axis) = flags[..D].iter().position(|&flag| flag != "pp") {
+        return Err(source.not_periodic(title, "ITEM: BOX BOUNDS", flags[axis], axis));
+    }
+    let mut sides = [(0.0, 0.0); 3];
+    for axis in 0..3 {
+        let line = title + 1 + axis;
+        if line >= end {
+            return Err(source.truncated(end, "sides of the box", 3, axis));
+        }
+        let row = source.row(line);
+        row.expect_count(if tilted { 3 } else { 2 })?;
+        if tilted && row.number(2, ["xy", "xz", "yz"][axis])? != 0.0 {
+            return Err(source.tilted(line, ["xy", "xz", "yz"][axis], row.values[2]));
+        }
+        sides[axis] = source.side(line, ["xlo xhi", "ylo yhi", "zlo zhi"][axis], row.values[0], row.values[1])?;
+    }
+    let corner = std::array::from_fn(|axis| sides[axis].0);
+    let lengths = std::array::from_fn(|axis| sides[axis].1);
+    Ok((Domain::Periodic { corner, lengths }, sides))
+}
+
+/// Where the columns stand in a row.
+struct Columns {
+    total: usize,
+    id: usize,
+    radius: (usize, &'static str, f64),
+    position: Position,
+}
+
+/// The columns of the kind of position taken.
+struct Position {
+    names: [&'static str; 3],
+    columns: [Option<usize>; 3],
+    scaled: bool,
+}
+
+impl Columns {
+    fn new(source: &Source, names: &str, title: usize) -> Result<Self, ReadError> {
+        let names: Vec<&str> = names.split_ascii_whitespace().collect();
+        for (column, name) in names.iter().enumerate() {
+            if names[..column].contains(name) {
+                return Err(source.repeated(title, "column", name, title));
+            }
+        }
+        let find = |wanted: &str| names.iter().position(|&name| name == wanted);
+        let missing = |field| source.missing(title, field, names.join(" "));
+        let radius = match (find("radius"), find("diameter")) {
+            (Some(column), _) => (column, "radius", 1.0),
+            (None, Some(column)) => (column, "diameter", 0.5),
+            (None, None) => return Err(missing("column radius or diameter")),
+        };
+        let mut kinds = KINDS.iter().map(|&(names, scaled)| Position { names, columns: names.map(find), scaled });
+        // Complete in x and y is enough for two dimensions; a missing z is reported below for three.
+        let Some(position) = kinds.find(|kind| kind.columns[0].is_some() && kind.columns[1].is_some()) else {
+            return Err(missing("columns x and y (or xu yu, xs ys, xsu ysu)"));
+        };
+        let id = find("id").ok_or_else(|| missing("column id"))?;
+        Ok(Columns { total: names.len(), id, radius, position })
+    }
+
+    fn disks<const D: usize>(
+        &self,
+        source: &Source,
+        sides: &[(f64, f64); 3],
+        first: usize,
+        end: usize,
+        count: usize,
+    ) -> Result<Vec<Disk<D>>, ReadError> {
+        let mut disks: Vec<Disk<D>> = Vec::new();
+        for line in first..end {
+            if source.lines[line].trim().is_empty() {
+                continue;
+            }
+            if disks.len() == count {
+                return Err(ReadError::TooManyRows { path: source.path.into(), line: line + 1, expected: count });
+            }
+            let row = source.row(line);
+            row.expect_count(self.total)?;
+            let mut all = [0.0; 3];
+            for axis in 0..3 {
+                let name = self.position.names[axis];
+                all[axis] = match self.position.columns[axis] {
+                    Some(column) if self.position.scaled => sides[axis].0 + row.number(column, name)? * sides[axis].1,
+                    Some(column) => row.number(column, name)?,
+                    None if axis < D => return Err(source.missing(first - 1, "column z", source.lines[first - 1])),
+                    None => 0.0,
+                };
+            }
+            if D == 2 {
+                let limit = if self.position.scaled { SCALED_ZERO * sides[2].1 } else { 0.0 };
+                if all[2].abs() > limit {
+                    return Err(source.dimension(line, self.position.names[2], &all[2].to_string(), D));
+                }
+            }
+            let (column, name, factor) = self.radius;
+            let radius = factor * row.positive(column, name)?;
+            let label = row.whole(self.id, "id")?;
+            disks.push(Disk { label, line, position: std::array::from_fn(|axis| all[axis]), radius });
+        }
+        if disks.len() < count {
+            return Err(source.truncated(end, "disks of ITEM: ATOMS", count, disks.len()));
+        }
+        source.order_by_id(&disks)?;
+        disks.sort_by_key(|disk| disk.label);
+        Ok(disks)
+    }
+}

@@ -1,0 +1,120 @@
+//! Packings in files: [`read_packing`] tells the format from the content, [`write_packing`] writes extended XYZ.
+//!
+//! | format | read | written | radii from |
+//! |---|---|---|---|
+//! | extended XYZ (ASE, OVITO) | yes | yes, to the same bits | column `radius` |
+//! | LAMMPS data, `atom_style sphere` | yes | no | column `diameter` |
+//! | LAMMPS text dump | yes | no | column `radius` or `diameter` |
+//!
+//! What a file does not say is an error and not a guess: radii, the sides of the box, which directions are periodic.
+//! Each [`ReadError`] names the file, the line, the field and what stood there. A file must end with a line break, as
+//! all these programs write it: without one, a file cut in the middle of its last number could not be told from a
+//! whole one.
+
+pub mod atomic;
+mod comment_line;
+pub mod extended_xyz;
+pub mod lammps_data;
+pub mod lammps_dump;
+mod read_error;
+mod source;
+mod write_packing;
+
+use std::path::Path;
+
+pub use atomic::{WriteError, write_atomically};
+pub use read_error::ReadError;
+pub use write_packing::{Column, write_packing};
+
+use crate::packing::Packing;
+use source::Source;
+
+/// Which of the packings in one file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Frame {
+    /// The last one.
+    #[default]
+    Last,
+    /// By position in the file, from 0.
+    Index(usize),
+}
+
+/// The formats that can be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    ExtendedXyz,
+    LammpsData,
+    LammpsDump,
+}
+
+/// Reads a packing: extended XYZ, LAMMPS data or LAMMPS text dump, told apart by their content. Of several frames the
+/// last is taken.
+///
+/// Disks are in the order of the file for extended XYZ, in ascending order of their ids for LAMMPS (whose own order
+/// changes from one output to the next); ids become [`Packing::labels`]. Positions are kept as they stand, also outside
+/// the box.
+///
+/// # Errors
+/// [`ReadError`] names the file, the line, the field and the value.
+///
+/// # Cost
+/// The whole file is held in memory, once.
+///
+/// # Example
+/// ```
+/// let packing = jamscope::io::read_packing::<2>("fixtures/packings/hertz_N1000_p100.xyz")?;
+/// assert_eq!(packing.len(), 1000);
+/// # Ok::<(), jamscope::io::ReadError>(())
+/// ```
+pub fn read_packing<const D: usize>(path: impl AsRef<Path>) -> Result<Packing<D>, ReadError> {
+    read_frame(path, Frame::Last)
+}
+
+/// As [`read_packing`], one frame of the caller's choice.
+///
+/// # Errors
+/// As [`read_packing`], and [`ReadError::NoSuchFrame`].
+pub fn read_frame<const D: usize>(path: impl AsRef<Path>, frame: Frame) -> Result<Packing<D>, ReadError> {
+    const { assert!(D == 2 || D == 3, "packings have two or three dimensions") };
+    let path = path.as_ref();
+    let bytes = std::fs::read(path).map_err(|source| ReadError::Io { path: path.into(), source })?;
+    let text = std::str::from_utf8(&bytes).map_err(|error| ReadError::NotText {
+        path: path.into(),
+        line: 1 + bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count(),
+    })?;
+    let source = Source::new(path, text);
+    let Some(first) = source.lines.iter().find(|line| !line.trim().is_empty()) else {
+        return Err(ReadError::Empty { path: path.into() });
+    };
+    let Some(format) = recognise(&source.lines, first) else {
+        return Err(ReadError::UnknownFormat { path: path.into(), first_line: source::excerpt(first) });
+    };
+    if !text.ends_with('\n') {
+        return Err(ReadError::LineCut { path: path.into(), line: source.lines.len() });
+    }
+    match format {
+        Format::ExtendedXyz => extended_xyz::parse(&source, frame),
+        Format::LammpsData => lammps_data::parse(&source, frame),
+        Format::LammpsDump => lammps_dump::parse(&source, frame),
+    }
+}
+
+/// The format of a file by its first lines; `first` is the first that is not blank.
+fn recognise(lines: &[&str], first: &str) -> Option<Format> {
+    if first.starts_with("ITEM:") {
+        return Some(Format::LammpsDump);
+    }
+    let is_count = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    // A data file opens with a line of free text, perhaps a number, but never goes on with one that has `=` in it.
+    if is_count(first.trim()) && lines.get(1).is_none_or(|comment| comment.contains('=')) {
+        return Some(Format::ExtendedXyz);
+    }
+    let is_data_header = |line: &&str| {
+        let mut words = line.split_ascii_whitespace();
+        words.next().is_some_and(is_count) && words.next() == Some("atoms")
+    };
+    if lines.iter().skip(1).take_while(|line| !lammps_data::opens_section(line)).any(is_data_header) {
+        return Some(Format::LammpsData);
+    }
+    is_count(first.trim()).then_some(Format::ExtendedXyz)
+}

@@ -1,0 +1,186 @@
+//! The lines of a file and their values, with errors that say where they stood.
+
+use std::path::Path;
+
+use crate::io::{Frame, ReadError};
+use crate::packing::{Domain, Packing};
+use crate::vector::Vector;
+
+/// Names of the axes.
+pub(super) const AXES: [char; 3] = ['x', 'y', 'z'];
+
+/// A file cut into lines. Lines are counted from 0 here and from 1 in errors.
+pub(super) struct Source<'a> {
+    pub path: &'a Path,
+    pub lines: Vec<&'a str>,
+}
+
+/// The values of one line, parted by blanks.
+pub(super) struct Row<'a> {
+    source: &'a Source<'a>,
+    line: usize,
+    pub values: Vec<&'a str>,
+}
+
+/// A disk as read, with the line it stood in.
+pub(super) struct Disk<const D: usize> {
+    pub label: u64,
+    pub line: usize,
+    pub position: Vector<D>,
+    pub radius: f64,
+}
+
+/// The text, shortened to 60 characters so that a message stays readable.
+pub(super) fn excerpt(text: &str) -> String {
+    match text.char_indices().nth(60) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+impl<'a> Source<'a> {
+    pub fn new(path: &'a Path, text: &'a str) -> Self {
+        Source { path, lines: text.lines().collect() }
+    }
+
+    pub fn row(&'a self, line: usize) -> Row<'a> {
+        Row { source: self, line, values: self.lines[line].split_ascii_whitespace().collect() }
+    }
+
+    /// A line up to its comment, parted by blanks.
+    pub fn row_without_comment(&'a self, line: usize) -> Row<'a> {
+        let text = self.lines[line].split('#').next().unwrap_or("");
+        Row { source: self, line, values: text.split_ascii_whitespace().collect() }
+    }
+
+    pub fn bad(&self, line: usize, field: &str, value: &str, expected: &'static str) -> ReadError {
+        ReadError::Value {
+            path: self.path.into(),
+            line: line + 1,
+            field: excerpt(field),
+            value: excerpt(value),
+            expected,
+        }
+    }
+
+    pub fn missing(&self, line: usize, field: &'static str, found: impl Into<String>) -> ReadError {
+        ReadError::Missing { path: self.path.into(), line: line + 1, field, found: excerpt(&found.into()) }
+    }
+
+    pub fn repeated(&self, line: usize, field: &'static str, value: &str, first_line: usize) -> ReadError {
+        let value = excerpt(value);
+        ReadError::Repeated { path: self.path.into(), line: line + 1, field, value, first_line: first_line + 1 }
+    }
+
+    pub fn truncated(&self, line: usize, what: &'static str, expected: usize, found: usize) -> ReadError {
+        ReadError::Truncated { path: self.path.into(), line, what, expected, found }
+    }
+
+    pub fn tilted(&self, line: usize, field: &str, value: &str) -> ReadError {
+        ReadError::Tilted { path: self.path.into(), line: line + 1, field: field.to_owned(), value: excerpt(value) }
+    }
+
+    pub fn not_periodic(&self, line: usize, field: &'static str, value: &str, axis: usize) -> ReadError {
+        let value = excerpt(value);
+        ReadError::NotPeriodic { path: self.path.into(), line: line + 1, field, value, axis: AXES[axis] }
+    }
+
+    pub fn dimension(&self, line: usize, field: &'static str, value: &str, dimension: usize) -> ReadError {
+        let value = excerpt(value);
+        ReadError::Dimension { path: self.path.into(), line: line + 1, field, value, dimension }
+    }
+
+    /// A finite number.
+    pub fn number(&self, line: usize, field: &str, value: &str) -> Result<f64, ReadError> {
+        match value.parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => Err(self.bad(line, field, value, "a finite number")),
+        }
+    }
+
+    /// A positive finite number.
+    pub fn positive(&self, line: usize, field: &str, value: &str) -> Result<f64, ReadError> {
+        match value.parse::<f64>() {
+            Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
+            _ => Err(self.bad(line, field, value, "a positive finite number")),
+        }
+    }
+
+    /// A whole number, 0 or more.
+    pub fn whole(&self, line: usize, field: &str, value: &str) -> Result<u64, ReadError> {
+        value.parse().map_err(|_| self.bad(line, field, value, "a whole number, 0 or more"))
+    }
+
+    /// The two ends of one side of the box; the lower end and the length of the side.
+    pub fn side(&self, line: usize, field: &str, low: &str, high: &str) -> Result<(f64, f64), ReadError> {
+        let start = self.number(line, field, low)?;
+        let length = self.number(line, field, high)? - start;
+        if length.is_finite() && length > 0.0 {
+            return Ok((start, length));
+        }
+        Err(self.bad(line, field, &format!("{low} {high}"), "a lower end below the upper one"))
+    }
+
+    /// Position of the frame asked for among `count`.
+    pub fn frame(&self, frame: Frame, count: usize) -> Result<usize, ReadError> {
+        let index = match frame {
+            Frame::Last => count.saturating_sub(1),
+            Frame::Index(index) => index,
+        };
+        if index < count {
+            return Ok(index);
+        }
+        Err(ReadError::NoSuchFrame { path: self.path.into(), frame: index, frame_count: count })
+    }
+
+    /// The packing of disks in their order.
+    pub fn packing<const D: usize>(
+        &self,
+        domain: Domain<D>,
+        disks: &[Disk<D>],
+        labelled: bool,
+    ) -> Result<Packing<D>, ReadError> {
+        let positions = disks.iter().map(|disk| disk.position).collect();
+        let radii = disks.iter().map(|disk| disk.radius).collect();
+        let packing = Packing::new(domain, positions, radii);
+        let labels = || disks.iter().map(|disk| disk.label).collect();
+        let packing = if labelled { packing.and_then(|packing| packing.with_labels(labels())) } else { packing };
+        packing.map_err(|source| ReadError::Packing { path: self.path.into(), source })
+    }
+
+    /// The places of the disks in ascending order of their labels, none of which may stand twice.
+    pub fn order_by_id<const D: usize>(&self, disks: &[Disk<D>]) -> Result<Vec<usize>, ReadError> {
+        let mut order: Vec<usize> = (0..disks.len()).collect();
+        order.sort_by_key(|&place| disks[place].label);
+        for pair in order.windows(2) {
+            let (first, second) = (&disks[pair[0]], &disks[pair[1]]);
+            if first.label == second.label {
+                return Err(self.repeated(second.line, "id", &second.label.to_string(), first.line));
+            }
+        }
+        Ok(order)
+    }
+}
+
+impl Row<'_> {
+    pub fn expect_count(&self, expected: usize) -> Result<(), ReadError> {
+        if self.values.len() == expected { Ok(()) } else { Err(self.count_is_not(expected.to_string())) }
+    }
+
+    pub fn count_is_not(&self, expected: String) -> ReadError {
+        let path = self.source.path.into();
+        ReadError::ColumnCount { path, line: self.line + 1, expected, found: self.values.len() }
+    }
+
+    pub fn number(&self, column: usize, field: &str) -> Result<f64, ReadError> {
+        self.source.number(self.line, field, self.values[column])
+    }
+
+    pub fn positive(&self, column: usize, field: &str) -> Result<f64, ReadError> {
+        self.source.positive(self.line, field, self.values[column])
+    }
+
+    pub fn whole(&self, column: usize, field: &str) -> Result<u64, ReadError> {
+        self.source.whole(self.line, field, self.values[column])
+    }
+}

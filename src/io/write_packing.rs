@@ -1,0 +1,169 @@
+//! [`write_packing`]: a packing, with columns and key-value pairs of the caller, as extended XYZ.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+use std::path::Path;
+
+use crate::io::atomic::{WriteError, write_atomically};
+use crate::packing::{Domain, Packing};
+
+/// Columns that [`write_packing`] writes itself or to which programs give a meaning of their own (Z: atomic number).
+const RESERVED_COLUMNS: [&str; 8] = ["species", "pos", "radius", "id", "label", "held", "correction", "Z"];
+
+/// Keys that [`write_packing`] writes itself.
+const RESERVED_KEYS: [&str; 5] = ["Lattice", "Origin", "pbc", "Properties", "dimension"];
+
+/// A further column of numbers, one row a disk: a displacement, a force.
+#[derive(Debug, Clone, Copy)]
+pub struct Column<'a> {
+    /// Its name: letters, digits, `_`, `-` and `.`.
+    pub name: &'a str,
+    /// Number of values a disk, 1 or more.
+    pub width: usize,
+    /// The values, disk by disk.
+    pub values: &'a [f64],
+}
+
+/// Writes a packing as extended XYZ, which ASE and OVITO open and [`read_packing`](crate::io::read_packing) reads back
+/// to the same bits.
+///
+/// Numbers are the shortest decimals that give the same `f64` again. Columns `species pos radius id`, then `held` if a
+/// disk is held, `correction` if a centre has one, then `columns`. Labels that repeat (the periodic images of a rim) are
+/// written as `label`, as programs expect an `id` to be unique. For D = 2 a coordinate z = 0 and a lattice of height 1
+/// are added. In the open plane there is no lattice and `pbc="F F F"`.
+///
+/// `properties` are key-value pairs for the comment line: law, seed, provenance.
+///
+/// # Shape
+/// Every column has `packing.len() * width` values, disk by disk.
+///
+/// # Errors
+/// [`WriteError`] names the file and what is wrong; nothing is written then.
+pub fn write_packing<const D: usize>(
+    path: impl AsRef<Path>,
+    packing: &Packing<D>,
+    columns: &[Column],
+    properties: &[(&str, &str)],
+) -> Result<(), WriteError> {
+    const { assert!(D == 2 || D == 3, "packings have two or three dimensions") };
+    let path = path.as_ref();
+    check(path, packing.len(), columns, properties)?;
+    write_atomically(path, |writer| write(writer, packing, columns, properties))
+}
+
+fn check(path: &Path, disks: usize, columns: &[Column], properties: &[(&str, &str)]) -> Result<(), WriteError> {
+    check_names(path, &RESERVED_COLUMNS, columns.iter().map(|column| column.name))?;
+    check_names(path, &RESERVED_KEYS, properties.iter().map(|&(key, _)| key))?;
+    for column in columns {
+        let (expected, found) = (disks.saturating_mul(column.width), column.values.len());
+        if column.width == 0 || expected != found {
+            return Err(WriteError::ColumnLength { path: path.into(), column: column.name.into(), expected, found });
+        }
+    }
+    match properties.iter().find(|(_, value)| value.chars().any(char::is_control)) {
+        Some((key, value)) => {
+            Err(WriteError::PropertyValue { path: path.into(), key: (*key).into(), value: (*value).into() })
+        }
+        None => Ok(()),
+    }
+}
+
+fn check_names<'a>(path: &Path, reserved: &[&'a str], names: impl Iterator<Item = &'a str>) -> Result<(), WriteError> {
+    let mut seen = reserved.to_vec();
+    for name in names {
+        let plain = name.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"_-.".contains(&byte));
+        if name.is_empty() || !plain || seen.iter().any(|earlier| earlier.eq_ignore_ascii_case(name)) {
+            return Err(WriteError::Name { path: path.into(), name: name.into() });
+        }
+        seen.push(name);
+    }
+    Ok(())
+}
+
+fn write<const D: usize>(
+    writer: &mut impl Write,
+    packing: &Packing<D>,
+    columns: &[Column],
+    properties: &[(&str, &str)],
+) -> io::Result<()> {
+    let held = packing.held().contains(&true);
+    let corrected = packing.corrections().iter().flatten().any(|&low| low != 0.0);
+    let mut sorted = packing.labels().to_vec();
+    sorted.sort_unstable();
+    let label = if sorted.windows(2).any(|pair| pair[0] == pair[1]) { "label" } else { "id" };
+
+    let mut layout = format!("species:S:1:pos:R:3:radius:R:1:{label}:I:1");
+    if held {
+        layout += ":held:I:1";
+    }
+    if corrected {
+        layout += &format!(":correction:R:{D}");
+    }
+    for column in columns {
+        layout += &format!(":{}:R:{}", column.name, column.width);
+    }
+    writeln!(writer, "{}", packing.len())?;
+    write!(writer, "{} Properties={layout} dimension={D}", boundary(packing.domain()))?;
+    for (key, value) in properties {
+        write!(writer, " {key}={}", quoted(value))?;
+    }
+    writeln!(writer)?;
+
+    let mut line = String::new();
+    for disk in 0..packing.len() {
+        line.clear();
+        // X is ASE's element without a name; OVITO takes any word.
+        line.push('X');
+        numbers(&mut line, &packing.positions()[disk]);
+        if D == 2 {
+            line.push_str(" 0.0");
+        }
+        numbers(&mut line, &packing.radii()[disk..=disk]);
+        line.push_str(&format!(" {}", packing.labels()[disk]));
+        if held {
+            line.push_str(if packing.held()[disk] { " 1" } else { " 0" });
+        }
+        if corrected {
+            numbers(&mut line, &packing.corrections()[disk]);
+        }
+        for column in columns {
+            numbers(&mut line, &column.values[disk * column.width..(disk + 1) * column.width]);
+        }
+        line.push('\n');
+        writer.write_all(line.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Appends numbers that are read back to the same bits (NaN and infinities of the caller's columns by name).
+fn numbers(line: &mut String, values: &[f64]) {
+    for value in values {
+        write!(line, " {value:?}").expect("a String takes all that is written to it");
+    }
+}
+
+/// Lattice, origin and periodicity.
+fn boundary<const D: usize>(domain: &Domain<D>) -> String {
+    let Domain::Periodic { corner, lengths } = domain else { return r#"pbc="F F F""#.into() };
+    let side = |axis: usize| if axis < D { lengths[axis] } else { 1.0 };
+    let start = |axis: usize| if axis < D { corner[axis] } else { 0.0 };
+    format!(
+        r#"Lattice="{:?} 0.0 0.0 0.0 {:?} 0.0 0.0 0.0 {:?}" Origin="{:?} {:?} {:?}" pbc="T T {}""#,
+        side(0),
+        side(1),
+        side(2),
+        start(0),
+        start(1),
+        start(2),
+        if D == 2 { "F" } else { "T" }
+    )
+}
+
+/// The value as it is, or in quotes where it would not be read back as one word.
+fn quoted(value: &str) -> String {
+    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"_-+./:".contains(&byte);
+    if !value.is_empty() && value.bytes().all(plain) {
+        return value.into();
+    }
+    format!("\"{}\"", value.replace('\\', "\\\\").replace('"', "\\\""))
+}
