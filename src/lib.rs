@@ -2,4 +2,5 @@
 
 pub mod observe;
 pub mod packing;
+pub mod reference;
 pub mod vector;
