@@ -1,5 +1,7 @@
 //! The mechanics of jammed packings.
 
+#[cfg(feature = "fit")]
+pub mod fit;
 pub mod observe;
 pub mod packing;
 pub mod reference;
