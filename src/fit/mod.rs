@@ -1,0 +1,92 @@
+//! Fits of what was measured to what is exactly known, with errors, evidence, and a refusal where neither holds.
+//!
+//! Start from [`profile::fit_radial_profile`]: one radial profile against the elastic and the screened solution.
+
+pub mod profile;
+mod rings;
+mod screening;
+mod significance;
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// A fitted number and its standard error, in the units of the number.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// The best value.
+    pub value: f64,
+    /// One standard error.
+    pub standard_error: f64,
+}
+
+/// Why there is nothing to fit. That no solution describes the data is an outcome, not an error:
+/// [`Decision::Neither`](profile::Decision::Neither).
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FitError {
+    /// Fewer rings in the range than the fit can judge.
+    #[error("{ring_count} rings between {from} and {to}: at least {needed} are needed")]
+    TooFewRings {
+        /// Rings in the range.
+        ring_count: usize,
+        /// Rings needed.
+        needed: usize,
+        /// Inner end of the range \[length\].
+        from: f64,
+        /// Outer end of the range \[length\].
+        to: f64,
+    },
+    /// Every ring in the range is at rest.
+    #[error("all {ring_count} rings of the range have zero displacement")]
+    NoDisplacement {
+        /// Rings in the range.
+        ring_count: usize,
+    },
+    /// A ring whose numbers cannot be used.
+    #[error(
+        "ring {ring}: radius {radius} (positive), mean {mean} (finite), standard error {standard_error} (not negative) \
+         of {disk_count} disks (at least one)"
+    )]
+    RingUnusable {
+        /// Index of the ring, from 0.
+        ring: usize,
+        /// Its radius \[length\].
+        radius: f64,
+        /// Its mean radial displacement \[length\].
+        mean: f64,
+        /// Standard error of that mean \[length\].
+        standard_error: f64,
+        /// Number of its disks.
+        disk_count: usize,
+    },
+    /// The margins leave nothing of the annulus.
+    #[error("the range of the fit is empty: from {from} to {to}")]
+    RangeEmpty {
+        /// Inner end of the range \[length\].
+        from: f64,
+        /// Outer end of the range \[length\].
+        to: f64,
+    },
+    /// A margin is negative or not a number.
+    #[error("a margin must be finite and not negative: {inner} at the disk, {rim} at the rim")]
+    MarginNegative {
+        /// The margin at the inflated disk \[diameters\].
+        inner: f64,
+        /// The margin at the rim \[diameters\].
+        rim: f64,
+    },
+    /// Less than two rings to a wavelength cannot tell it from a longer one.
+    #[error("the shortest wavelength searched must span at least 2 rings, it spans {rings_per_wavelength}")]
+    WavelengthUnresolved {
+        /// The setting.
+        rings_per_wavelength: f64,
+    },
+    /// The level of significance or the share of variance is not between 0 and 1.
+    #[error("significance {significance} and least share {least_share} must lie between 0 and 1, ends excluded")]
+    LevelOutOfRange {
+        /// The level of significance.
+        significance: f64,
+        /// The least share of variance.
+        least_share: f64,
+    },
+}

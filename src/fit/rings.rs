@@ -1,0 +1,91 @@
+//! The rings a fit uses, their rescaled displacements r·d_r, and how far each can be trusted.
+
+use crate::fit::FitError;
+use crate::observe::radial_profile::Ring;
+
+/// A ring of one disk has no variance of its own. As many degrees of freedom of the pooled variance are mixed into each
+/// ring's; 4 is what makes the weight of a ring of two disks finite in the mean (F with 4 or fewer has no variance).
+const PRIOR_FREEDOM: f64 = 4.0;
+
+/// Rescaled displacements in the order of their radii.
+#[derive(Debug, Clone)]
+pub(crate) struct Rings {
+    /// Radii r_i \[length\], rising.
+    pub radii: Vec<f64>,
+    /// r_i ⟨d_r⟩_i \[length²\].
+    pub rescaled: Vec<f64>,
+    /// Standard error of it \[length²\]; 1/√(number of disks), of unknown unit, if no ring has any spread.
+    pub errors: Vec<f64>,
+    /// Whether `errors` are errors, or only relative to each other.
+    pub errors_known: bool,
+}
+
+impl Rings {
+    /// The rings with `from` ≤ r ≤ `to`.
+    ///
+    /// The error of a ring is moderated: the variance s_i² of r·d_r within a ring of n_i disks, itself uncertain when
+    /// n_i is small (and zero for one disk, or where nothing moves), is drawn towards the pooled one S²,
+    ///
+    /// ```text
+    /// σ_i² = [ (n_i − 1) s_i² + ν S² ] / (n_i − 1 + ν) / n_i        S² = Σ (n_i − 1) s_i² / Σ (n_i − 1),  ν = 4
+    /// ```
+    ///
+    /// so no ring has infinite weight. Source: Smyth (2004), Stat. Appl. Genet. Mol. Biol. 3, 3, eq. for the moderated
+    /// variance, with fixed ν.
+    pub(crate) fn new(rings: &[Ring], from: f64, to: f64, needed: usize) -> Result<Self, FitError> {
+        for (index, ring) in rings.iter().enumerate() {
+            let usable = ring.radius > 0.0
+                && ring.radius.is_finite()
+                && ring.mean.is_finite()
+                && ring.standard_error >= 0.0
+                && ring.standard_error.is_finite()
+                && ring.disk_count > 0;
+            if !usable {
+                return Err(FitError::RingUnusable {
+                    ring: index,
+                    radius: ring.radius,
+                    mean: ring.mean,
+                    standard_error: ring.standard_error,
+                    disk_count: ring.disk_count,
+                });
+            }
+        }
+        let mut used: Vec<&Ring> = rings.iter().filter(|ring| from <= ring.radius && ring.radius <= to).collect();
+        used.sort_by(|a, b| a.radius.total_cmp(&b.radius));
+        if used.len() < needed {
+            return Err(FitError::TooFewRings { ring_count: used.len(), needed, from, to });
+        }
+        if used.iter().all(|ring| ring.mean == 0.0) {
+            return Err(FitError::NoDisplacement { ring_count: used.len() });
+        }
+        let freedom = |ring: &Ring| ring.disk_count as f64 - 1.0;
+        let variance = |ring: &Ring| (ring.radius * ring.standard_error).powi(2) * ring.disk_count as f64;
+        let total: f64 = used.iter().map(|ring| freedom(ring)).sum();
+        let pooled = used.iter().map(|ring| freedom(ring) * variance(ring)).sum::<f64>() / total;
+        // No ring of two disks or no spread in any: 0/0 or 0.
+        let errors_known = pooled > 0.0;
+        let error = |ring: &Ring| {
+            let moderated = if errors_known {
+                (freedom(ring) * variance(ring) + PRIOR_FREEDOM * pooled) / (freedom(ring) + PRIOR_FREEDOM)
+            } else {
+                1.0
+            };
+            (moderated / ring.disk_count as f64).sqrt()
+        };
+        Ok(Rings {
+            radii: used.iter().map(|ring| ring.radius).collect(),
+            rescaled: used.iter().map(|ring| ring.radius * ring.mean).collect(),
+            errors: used.iter().map(|ring| error(ring)).collect(),
+            errors_known,
+        })
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.radii.len()
+    }
+
+    /// `Σ a_i b_i / σ_i²`.
+    pub(crate) fn weighted(&self, a: &[f64], b: &[f64]) -> f64 {
+        a.iter().zip(b).zip(&self.errors).map(|((a, b), error)| (a / error) * (b / error)).sum()
+    }
+}

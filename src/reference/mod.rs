@@ -1,0 +1,130 @@
+//! Exact solutions a measured displacement field is held against. They know nothing of packings.
+//!
+//! The medium fills the [`Annulus`] between the inflated disk, radius a, and the rim at R, which is held. The radial
+//! displacement d(r) takes the value d_0 at a and vanishes at R. In between, in D = 2 or 3 dimensions,
+//!
+//! ```text
+//! d'' + (D−1) d'/r − (D−1) d/r² + κ² d = 0
+//! ```
+//!
+//! With κ = 0 this is the elastic medium, [`Elastic`](elastic::Elastic); with a screening wavenumber κ > 0 it is the
+//! medium whose plastic events screen the elastic field, [`Screened`](screened::Screened). Both implement
+//! [`RadialSolution`]. Start from [`Annulus::new`].
+//!
+//! The screened solution is built on the one that leaves the rim with unit slope, [`RimSolution`](rim::RimSolution):
+//! that one is smooth in κ, while d_0 d/d(a) has a pole wherever the rim solution has a node at r = a.
+//!
+//! # Source
+//! Lemaître et al. (2021), Phys. Rev. E 104, 024904, for the screened profile in two dimensions; Charan et al. (2023),
+//! Phys. Rev. E 107, 055005, in three.
+
+pub mod bessel;
+mod cylindrical;
+pub mod elastic;
+pub mod poles;
+pub mod rim;
+pub mod screened;
+mod spherical;
+
+use serde::Serialize;
+use thiserror::Error;
+
+/// A radial displacement field between the inflated disk and the rim.
+pub trait RadialSolution {
+    /// Radial displacement d(r) \[length\] at distance `radius` from the centre \[length\]; NaN outside the annulus,
+    /// where nothing is defined.
+    fn value(&self, radius: f64) -> f64;
+
+    /// Its derivative d'(r) \[1\]; NaN outside the annulus.
+    fn derivative(&self, radius: f64) -> f64;
+}
+
+/// What is between two concentric circles (spheres in three dimensions): 0 < a < R < ∞.
+///
+/// # Example
+/// ```
+/// use jamscope::reference::{Annulus, RadialSolution, elastic::Elastic};
+/// let annulus = Annulus::new(0.5, 42.0)?;
+/// let medium = Elastic::<2>::new(annulus, 0.1)?;
+/// assert_eq!(medium.value(0.5), 0.1);
+/// assert_eq!(medium.value(42.0), 0.0);
+/// # Ok::<(), jamscope::reference::ReferenceError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Annulus {
+    inner_radius: f64,
+    outer_radius: f64,
+}
+
+impl Annulus {
+    /// The annulus between `inner_radius` a and `outer_radius` R \[length\].
+    ///
+    /// # Errors
+    /// A radius that is not positive and finite, or an outer one that is not the larger.
+    pub fn new(inner_radius: f64, outer_radius: f64) -> Result<Self, ReferenceError> {
+        if !(inner_radius > 0.0 && inner_radius.is_finite()) {
+            return Err(ReferenceError::InnerRadiusNotPositive { inner_radius });
+        }
+        if !(outer_radius > inner_radius && outer_radius.is_finite()) {
+            return Err(ReferenceError::OuterRadiusNotLarger { inner_radius, outer_radius });
+        }
+        Ok(Annulus { inner_radius, outer_radius })
+    }
+
+    /// Radius a of the inflated disk \[length\].
+    pub fn inner_radius(&self) -> f64 {
+        self.inner_radius
+    }
+
+    /// Radius R of the rim \[length\].
+    pub fn outer_radius(&self) -> f64 {
+        self.outer_radius
+    }
+
+    /// Whether a ≤ `radius` ≤ R.
+    pub fn contains(&self, radius: f64) -> bool {
+        self.inner_radius <= radius && radius <= self.outer_radius
+    }
+}
+
+/// Why an exact solution could not be set up.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ReferenceError {
+    /// The radius of the inflated disk is not a positive, finite number.
+    #[error("the inner radius must be positive and finite, it is {inner_radius}")]
+    InnerRadiusNotPositive {
+        /// The radius given \[length\].
+        inner_radius: f64,
+    },
+    /// The rim is not outside the inflated disk, or not finite.
+    #[error("the outer radius must be finite and larger than the inner one, {inner_radius}; it is {outer_radius}")]
+    OuterRadiusNotLarger {
+        /// Radius of the inflated disk \[length\].
+        inner_radius: f64,
+        /// The radius of the rim given \[length\].
+        outer_radius: f64,
+    },
+    /// The displacement at the inflated disk is not a number.
+    #[error("the displacement at the inner radius must be finite, it is {amplitude}")]
+    AmplitudeNotFinite {
+        /// The displacement given \[length\].
+        amplitude: f64,
+    },
+    /// The screening wavenumber is negative or not a number, or κR is not.
+    #[error("the screening wavenumber must be finite and not negative, it is {wavenumber}")]
+    WavenumberNegative {
+        /// The wavenumber given \[1/length\].
+        wavenumber: f64,
+    },
+    /// The wavenumber is a pole to rounding: the displacement has no finite value anywhere in the annulus.
+    #[error("the screening wavenumber {wavenumber} is pole number {index}, {pole}, to rounding: no finite solution")]
+    AtPole {
+        /// Which pole, counted from 1.
+        index: usize,
+        /// The wavenumber given \[1/length\].
+        wavenumber: f64,
+        /// The pole \[1/length\].
+        pole: f64,
+    },
+}
