@@ -1,0 +1,445 @@
+//! [`run`]: from a [`Scene`] to a [`Report`], one line a stage. The only file that knows all stages.
+
+use serde::Serialize;
+
+use crate::contact::{ContactNetwork, LawChoice, PairLaw};
+use crate::displacement::{DisplacementField, MeasuredOn};
+#[cfg(feature = "fit")]
+use crate::fit::FitError;
+#[cfg(feature = "fit")]
+use crate::fit::profile::{ProfileFit, fit_radial_profile};
+use crate::inflation::{Inflated, InflationError, Rest, inflate};
+use crate::io::{ReadError, read_packing};
+use crate::observe::{AngularProfile, RadialProfile};
+use crate::packing::{Packing, PackingError};
+use crate::preparation::{Preparation, PreparationError, Target, prepare};
+#[cfg(feature = "fit")]
+use crate::reference::Annulus;
+use crate::relax::{Cost, Criterion, Look, Outcome, Relaxer, RelaxerChoice, Stop, Trace};
+use crate::scene::{Sample, Scene, SceneError, Source};
+
+/// What a run gives.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// Version of jamscope that made it.
+    pub jamscope_version: &'static str,
+    /// The scene, all defaults filled in.
+    pub scene: Scene,
+    /// One entry a sample, in the order of the scene.
+    pub samples: Vec<SampleReport>,
+}
+
+/// One sample of a run.
+#[derive(Debug, Clone, Serialize)]
+pub struct SampleReport {
+    /// Its name.
+    pub name: String,
+    /// What came out, or why nothing did.
+    #[serde(flatten)]
+    pub result: SampleOutcome,
+}
+
+/// What came out of a sample, or why nothing did.
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SampleOutcome {
+    /// All stages done.
+    Done(Box<SampleResult>),
+    /// A stage failed, in its own words.
+    Failed(String),
+}
+
+/// What came out of a sample.
+#[derive(Debug, Clone, Serialize)]
+pub struct SampleResult {
+    /// The packing before anything is cut or inflated.
+    pub packing: PackingSummary,
+    /// The inflation.
+    pub inflation: InflationSummary,
+    /// Which disks the observables below are measured on.
+    pub measured_on: MeasuredOn,
+    /// Mean radial displacement in rings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radial_profile: Option<RadialProfile>,
+    /// The fits of it.
+    #[cfg(feature = "fit")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub profile_fit: Option<FitResult>,
+    /// Radial displacement against angle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angular_profiles: Option<Vec<AngularProfile>>,
+    /// The displacement field.
+    #[serde(skip)]
+    pub field: DisplacementField<2>,
+    /// What the deflation leaves of it.
+    #[serde(skip)]
+    pub cycle_field: Option<DisplacementField<2>>,
+    /// The states themselves.
+    #[serde(skip)]
+    pub inflated: Inflated<2>,
+    /// The packing itself.
+    #[serde(skip)]
+    pub prepared: Packing<2>,
+}
+
+/// A fit, or why there is none.
+#[cfg(feature = "fit")]
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FitResult {
+    /// The fit.
+    Fitted(ProfileFit),
+    /// Why there is none.
+    Refused(String),
+}
+
+#[cfg(feature = "fit")]
+impl From<Result<ProfileFit, FitError>> for FitResult {
+    fn from(result: Result<ProfileFit, FitError>) -> Self {
+        result.map_or_else(|error| FitResult::Refused(error.to_string()), FitResult::Fitted)
+    }
+}
+
+/// A packing in numbers.
+#[derive(Debug, Clone, Serialize)]
+pub struct PackingSummary {
+    /// Number of disks.
+    pub disk_count: usize,
+    /// Sides of the box \[length\].
+    pub box_sides: [f64; 2],
+    /// Packing fraction \[1\].
+    pub packing_fraction: f64,
+    /// Packing fraction at which random points were quenched; absent for a packing from a file \[1\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quench_packing_fraction: Option<f64>,
+    /// Pressure \[force / length\].
+    pub pressure: f64,
+    /// Elastic energy \[energy\].
+    pub energy: f64,
+    /// Number of contacts.
+    pub contact_count: usize,
+    /// Number of rattlers.
+    pub rattler_count: usize,
+    /// Coordination of the backbone, Z \[1\].
+    pub coordination: f64,
+    /// Number of relaxations.
+    pub relaxation_count: usize,
+    /// How well it is at rest.
+    pub rest: RestSummary,
+}
+
+/// How well a state is at rest.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct RestSummary {
+    /// Which limit was met.
+    pub criterion: Criterion,
+    /// Largest net force on the backbone over the mean contact force \[1\].
+    pub relative_residual: f64,
+    /// Largest net force on the backbone \[force\].
+    pub largest_net_force: f64,
+    /// What rounding alone makes of the relative residual \[1\].
+    pub rounding_floor: f64,
+    /// What it cost.
+    pub cost: Cost,
+}
+
+/// An inflation in numbers.
+#[derive(Debug, Clone, Serialize)]
+pub struct InflationSummary {
+    /// Label of the inflated disk.
+    pub centre_label: u64,
+    /// Its radius before, a \[length\].
+    pub inner_radius: f64,
+    /// r_out, R \[length\].
+    pub outer_radius: f64,
+    /// Number of mobile disks.
+    pub mobile_count: usize,
+    /// Before.
+    pub before: StateSummary,
+    /// After.
+    pub after: StateSummary,
+    /// After the deflation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deflated: Option<StateSummary>,
+    /// Δp = p_after − p_before \[force / length\].
+    pub pressure_change: f64,
+    /// Δp / p^((α−2)/(α−1)), absent for an unjammed packing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scaled_pressure_change: Option<f64>,
+}
+
+/// One state of an inflation in numbers.
+#[derive(Debug, Clone, Serialize)]
+pub struct StateSummary {
+    /// Pressure of the circle or the box \[force / length\].
+    pub pressure: f64,
+    /// Elastic energy \[energy\].
+    pub energy: f64,
+    /// Number of contacts.
+    pub contact_count: usize,
+    /// Number of rattlers.
+    pub rattler_count: usize,
+    /// How well it is at rest.
+    pub rest: RestSummary,
+}
+
+/// Why a run, or one sample of it, came to nothing.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// The scene makes no sense.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A packing could not be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// A packing could not be prepared.
+    #[error("preparation: {0}")]
+    Preparation(#[from] PreparationError),
+    /// A packing from a file makes no sense or did not come to rest.
+    #[error("packing: {0}")]
+    Packing(#[from] PackingError),
+    /// A packing from a file did not come to rest.
+    #[error("packing: the relaxation stopped with {stop:?} after {step_count} steps, residual {residual:e}")]
+    NotAtRest {
+        /// Why it stopped.
+        stop: Stop,
+        /// Steps taken.
+        step_count: usize,
+        /// Relative residual reached.
+        residual: f64,
+    },
+    /// The inflation could not be done.
+    #[error("inflation: {0}")]
+    Inflation(#[from] InflationError),
+}
+
+/// What a run tells while it works; `()` hears nothing.
+pub trait Progress: Sync {
+    /// A sample enters a stage that brings the residual down to `limit` (0 where it is not relative).
+    fn stage(&self, sample: usize, stage: &str, limit: f64) {
+        let _ = (sample, stage, limit);
+    }
+    /// The residual of the stage, every now and then.
+    fn residual(&self, sample: usize, residual: f64) {
+        let _ = (sample, residual);
+    }
+    /// The sample is done, well or not.
+    fn done(&self, sample: usize, failure: Option<&str>) {
+        let _ = (sample, failure);
+    }
+}
+
+impl Progress for () {}
+
+/// Passes the residual of one sample on.
+struct Watch<'a, P> {
+    progress: &'a P,
+    sample: usize,
+}
+
+impl<P: Progress> Trace for Watch<'_, P> {
+    fn look(&mut self, look: &Look) {
+        if !look.restart {
+            self.progress.residual(self.sample, look.residual);
+        }
+    }
+}
+
+/// Runs a scene. Samples are independent; with the feature `parallel` each takes a thread, and no bit depends on it.
+///
+/// # Errors
+/// A scene that makes no sense. What fails in one sample is told in its place in the report.
+pub fn run(scene: &Scene, progress: &impl Progress) -> Result<Report, RunError> {
+    scene.check()?;
+    let one = |(index, sample): (usize, &Sample)| {
+        let result = match run_sample(scene, sample, index, progress) {
+            Ok(result) => SampleOutcome::Done(Box::new(result)),
+            Err(error) => SampleOutcome::Failed(error.to_string()),
+        };
+        let failure = match &result {
+            SampleOutcome::Failed(reason) => Some(reason.as_str()),
+            SampleOutcome::Done(_) => None,
+        };
+        progress.done(index, failure);
+        SampleReport { name: sample.name.clone(), result }
+    };
+    #[cfg(feature = "parallel")]
+    let samples = {
+        use rayon::prelude::*;
+        // One at a time from the front: the order of the results is that of the scene.
+        scene.sample.par_iter().enumerate().with_max_len(1).map(one).collect()
+    };
+    #[cfg(not(feature = "parallel"))]
+    let samples = scene.sample.iter().enumerate().map(one).collect();
+    Ok(Report { jamscope_version: env!("CARGO_PKG_VERSION"), scene: scene.clone(), samples })
+}
+
+/// Runs one sample of a scene: the one place where the law is looked at.
+///
+/// # Errors
+/// [`RunError`] names the stage.
+pub fn run_sample(
+    scene: &Scene,
+    sample: &Sample,
+    index: usize,
+    progress: &impl Progress,
+) -> Result<SampleResult, RunError> {
+    match scene.law {
+        LawChoice::Hertzian(law) => run_with(scene, sample, &law, index, progress),
+        LawChoice::Hookean(law) => run_with(scene, sample, &law, index, progress),
+        LawChoice::PowerLaw(law) => run_with(scene, sample, &law, index, progress),
+    }
+}
+
+fn run_with<L: PairLaw>(
+    scene: &Scene,
+    sample: &Sample,
+    law: &L,
+    index: usize,
+    progress: &impl Progress,
+) -> Result<SampleResult, RunError> {
+    let trace = &mut Watch { progress, sample: index };
+    progress.stage(index, "preparation", scene.preparation.relaxer.limit().value());
+    let (prepared, packing) = packing_of(scene, sample, law, trace)?;
+    progress.stage(index, "inflation", sample.relaxer.limit().value());
+    let inflated = inflate(&scene.inflation, &prepared, law, &sample.relaxer, scene.seed, trace)?;
+    progress.stage(index, "observables", 0.0);
+    let field = DisplacementField::of_inflation(&inflated);
+    let observables = &scene.observables;
+    let radial_profile = observables.radial_profile.map(|settings| RadialProfile::of(&field, settings.ring_width));
+    let angular_profiles = observables
+        .angular_profiles
+        .as_ref()
+        .map(|settings| settings.relative_radii.iter().map(|&radius| AngularProfile::of(&field, radius)).collect());
+    #[cfg(feature = "fit")]
+    let profile_fit = observables.profile_fit.zip(radial_profile.as_ref()).map(|(settings, profile)| {
+        match Annulus::new(field.inner_radius, field.outer_radius) {
+            Ok(annulus) => fit_radial_profile(profile, annulus, &settings).into(),
+            Err(error) => FitResult::Refused(error.to_string()),
+        }
+    });
+    Ok(SampleResult {
+        packing,
+        inflation: summary(&inflated, law),
+        measured_on: field.measured_on,
+        radial_profile,
+        #[cfg(feature = "fit")]
+        profile_fit,
+        angular_profiles,
+        cycle_field: DisplacementField::of_cycle(&inflated),
+        field,
+        inflated,
+        prepared,
+    })
+}
+
+/// The packing of a sample, made or read, at rest.
+fn packing_of<L: PairLaw>(
+    scene: &Scene,
+    sample: &Sample,
+    law: &L,
+    trace: &mut impl Trace,
+) -> Result<(Packing<2>, PackingSummary), RunError> {
+    let target = match &sample.source {
+        Source::File(path) => return packing_from(read_packing(path)?, &scene.preparation.relaxer, law, trace),
+        Source::PackingFraction(fraction) => Target::PackingFraction(*fraction),
+        Source::Pressure(pressure) => Target::Pressure(*pressure),
+    };
+    let preparation = Preparation {
+        disk_count: scene.disk_count,
+        mixture: scene.mixture.clone(),
+        target,
+        tolerance: scene.preparation.pressure_tolerance,
+        seed: scene.seed,
+    };
+    let prepared = prepare::<2, L>(&preparation, law, &scene.preparation.relaxer, trace)?;
+    let rest = RestSummary {
+        criterion: prepared.criterion,
+        relative_residual: prepared.residual.relative(),
+        largest_net_force: prepared.residual.largest_net_force,
+        rounding_floor: prepared.rounding_floor,
+        cost: prepared.cost,
+    };
+    let packing = prepared.packing.into_inner();
+    let summary = PackingSummary {
+        quench_packing_fraction: Some(prepared.quench_packing_fraction),
+        relaxation_count: prepared.relaxation_count,
+        ..packing_summary(&packing, law, rest)?
+    };
+    Ok((packing, summary))
+}
+
+/// A packing from outside, relaxed if it is not at rest already.
+fn packing_from<L: PairLaw>(
+    packing: Packing<2>,
+    relaxer: &RelaxerChoice,
+    law: &L,
+    trace: &mut impl Trace,
+) -> Result<(Packing<2>, PackingSummary), RunError> {
+    let outcome = relaxer.relax(packing, law, trace)?;
+    let Outcome { stop, residual, rounding_floor, cost, .. } = outcome;
+    let (Stop::Converged(criterion), Ok(packing)) = (stop, outcome.converged()) else {
+        return Err(RunError::NotAtRest { stop, step_count: cost.step_count, residual: residual.relative() });
+    };
+    let rest = RestSummary {
+        criterion,
+        relative_residual: residual.relative(),
+        largest_net_force: residual.largest_net_force,
+        rounding_floor,
+        cost,
+    };
+    let packing = packing.into_inner();
+    let summary = packing_summary(&packing, law, rest)?;
+    Ok((packing, summary))
+}
+
+fn packing_summary<L: PairLaw>(packing: &Packing<2>, law: &L, rest: RestSummary) -> Result<PackingSummary, RunError> {
+    let network = ContactNetwork::new(packing, law)?;
+    let volume = packing.domain().volume().ok_or(InflationError::NotPeriodic)?;
+    let jammed = rest.criterion != Criterion::Unjammed;
+    Ok(PackingSummary {
+        disk_count: packing.len(),
+        box_sides: packing.domain().lengths().ok_or(InflationError::NotPeriodic)?,
+        packing_fraction: packing.packing_fraction().ok_or(InflationError::NotPeriodic)?,
+        quench_packing_fraction: None,
+        pressure: if jammed { network.pressure(volume) } else { 0.0 },
+        energy: network.energy(),
+        contact_count: network.contacts.len(),
+        rattler_count: network.rattlers().count(),
+        coordination: network.coordination(),
+        relaxation_count: 1,
+        rest,
+    })
+}
+
+fn summary<L: PairLaw>(inflated: &Inflated<2>, law: &L) -> InflationSummary {
+    let state = |rest: &Rest<2>| StateSummary {
+        pressure: rest.pressure,
+        energy: rest.energy,
+        contact_count: rest.contact_count,
+        rattler_count: rest.rattler_count,
+        rest: RestSummary {
+            criterion: rest.criterion,
+            relative_residual: rest.residual.relative(),
+            largest_net_force: rest.residual.largest_net_force,
+            rounding_floor: rest.rounding_floor,
+            cost: rest.cost,
+        },
+    };
+    let before = inflated.before.pressure;
+    let pressure_change = inflated.after.pressure - before;
+    let exponent = law.exponent();
+    let scale = before.powf((exponent - 2.0) / (exponent - 1.0));
+    InflationSummary {
+        centre_label: inflated.before.packing.get().labels()[inflated.centre],
+        inner_radius: inflated.inner_radius,
+        outer_radius: inflated.outer_radius,
+        mobile_count: inflated.mobile_count,
+        before: state(&inflated.before),
+        after: state(&inflated.after),
+        deflated: inflated.deflated.as_ref().map(state),
+        pressure_change,
+        scaled_pressure_change: (before > 0.0).then(|| pressure_change / scale),
+    }
+}
