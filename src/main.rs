@@ -1,2 +1,188 @@
-//! The command line.
-fn main() {}
+//! The command line of jamscope: parses, calls the library, prints.
+
+#[path = "cli/inspect.rs"]
+mod inspect;
+#[path = "cli/progress.rs"]
+mod progress;
+#[path = "cli/scene_file.rs"]
+mod scene_file;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use jamscope::contact::{Hertzian, Hookean, LawChoice, PowerLaw};
+use jamscope::report;
+use jamscope::run::{SampleOutcome, run};
+use jamscope::scene::{Sample, Scene, Source};
+
+/// The mechanics of jammed packings: prepare, inflate, relax, and hold the response against exact solutions.
+///
+/// Without a command, `run` with the built-in scene: the three phases side by side.
+#[derive(Parser)]
+#[command(version, about)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run a scene and write its report.
+    Run(RunArguments),
+    /// Print a scene with all defaults and a comment on every field.
+    Scene,
+    /// Print energy, pressure, stress, contacts, coordination, rattlers and residual of a packing file.
+    Inspect(InspectArguments),
+}
+
+#[derive(Args, Default)]
+struct RunArguments {
+    /// Scene file (TOML); without one the built-in scene.
+    scene: Option<PathBuf>,
+    /// Use this packing (extended XYZ, LAMMPS data or dump) instead of the samples of the scene.
+    #[arg(long, value_name = "FILE")]
+    packing: Option<PathBuf>,
+    /// Folder for the report.
+    #[arg(long, value_name = "DIR", default_value = "jamscope-report")]
+    out: PathBuf,
+    /// Seed instead of the scene's.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Threads; without it one a core. Never changes a result.
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+}
+
+#[derive(Args)]
+struct InspectArguments {
+    /// Packing file: extended XYZ, LAMMPS data or dump.
+    packing: PathBuf,
+    /// The contact law.
+    #[arg(long, value_enum, default_value_t = LawName::Hertzian)]
+    law: LawName,
+    /// k' of the Hertzian and Hookean law, energy scale of the power law; without it 2e5, and 1 for the power law.
+    #[arg(long, value_name = "K")]
+    stiffness: Option<f64>,
+    /// Exponent of the power law.
+    #[arg(long, value_name = "ALPHA", default_value_t = 2.0)]
+    exponent: f64,
+    /// Dimension of the packing.
+    #[arg(long, value_name = "D", default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
+    dimension: u8,
+    /// Print JSON, every number at full precision.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum LawName {
+    Hertzian,
+    Hookean,
+    PowerLaw,
+}
+
+impl InspectArguments {
+    fn law(&self) -> LawChoice {
+        match self.law {
+            LawName::Hertzian => {
+                LawChoice::Hertzian(self.stiffness.map_or_else(Hertzian::default, |stiffness| Hertzian { stiffness }))
+            }
+            LawName::Hookean => {
+                LawChoice::Hookean(self.stiffness.map_or_else(Hookean::default, |stiffness| Hookean { stiffness }))
+            }
+            LawName::PowerLaw => LawChoice::PowerLaw(PowerLaw {
+                energy_scale: self.stiffness.unwrap_or(1.0),
+                exponent: self.exponent,
+            }),
+        }
+    }
+}
+
+type Failure = Box<dyn std::error::Error>;
+
+fn main() -> ExitCode {
+    let result = match Cli::parse().command {
+        None => run_scene(&RunArguments { out: "jamscope-report".into(), ..RunArguments::default() }),
+        Some(Command::Run(arguments)) => run_scene(&arguments),
+        Some(Command::Scene) => print(scene_file::COMMENTED_SCENE),
+        Some(Command::Inspect(arguments)) => inspect_packing(&arguments),
+    };
+    result.unwrap_or_else(|error| {
+        eprintln!("jamscope: {error}");
+        ExitCode::FAILURE
+    })
+}
+
+fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
+    let mut scene = match &arguments.scene {
+        Some(path) => scene_file::read_scene(path)?,
+        None => Scene::default(),
+    };
+    if let Some(seed) = arguments.seed {
+        scene.seed = seed;
+    }
+    if let Some(path) = &arguments.packing {
+        scene.sample = vec![sample_of_file(path, &scene)];
+    }
+    set_threads(arguments.threads)?;
+    let bars = progress::Bars::new(scene.sample.iter().map(|sample| sample.name.as_str()));
+    let report = run(&scene, &bars)?;
+    print(&report::table::terminal_table(&report))?;
+    let files = report::write(&report, &arguments.out)?;
+    let page = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
+    let shown = page.unwrap_or(&arguments.out);
+    print(&format!("\n{} files in {}, start from {}\n", files.len(), arguments.out.display(), shown.display()))?;
+    let failed = report.samples.iter().any(|sample| matches!(sample.result, SampleOutcome::Failed(_)));
+    Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// The sample of `--packing`: the file, relaxed after the inflation as the first sample of the scene.
+fn sample_of_file(path: &std::path::Path, scene: &Scene) -> Sample {
+    let stem: String = path
+        .file_stem()
+        .map(|stem| stem.to_string_lossy().into_owned())
+        .unwrap_or_default()
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' })
+        .collect();
+    let name = if stem.starts_with(|c: char| c.is_ascii_alphanumeric()) { stem } else { format!("packing{stem}") };
+    let relaxer = scene.sample.first().map(|sample| sample.relaxer).unwrap_or_default();
+    Sample { name, source: Source::File(path.to_path_buf()), relaxer }
+}
+
+#[cfg(feature = "parallel")]
+fn set_threads(threads: Option<usize>) -> Result<(), Failure> {
+    let Some(count) = threads else { return Ok(()) };
+    if count == 0 {
+        return Err("--threads 0: at least one thread is needed".into());
+    }
+    rayon::ThreadPoolBuilder::new().num_threads(count).build_global()?;
+    Ok(())
+}
+
+#[cfg(not(feature = "parallel"))]
+fn set_threads(threads: Option<usize>) -> Result<(), Failure> {
+    match threads {
+        None | Some(1) => Ok(()),
+        Some(count) => Err(format!("--threads {count}: built without the feature `parallel`, one thread only").into()),
+    }
+}
+
+fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
+    let inspection = inspect::inspect(&arguments.packing, arguments.law(), usize::from(arguments.dimension))?;
+    if arguments.json {
+        print(&format!("{}\n", serde_json::to_string_pretty(&inspection)?))
+    } else {
+        print(&inspection.to_string())
+    }
+}
+
+/// Prints to the standard output; a reader that has gone away (`| head`) is no failure.
+fn print(text: &str) -> Result<ExitCode, Failure> {
+    use std::io::Write;
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(ExitCode::SUCCESS),
+    }
+}

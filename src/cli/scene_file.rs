@@ -1,0 +1,67 @@
+//! Scenes in TOML files, and the commented default scene.
+
+use std::path::Path;
+
+use jamscope::scene::{Scene, SceneError};
+
+/// The scene `jamscope scene` prints: every field with its default, its unit and its meaning.
+pub const COMMENTED_SCENE: &str = include_str!("default_scene.toml");
+
+/// Why a scene file cannot be used; names the file.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneFileError {
+    /// The file cannot be read.
+    #[error("{path}: {source}")]
+    Io {
+        /// The file.
+        path: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Not TOML, an unknown field, or a value of another type; the message shows the line.
+    #[error("{path}: {message}")]
+    Toml {
+        /// The file.
+        path: String,
+        /// What the parser says, with line and field.
+        message: String,
+    },
+    /// A number that makes no sense.
+    #[error("{path}: {source}")]
+    Scene {
+        /// The file.
+        path: String,
+        /// Which one.
+        source: SceneError,
+    },
+}
+
+/// Reads and checks a scene.
+pub fn read_scene(path: &Path) -> Result<Scene, SceneFileError> {
+    let name = path.display().to_string();
+    let text = std::fs::read_to_string(path).map_err(|source| SceneFileError::Io { path: name.clone(), source })?;
+    if text.trim().is_empty() {
+        return Err(SceneFileError::Toml { path: name, message: "the file is empty; `jamscope scene` prints a scene".into() });
+    }
+    let scene: Scene =
+        toml::from_str(&text).map_err(|error| SceneFileError::Toml { path: name.clone(), message: error.to_string() })?;
+    scene.check().map_err(|source| SceneFileError::Scene { path: name, source })?;
+    Ok(scene)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_commented_scene_is_the_built_in_one() {
+        let scene: Scene = toml::from_str(COMMENTED_SCENE).expect("the printed scene parses");
+        assert_eq!(scene, Scene::default());
+    }
+
+    #[test]
+    fn an_unknown_field_is_named() {
+        let error = toml::from_str::<Scene>("sede = 1\n").expect_err("no such field").to_string();
+        assert!(error.contains("sede"), "{error}");
+    }
+}
