@@ -34,7 +34,7 @@ const STEP_LIMIT: usize = 40;
 /// `index` 0 gives 0, where F vanishes too: no pole, but the lower end of the first branch.
 ///
 /// # Accuracy
-/// Relative error below 8·10⁻¹⁶ (F to 1.2·10⁻¹⁵ over κF' > 3, and two roundings); largest found over the rows of
+/// Relative error below 8·10⁻¹⁶ (F to 1.2·10⁻¹⁵ over κF' > 3, and two roundings of nπ and κ); largest found over the rows of
 /// `fixtures/reference`, n ≤ 20, R/a from 60 to 2·10⁴: 1.2·10⁻¹⁶.
 ///
 /// # Cost
