@@ -22,8 +22,8 @@
 //!
 //! **Decision.** Screened if the drop of χ² against elastic is significant (F test with n_eff − 2 degrees of freedom,
 //! corrected for the number of branches searched). Else elastic. Neither, if the one chosen is not significantly better
-//! than no displacement at all, or describes too little of the variance. A κ below about κ_1/3 changes the profile by
-//! less than (κR)²/8 ≈ 20 %, next to the rim where it is smallest: unless the rings are that good, the decision is
+//! than no displacement at all, or describes too little of the variance. A κ below about κ_1/3 changes
+//! d_r by at most (κR)²/8 ≈ 20 %, and that at the rim, where it vanishes: unless the rings are that good, the decision is
 //! elastic and the bound on κ says what is excluded.
 
 use std::f64::consts::PI;
@@ -154,7 +154,8 @@ pub struct ProfileFit {
 /// Too few rings in the range, a ring with numbers that cannot be used, no displacement at all, settings out of range.
 ///
 /// # Cost
-/// Some 16 evaluations of the profile per branch searched and 100 more to polish: 1 ms for 40 rings, 40 ms for 200.
+/// Some 16 evaluations of the profile per branch searched and 100 more to polish: 1.4 ms for
+/// 42 rings, 13 ms for 171, one diameter wide each (measured at opt-level 2).
 ///
 /// # Example
 /// ```

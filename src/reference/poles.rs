@@ -35,7 +35,7 @@ const STEP_LIMIT: usize = 40;
 ///
 /// # Accuracy
 /// Relative error below 8·10⁻¹⁶ (F to 1.2·10⁻¹⁵ over κF' > 3, and two roundings of nπ and κ); largest found over the rows of
-/// `fixtures/reference`, n ≤ 20, R/a from 60 to 2·10⁴: 1.2·10⁻¹⁶.
+/// `fixtures/reference`, n ≤ 20, R/a from 60 to 2·10⁴: 1.8·10⁻¹⁶.
 ///
 /// # Cost
 /// About 1 µs, 0.4 µs from the fifth on (measured at opt-level 2).
