@@ -3,8 +3,9 @@
 use crate::fit::FitError;
 use crate::observe::radial_profile::Ring;
 
-/// A ring of one disk has no variance of its own. As many degrees of freedom of the pooled variance are mixed into each
-/// ring's; 4 is what makes the weight of a ring of two disks finite in the mean (F with 4 or fewer has no variance).
+/// Degrees of freedom of the pooled variance mixed into each ring's: as if four more disks of the common spread had been
+/// seen. A ring of a hundred disks hardly notices, one of two disks is ruled by it, and the choice of four is no more
+/// than that.
 const PRIOR_FREEDOM: f64 = 4.0;
 
 /// Rescaled displacements in the order of their radii.

@@ -24,6 +24,9 @@ const BRENT_TOLERANCE: f64 = 1e-10;
 /// Brent needs 10 to 30 steps; the interval is exhausted by golden section after 60.
 const BRENT_STEP_LIMIT: u64 = 100;
 
+/// A κR below this is zero: it changes the profile by (κR)²/8 ≈ 10⁻⁷, and the error of κ grows as 1/κ.
+const LEAST_ARGUMENT: f64 = 1e-3;
+
 /// Step on κR of the central difference ∂v/∂κ: errs by 10⁻¹⁰/6 (third derivative) and 10⁻¹⁶/10⁻⁵ (rounding).
 const DIFFERENCE_STEP: f64 = 1e-5;
 
@@ -84,7 +87,7 @@ impl<'a> Landscape<'a> {
             .collect()
     }
 
-    /// The lowest minimum of χ² at 0 < κ < the end of the grid, if there is one below χ²(0).
+    /// The lowest minimum of χ² between κ = 0 and the end of the grid, if there is one below χ²(0).
     pub(crate) fn minimum(&self, grid: &[(f64, f64)]) -> Option<Projection> {
         let mut basins: Vec<&[(f64, f64)]> = grid
             .windows(3)
@@ -99,7 +102,9 @@ impl<'a> Landscape<'a> {
             .take(POLISHED_COUNT)
             .map(|basin| self.polish(basin[0].0, basin[basin.len() - 1].0))
             .min_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared))
-            .filter(|best| best.chi_squared < grid[0].1 && best.wavenumber > 0.0)
+            .filter(|best| {
+                best.chi_squared < grid[0].1 && best.wavenumber * self.annulus.outer_radius() > LEAST_ARGUMENT
+            })
     }
 
     /// The minimum between `low` and `high`: Brent, then one step of Gauss and Newton, kept if it goes down.

@@ -2,15 +2,16 @@
 
 use statrs::function::beta::checked_beta_reg;
 
-/// Effective number of independent rings, from the residuals in units of their errors.
+/// Effective number of independent rings, from the residuals of a fit in units of their errors.
 ///
 /// ```text
-/// n_eff = n / (1 + 2 Σ_k (1 − k/n) ρ_k)        ρ_k = Σ e_i e_(i+k) / Σ e_i²
+/// n_eff = n / (1 + 2 Σ_k (1 − k/n) ρ_k)        ρ_k = Σ e_i e_(i+k) / Σ e_i² + p/n
 /// ```
 ///
-/// summed up to the first ρ_k that n independent residuals would show by chance, ρ_k ≤ 1/√n (Bartlett's error). Never
-/// more than n. Source: Bayley & Hammersley (1946), Suppl. J. R. Stat. Soc. 8, 184.
-pub(crate) fn effective_count(residuals: &[f64]) -> f64 {
+/// summed up to the first ρ_k that is not positive; never more than n. A fit of p parameters takes from independent
+/// residuals just what makes their correlations −p/n in the mean; that is put back. Source: Bayley & Hammersley (1946),
+/// Suppl. J. R. Stat. Soc. 8, 184; the end of the sum as in Geyer (1992), Stat. Sci. 7, 473.
+pub(crate) fn effective_count(residuals: &[f64], parameter_count: usize) -> f64 {
     let n = residuals.len() as f64;
     let square: f64 = residuals.iter().map(|e| e * e).sum();
     if square == 0.0 {
@@ -19,8 +20,8 @@ pub(crate) fn effective_count(residuals: &[f64]) -> f64 {
     let mut sum = 0.0;
     for lag in 1..residuals.len() {
         let product: f64 = residuals.iter().zip(&residuals[lag..]).map(|(a, b)| a * b).sum();
-        let correlation = product / square;
-        if correlation <= 1.0 / n.sqrt() {
+        let correlation = product / square + parameter_count as f64 / n;
+        if correlation <= 0.0 {
             break;
         }
         sum += (1.0 - lag as f64 / n) * correlation;
@@ -67,13 +68,19 @@ mod tests {
     }
 
     #[test]
-    fn independent_residuals_count_in_full_and_pairs_half() {
+    fn long_runs_of_one_sign_leave_few_independent_rings() {
         let alternating: Vec<f64> = (0..40).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
-        assert_eq!(effective_count(&alternating), 40.0);
-        // Each value twice: ρ_1 = 19.5/40 or so, hence about n/2.
-        let pairs: Vec<f64> = (0..40).map(|i| [1.0, -1.0, -1.0, 1.0, -1.0][(i / 2) % 5]).collect();
-        let count = effective_count(&pairs);
-        assert!((18.0..32.0).contains(&count), "{count}");
+        assert_eq!(effective_count(&alternating, 0), 40.0);
+        // Each value twice: Σ e_i e_(i+1) = 20 − 19 + … with signs alternating in pairs, so ρ_1 = (20 − 19)/40 and
+        // ρ_2 < 0: n/(1 + 2·(39/40)/40).
+        let pairs: Vec<f64> = (0..40).map(|i| if i / 2 % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        assert!((effective_count(&pairs, 0) - 40.0 / (1.0 + 2.0 * 39.0 / 1600.0)).abs() < 1e-12);
+        // Two blocks of one sign: ρ_k = (40 − 3k)/40 up to k = 13.
+        let blocks: Vec<f64> = (0..40).map(|i| if i < 20 { 1.0 } else { -1.0 }).collect();
+        let sum: f64 = (1..=13).map(|k| (1.0 - f64::from(k) / 40.0) * f64::from(40 - 3 * k) / 40.0).sum();
+        assert!((effective_count(&blocks, 0) - 40.0 / (1.0 + 2.0 * sum)).abs() < 1e-12);
+        // What two parameters take is put back: 2/40 is added to each.
+        assert!(effective_count(&blocks, 2) < effective_count(&blocks, 0));
     }
 
     #[test]

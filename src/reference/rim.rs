@@ -132,12 +132,8 @@ impl RimDistance {
         (sine + rest * cosine, cosine - rest * sine)
     }
 
-    /// `δ + shift − n π`.
+    /// `δ + shift − n π`, to 2⁻⁵² of n π.
     pub(crate) fn beyond(self, shift: f64, index: f64) -> f64 {
-        // π = PI + PI_LOW to 107 bits.
-        const PI_LOW: f64 = 1.2246467991473532e-16;
-        let (turns, turns_low) = two_product(index, std::f64::consts::PI);
-        let (difference, rest) = two_sum(self.high, -turns);
-        difference + (rest + self.low - turns_low - index * PI_LOW + shift)
+        (self.high - index * std::f64::consts::PI) + (self.low + shift)
     }
 }
