@@ -84,10 +84,7 @@ pub fn forces<const D: usize, L: PairLaw>(
     forces: &mut [Vector<D>],
 ) {
     let mut totals = Totals::ZERO;
-    pulp::Arch::new().dispatch(
-        #[inline(always)]
-        || sweep::<D, L, false>(law, pairs, displacements, forces, &mut totals),
-    );
+    pulp::Arch::new().dispatch(Sweep::<D, L, false> { law, pairs, displacements, forces, totals: &mut totals });
 }
 
 /// Forces as by [`forces`], with energy, virial, contact count and mean force in the same pass.
@@ -98,11 +95,26 @@ pub fn forces_and_totals<const D: usize, L: PairLaw>(
     forces: &mut [Vector<D>],
 ) -> Totals<D> {
     let mut totals = Totals::ZERO;
-    pulp::Arch::new().dispatch(
-        #[inline(always)]
-        || sweep::<D, L, true>(law, pairs, displacements, forces, &mut totals),
-    );
+    pulp::Arch::new().dispatch(Sweep::<D, L, true> { law, pairs, displacements, forces, totals: &mut totals });
     totals
+}
+
+/// The loop as a job that is compiled for each vector width the machine may have, and started for the widest it has.
+struct Sweep<'a, const D: usize, L, const TOTALS: bool> {
+    law: &'a L,
+    pairs: &'a PairList<D>,
+    displacements: &'a [Vector<D>],
+    forces: &'a mut [Vector<D>],
+    totals: &'a mut Totals<D>,
+}
+
+impl<const D: usize, L: PairLaw, const TOTALS: bool> pulp::WithSimd for Sweep<'_, D, L, TOTALS> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        sweep::<D, L, TOTALS>(self.law, self.pairs, self.displacements, self.forces, self.totals);
+    }
 }
 
 #[inline(always)]

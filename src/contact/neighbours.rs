@@ -258,10 +258,8 @@ fn maybe_within<const D: usize>(domain: &Domain<D>, a: Vector<D>, b: Vector<D>, 
     let mut squared = 0.0;
     let mut scale = 0.0f64;
     for d in 0..D {
-        let mut apart = (a[d] - b[d]).abs();
-        if let Domain::Periodic { lengths, .. } = domain {
-            apart -= (apart / lengths[d]).round() * lengths[d];
-        }
+        let difference = a[d] - b[d];
+        let apart = difference + domain.shift(difference, d);
         squared += apart * apart;
         scale = scale.max(a[d].abs()).max(b[d].abs());
     }

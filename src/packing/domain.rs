@@ -39,15 +39,15 @@ impl<const D: usize> Domain<D> {
         }
     }
 
-    /// Number of box sides to take off a difference `d` of coordinates to reach the nearest image.
-    #[inline]
-    fn shift(&self, difference: f64, axis: usize) -> f64 {
+    /// What to add to a difference of coordinates to reach the nearest image: a whole number of sides.
+    #[inline(always)]
+    pub(crate) fn shift(&self, difference: f64, axis: usize) -> f64 {
         match self {
-            Domain::Periodic { lengths, .. } => {
-                let side = lengths[axis];
-                -(difference / side).round() * side
+            // Most pairs need no image; the division is for the others.
+            Domain::Periodic { lengths, .. } if difference.abs() > 0.5 * lengths[axis] => {
+                -(difference / lengths[axis]).round() * lengths[axis]
             }
-            Domain::Open => 0.0,
+            _ => 0.0,
         }
     }
 

@@ -67,7 +67,7 @@ impl Default for Fire {
 }
 
 /// Steps after which the bound on the time step is taken anew (design §7: 10 to 50 is enough).
-const BOUND_EVERY: usize = 20;
+const BOUND_EVERY: usize = 40;
 
 /// First time step over the largest one \[1\].
 const FIRST_STEP: f64 = 0.1;

@@ -16,10 +16,21 @@ pub struct Products {
 
 /// F·v, F·F and v·v in one pass.
 pub fn products(force: &[f64], velocity: &[f64]) -> Products {
-    pulp::Arch::new().dispatch(
-        #[inline(always)]
-        || products_in_lanes(force, velocity),
-    )
+    pulp::Arch::new().dispatch(ProductsOf { force, velocity })
+}
+
+struct ProductsOf<'a> {
+    force: &'a [f64],
+    velocity: &'a [f64],
+}
+
+impl pulp::WithSimd for ProductsOf<'_> {
+    type Output = Products;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) -> Products {
+        products_in_lanes(self.force, self.velocity)
+    }
 }
 
 #[inline(always)]
@@ -52,13 +63,26 @@ pub fn kick_and_drift(
     velocity: &mut [f64],
     displacement: &mut [f64],
 ) {
-    pulp::Arch::new().dispatch(
-        #[inline(always)]
-        || {
-            for ((f, v), u) in force.iter().zip(velocity.iter_mut()).zip(displacement.iter_mut()) {
-                *v = keep * *v + push * f;
-                *u += time_step * *v;
-            }
-        },
-    );
+    pulp::Arch::new().dispatch(KickAndDrift { keep, push, time_step, force, velocity, displacement });
+}
+
+struct KickAndDrift<'a> {
+    keep: f64,
+    push: f64,
+    time_step: f64,
+    force: &'a [f64],
+    velocity: &'a mut [f64],
+    displacement: &'a mut [f64],
+}
+
+impl pulp::WithSimd for KickAndDrift<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        for ((f, v), u) in self.force.iter().zip(self.velocity).zip(self.displacement) {
+            *v = self.keep * *v + self.push * f;
+            *u += self.time_step * *v;
+        }
+    }
 }
