@@ -11,6 +11,7 @@ pub mod packing;
 pub mod preparation;
 pub mod reference;
 pub mod relax;
+pub mod report;
 pub mod run;
 pub mod scene;
 pub mod vector;
