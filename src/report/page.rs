@@ -143,9 +143,9 @@ fn decided(result: &SampleResult) -> Option<String> {
         FitResult::Fitted(fit) => {
             let kappa = crate::report::rows::wavenumber(fit).map_or(String::new(), |text| escaped(&text));
             match fit.decision {
-                Decision::Elastic => format!("elastic (κ {kappa}, consistent with 0)"),
-                Decision::Screened => format!("screened (κ = {kappa})"),
-                Decision::Neither => "neither elastic nor screened".into(),
+                Decision::Elastic => format!("profile elastic (κ {kappa}, consistent with 0)"),
+                Decision::Screened => format!("profile screened (κ = {kappa})"),
+                Decision::Neither => "profile neither elastic nor screened".into(),
             }
         }
     })

@@ -9,7 +9,7 @@ use crate::report::number::{count, significant};
 use crate::run::{Report, RestSummary, SampleOutcome, SampleReport, SampleResult};
 use crate::scene::Sample;
 
-/// |d_r| from which on a disk counts as displaced: the penetration depth ends there \[length\]. Source: the study, ξ.
+/// Mean |d_r| of a ring from which on it counts as displaced \[length\]. Source: the study, ξ.
 pub(crate) const PENETRATION_THRESHOLD: f64 = 1e-3;
 
 /// Rows under one heading.
@@ -148,7 +148,7 @@ fn inflation(report: &Report, samples: &[SampleReport], times: Times) -> Section
     .add("pressure before, p [force/length]", |it| Some(significant(it.inflation.before.pressure, 5)))
     .add("pressure change, Δp [force/length]", |it| Some(significant(it.inflation.pressure_change, 4)))
     .add(scaled_label(exponent), |it| it.inflation.scaled_pressure_change.map(|value| significant(value, 4)))
-    .add("penetration, |d_r| ≥ 10⁻³ [length]", |it| penetration_depth(it).map(|depth| significant(depth, 4)));
+    .add("penetration, |⟨d_r⟩| ≥ 10⁻³ [length]", |it| penetration_depth(it).map(|depth| significant(depth, 4)));
     rows.section("Inflation")
 }
 
@@ -234,11 +234,14 @@ pub(crate) fn settings<'a>(report: &'a Report, name: &str) -> Option<&'a Sample>
     report.scene.sample.iter().find(|sample| sample.name == name)
 }
 
-/// Largest distance at which a disk moved by 10⁻³ along the radius, for a packing that was unjammed \[length\].
-pub(crate) fn penetration_depth(result: &SampleResult) -> Option<f64> {
+/// Radius of the outermost ring with |⟨d_r⟩| ≥ 10⁻³, for a packing that was unjammed \[length\].
+///
+/// Rings and not disks, as in the study: single disks next to the rim move by as much in any loose packing.
+fn penetration_depth(result: &SampleResult) -> Option<f64> {
+    let profile = result.radial_profile.as_ref()?;
     let unjammed = result.inflation.before.rest.criterion == Criterion::Unjammed;
-    let moved = || result.field.counted().filter(|disk| disk.radial.abs() >= PENETRATION_THRESHOLD);
-    unjammed.then(|| moved().map(|disk| disk.distance).fold(0.0, f64::max))
+    let moved = || profile.rings.iter().filter(|ring| ring.mean.abs() >= PENETRATION_THRESHOLD);
+    unjammed.then(|| moved().map(|ring| ring.radius).fold(0.0, f64::max))
 }
 
 /// Wall time of all relaxations of an inflation \[s\].

@@ -8,7 +8,7 @@ use crate::observe::AngularProfile;
 use crate::report::figures::chart::{Chart, Entry, LegendLine, SCALE, Sign};
 use crate::report::figures::palette::SEQUENCE;
 use crate::report::figures::radial::with_margin;
-use crate::report::figures::{Figure, FigureError};
+use crate::report::figures::{Figure, FigureError, RESCALED};
 
 /// Entries of the legend in one line.
 const ENTRIES_A_LINE: usize = 3;
@@ -36,7 +36,7 @@ pub fn angular_figure(name: &str, profiles: &[AngularProfile]) -> Result<Figure,
         ),
         x_label: "θ/π",
         x_range: [-1.0, 1.0],
-        y_label: "r·dᵣ",
+        y_label: RESCALED,
         y_unit: "length²",
         y_range: with_margin(values),
         legend: legend.collect(),

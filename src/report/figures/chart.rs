@@ -3,7 +3,7 @@
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-use crate::report::figures::{Figure, FigureError, HEIGHT, INK, WIDTH, escaped};
+use crate::report::figures::{Figure, FigureError, HEIGHT, INK, WIDTH};
 use crate::report::number::superscript;
 
 /// Canvas pixels to a pixel of the picture.
@@ -14,6 +14,16 @@ const LEGEND_LINE: u32 = 18;
 
 /// Plotters writes `font-size = size / 1.24`.
 const FONT_FACTOR: f64 = 1.24;
+
+/// Lines of the legend there is room for in every chart, so that charts side by side have their axes at one height.
+const LEAST_LEGEND: usize = 3;
+
+/// Ends of the axes below and to the left \[px\].
+const BOTTOM: u32 = 50;
+const LEFT: u32 = 68;
+
+/// The same to the right, where half a tick label sticks out.
+const RIGHT: u32 = 14;
 
 /// Font size of tick labels, axis labels and legend \[px\].
 const FONT_SIZE: u32 = 13;
@@ -28,12 +38,12 @@ pub(crate) type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 pub(crate) struct Chart {
     pub title: String,
     pub description: String,
+    /// SVG text with its unit.
     pub x_label: &'static str,
     pub x_range: [f64; 2],
-    /// Without its unit.
+    /// SVG text without its unit.
     pub y_label: &'static str,
     pub y_unit: &'static str,
-    /// In units, before [`Scaling`].
     pub y_range: [f64; 2],
     pub legend: Vec<LegendLine>,
 }
@@ -44,6 +54,7 @@ pub(crate) struct LegendLine(pub Vec<Entry>);
 /// A sign and what it means.
 pub(crate) struct Entry {
     pub sign: Sign,
+    /// SVG text.
     pub text: String,
 }
 
@@ -95,8 +106,9 @@ impl Chart {
         let inner =
             canvas.split_once('>').and_then(|(_, rest)| rest.rsplit_once("</svg>")).map_or("", |(inner, _)| inner);
         let elements = format!(
-            "<g transform=\"scale({})\">{inner}</g>\n{}",
+            "<g transform=\"scale({})\">{inner}</g>\n{}{}",
             1.0 / f64::from(SCALE),
+            self.axis_labels(scaling),
             self.legend.iter().enumerate().map(|(index, line)| line.markup(index)).collect::<String>()
         );
         Ok(Figure { title: self.title, description: self.description, elements })
@@ -111,19 +123,13 @@ impl Chart {
         let area = SVGBackend::with_string(canvas, (WIDTH * SCALE, HEIGHT * SCALE)).into_drawing_area();
         let [y_low, y_high] = self.y_range.map(|value| scaling.apply(value));
         let mut axes = ChartBuilder::on(&area)
-            .margin_top((self.legend.len() as u32 * LEGEND_LINE + 12) * SCALE)
-            .margin_right(14 * SCALE)
-            .margin_bottom(4 * SCALE)
-            .margin_left(2 * SCALE)
-            .x_label_area_size(46 * SCALE)
-            .y_label_area_size(66 * SCALE)
+            .margin_top(self.top() * SCALE)
+            .margin_right(RIGHT * SCALE)
+            .x_label_area_size(BOTTOM * SCALE)
+            .y_label_area_size(LEFT * SCALE)
             .build_cartesian_2d(self.x_range[0]..self.x_range[1], y_low..y_high)?;
         let ink = RGBColor(0x22, 0x22, 0x22);
         let font = ("sans-serif", f64::from(FONT_SIZE * SCALE) * FONT_FACTOR).into_font().color(&ink);
-        let power = match scaling.exponent {
-            0 => String::new(),
-            exponent => format!("10{} ", superscript(exponent)),
-        };
         axes.configure_mesh()
             .disable_mesh()
             .axis_style(ink.stroke_width(SCALE))
@@ -132,10 +138,7 @@ impl Chart {
             .y_labels(7)
             .x_label_formatter(&|value| tick(*value, self.x_range[1] - self.x_range[0]))
             .y_label_formatter(&|value| tick(*value, y_high - y_low))
-            .x_desc(self.x_label)
-            .y_desc(format!("{} ({power}{})", self.y_label, self.y_unit))
-            .label_style(font.clone())
-            .axis_desc_style(font)
+            .label_style(font)
             .draw()?;
         // Zero is where nothing moved.
         if y_low < 0.0 && 0.0 < y_high {
@@ -144,6 +147,31 @@ impl Chart {
         }
         draw(&mut axes, scaling)?;
         area.present()
+    }
+}
+
+impl Chart {
+    /// Height of what stands above the axes \[px\].
+    fn top(&self) -> u32 {
+        self.legend.len().max(LEAST_LEGEND) as u32 * LEGEND_LINE + 12
+    }
+
+    /// What the axes show, with units.
+    fn axis_labels(&self, scaling: Scaling) -> String {
+        let power = match scaling.exponent {
+            0 => String::new(),
+            exponent => format!("10{} ", superscript(exponent)),
+        };
+        format!(
+            "<g font-size=\"{FONT_SIZE}\" text-anchor=\"middle\"><text x=\"{}\" y=\"{}\">{}</text>\n\
+             <text transform=\"translate(14 {}) rotate(-90)\">{} ({power}{})</text></g>\n",
+            (LEFT + WIDTH - RIGHT) / 2,
+            HEIGHT - 10,
+            self.x_label,
+            (self.top() + HEIGHT - BOTTOM) / 2,
+            self.y_label,
+            self.y_unit,
+        )
     }
 }
 
@@ -160,7 +188,7 @@ fn tick(value: f64, span: f64) -> String {
 impl LegendLine {
     fn markup(&self, index: usize) -> String {
         let y = 6.0 + (index as f64 + 0.5) * f64::from(LEGEND_LINE);
-        let start = 70.0;
+        let start = f64::from(LEFT) + 2.0;
         let share = (f64::from(WIDTH) - start) / self.0.len() as f64;
         let entry = |(place, entry): (usize, &Entry)| {
             let x = start + place as f64 * share;
@@ -169,7 +197,7 @@ impl LegendLine {
                 entry.sign.markup(x, y),
                 x + 32.0,
                 y + 4.5,
-                escaped(&entry.text)
+                entry.text
             )
         };
         self.0.iter().enumerate().map(entry).collect()

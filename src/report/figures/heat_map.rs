@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use crate::displacement::DisplacementField;
 use crate::inflation::Boundary;
 use crate::report::figures::palette::{diverging, hexadecimal};
-use crate::report::figures::{Figure, HEIGHT, INK, escaped};
+use crate::report::figures::{Figure, HEIGHT, INK, RESCALED, escaped};
 use crate::report::number::significant;
 use crate::run::SampleResult;
 
@@ -171,7 +171,7 @@ fn colour_bar(largest: f64) -> String {
     }
     let _ = writeln!(
         bar,
-        "<text x=\"456\" y=\"14\" font-size=\"13\" text-anchor=\"end\">r·dᵣ / max,  max |r·dᵣ| = {} length²</text>",
+        "<text x=\"456\" y=\"14\" font-size=\"13\" text-anchor=\"end\">{RESCALED} / max,  max |{RESCALED}| = {} length²</text>",
         escaped(&significant(largest, 3))
     );
     bar

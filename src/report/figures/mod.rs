@@ -73,6 +73,14 @@ impl Figure {
     }
 }
 
+/// r·d_r as SVG text, the index lowered.
+pub(crate) const RESCALED: &str = "r·d<tspan dy=\"3\" font-size=\"10\">r</tspan><tspan dy=\"-3\">\u{200B}</tspan>";
+
+/// d_0^eff as SVG text.
+#[cfg(feature = "fit")]
+pub(crate) const AMPLITUDE: &str = "d<tspan dy=\"3\" font-size=\"10\">0</tspan><tspan dy=\"-8\" font-size=\"10\">eff</tspan>\
+                                    <tspan dy=\"5\">\u{200B}</tspan>";
+
 /// Fonts tried in this order.
 pub(crate) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 

@@ -4,9 +4,11 @@ use plotters::prelude::*;
 
 use crate::observe::RadialProfile;
 use crate::report::curve::{Curve, curves, fitted_range};
+#[cfg(feature = "fit")]
+use crate::report::figures::AMPLITUDE;
 use crate::report::figures::chart::{Axes, Chart, Drawn, Entry, LegendLine, SCALE, Scaling, Sign};
 use crate::report::figures::palette::{BLUE, VERMILLION};
-use crate::report::figures::{Figure, FigureError};
+use crate::report::figures::{Figure, FigureError, RESCALED};
 use crate::run::SampleResult;
 
 /// Points of a fitted curve: two pixels apart.
@@ -35,7 +37,7 @@ pub fn radial_figure(name: &str, result: &SampleResult, profile: &RadialProfile)
         ),
         x_label: "r (length)",
         x_range: [0.0, 1.02 * outer_radius],
-        y_label: "r·dᵣ",
+        y_label: RESCALED,
         y_unit: "length²",
         y_range,
         legend: legend(result, &curves),
@@ -96,8 +98,8 @@ fn parameters(result: &SampleResult, curve: &Curve) -> String {
     match fit.and_then(|fit| if curve.name == "screened" { fit.screened } else { None }) {
         // κ went to zero, where the two solutions are one and its error says nothing.
         Some(fit) if fit.wavenumber.standard_error > 10.0 * fit.wavenumber.value => "screened: no better, κ → 0".into(),
-        Some(fit) => format!("screened: d₀ = {}, κ = {}", with(fit.amplitude), with(fit.wavenumber)),
-        None => format!("elastic: d₀ = {}", fit.map_or(String::new(), |fit| with(fit.elastic.amplitude))),
+        Some(fit) => format!("screened: {AMPLITUDE} = {}, κ = {}", with(fit.amplitude), with(fit.wavenumber)),
+        None => format!("elastic: {AMPLITUDE} = {}", fit.map_or(String::new(), |fit| with(fit.elastic.amplitude))),
     }
 }
 
