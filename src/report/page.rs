@@ -67,7 +67,7 @@ fn introduction(report: &Report) -> String {
     if any(|it| !crate::report::curve::curves(it).is_empty()) {
         text.push_str(
             "It is held against the elastic solution and the one screened by plastic events with wavenumber κ; the one \
-             that describes it is drawn out, the other dashed. ",
+             that describes it is solid, the other dashed. ",
         );
     }
     if any(|it| it.angular_profiles.is_some()) {

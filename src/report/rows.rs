@@ -72,6 +72,21 @@ pub(crate) fn failures(samples: &[SampleReport]) -> impl Iterator<Item = (&str, 
     })
 }
 
+/// The samples whose profile could not be fitted, with the reason.
+#[cfg(feature = "fit")]
+pub(crate) fn refusals(samples: &[SampleReport]) -> impl Iterator<Item = (&str, &str)> {
+    samples.iter().filter_map(|sample| match &done(sample)?.profile_fit {
+        Some(crate::run::FitResult::Refused(reason)) => Some((sample.name.as_str(), reason.as_str())),
+        _ => None,
+    })
+}
+
+/// Without the feature `fit` nothing is fitted and nothing refused.
+#[cfg(not(feature = "fit"))]
+pub(crate) fn refusals(_samples: &[SampleReport]) -> impl Iterator<Item = (&str, &str)> {
+    std::iter::empty()
+}
+
 /// All rows of these samples of a report; sections without rows are left out.
 pub(crate) fn sections(report: &Report, samples: &[SampleReport], times: Times) -> Vec<Section> {
     let all = [
@@ -148,7 +163,9 @@ fn inflation(report: &Report, samples: &[SampleReport], times: Times) -> Section
     .add("pressure before, p [force/length]", |it| Some(significant(it.inflation.before.pressure, 5)))
     .add("pressure change, Δp [force/length]", |it| Some(significant(it.inflation.pressure_change, 4)))
     .add(scaled_label(exponent), |it| it.inflation.scaled_pressure_change.map(|value| significant(value, 4)))
-    .add("penetration, |⟨d_r⟩| ≥ 10⁻³ [length]", |it| penetration_depth(it).map(|depth| significant(depth, 4)));
+    .add("penetration, |⟨d_r⟩| ≥ 10⁻³ [length]", |it| {
+        penetration_depth(it).map(|depth| significant(depth, 4))
+    });
     rows.section("Inflation")
 }
 

@@ -1,6 +1,6 @@
 //! [`terminal_table`]: a report as plain text, a column a sample, no wider than [`WIDTH`].
 
-use crate::report::rows::{Section, Times, failures, sections};
+use crate::report::rows::{Section, Times, failures, refusals, sections};
 use crate::run::{Report, SampleReport};
 
 /// Characters in a line, at most.
@@ -44,9 +44,11 @@ fn section_lines(section: &Section, lines: &mut Vec<String>) {
 }
 
 fn failure_lines(samples: &[SampleReport], lines: &mut Vec<String>) {
-    for (name, reason) in failures(samples) {
+    let failed = failures(samples).map(|(name, reason)| format!("{name} failed: {reason}"));
+    let unfitted = refusals(samples).map(|(name, reason)| format!("{name}, no fit: {reason}"));
+    for text in failed.chain(unfitted) {
         lines.push(String::new());
-        lines.extend(wrapped(&format!("{name} failed: {reason}")));
+        lines.extend(wrapped(&text));
     }
 }
 

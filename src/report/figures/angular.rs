@@ -54,8 +54,8 @@ pub fn angular_figure(name: &str, profiles: &[AngularProfile]) -> Result<Figure,
     })
 }
 
-/// (θ/π, r·d_r) of the disks of a ring.
+/// (θ/π, r·d_r) of the disks of a ring; what is not a number has no place on the axes.
 fn points(profile: &AngularProfile) -> impl Iterator<Item = (f64, f64)> {
     let values = profile.radial.iter().zip(&profile.distances).map(|(radial, distance)| radial * distance);
-    profile.angles.iter().map(|angle| angle / PI).zip(values)
+    profile.angles.iter().map(|angle| angle / PI).zip(values).filter(|(_, value)| value.is_finite())
 }

@@ -109,7 +109,7 @@ impl Chart {
             "<g transform=\"scale({})\">{inner}</g>\n{}{}",
             1.0 / f64::from(SCALE),
             self.axis_labels(scaling),
-            self.legend.iter().enumerate().map(|(index, line)| line.markup(index)).collect::<String>()
+            self.legend.iter().enumerate().map(|(index, line)| line.markup(self.row(index))).collect::<String>()
         );
         Ok(Figure { title: self.title, description: self.description, elements })
     }
@@ -156,6 +156,12 @@ impl Chart {
         self.legend.len().max(LEAST_LEGEND) as u32 * LEGEND_LINE + 12
     }
 
+    /// Middle of a line of the legend, whose last line stands just above the axes \[px\].
+    fn row(&self, index: usize) -> f64 {
+        let first = f64::from(self.top()) - 6.0 - (self.legend.len() as f64 - 0.5) * f64::from(LEGEND_LINE);
+        first + index as f64 * f64::from(LEGEND_LINE)
+    }
+
     /// What the axes show, with units.
     fn axis_labels(&self, scaling: Scaling) -> String {
         let power = match scaling.exponent {
@@ -186,8 +192,8 @@ fn tick(value: f64, span: f64) -> String {
 }
 
 impl LegendLine {
-    fn markup(&self, index: usize) -> String {
-        let y = 6.0 + (index as f64 + 0.5) * f64::from(LEGEND_LINE);
+    /// The line around height `y` \[px\].
+    fn markup(&self, y: f64) -> String {
         let start = f64::from(LEFT) + 2.0;
         let share = (f64::from(WIDTH) - start) / self.0.len() as f64;
         let entry = |(place, entry): (usize, &Entry)| {

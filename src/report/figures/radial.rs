@@ -148,13 +148,14 @@ fn draw_rings(
     let [red, green, blue] = MEASURED;
     let ink = RGBColor(red, green, blue);
     let value = |radius: f64, displacement: f64| scaling.apply(radius * displacement);
-    axes.draw_series(profile.rings.iter().map(|ring| {
+    let drawable = || profile.rings.iter().filter(|ring| (ring.radius * ring.mean * ring.standard_error).is_finite());
+    axes.draw_series(drawable().map(|ring| {
         let ends = [ring.mean - ring.standard_error, ring.mean + ring.standard_error];
         let ends = ends.map(|end| (ring.radius, value(ring.radius, end)));
         PathElement::new(ends.to_vec(), ink.stroke_width(SCALE))
     }))?;
     for (style, wanted) in [(ink.filled(), true), (WHITE.filled(), false), (ink.stroke_width(SCALE), false)] {
-        let rings = profile.rings.iter().filter(|ring| fitted(ring.radius) == wanted);
+        let rings = drawable().filter(|ring| fitted(ring.radius) == wanted);
         axes.draw_series(
             rings.map(|ring| Circle::new((ring.radius, value(ring.radius, ring.mean)), f64::from(SCALE) * 2.6, style)),
         )?;
