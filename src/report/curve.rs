@@ -11,7 +11,6 @@ use crate::run::FitResult;
 use crate::run::SampleResult;
 
 /// One fitted solution.
-#[cfg_attr(not(feature = "fit"), expect(dead_code, reason = "only fits make curves"))]
 pub(crate) struct Curve {
     /// Its name, also that of its column.
     pub name: &'static str,
