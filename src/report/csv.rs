@@ -1,0 +1,97 @@
+//! Profiles as comma-separated values: a row of names, a row of units, then numbers.
+//!
+//! Numbers are the shortest decimals that give the same `f64` again.
+
+use std::fmt::Write as _;
+
+use crate::observe::{AngularProfile, RadialProfile};
+use crate::report::curve::{curves, fitted_range};
+use crate::run::SampleResult;
+
+/// Columns of equal length under names and units.
+struct Table {
+    names: Vec<&'static str>,
+    units: Vec<&'static str>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Table {
+    fn new(columns: &[(&'static str, &'static str)]) -> Self {
+        let (names, units) = columns.iter().copied().unzip();
+        Table { names, units, rows: Vec::new() }
+    }
+
+    fn text(&self) -> String {
+        let mut text = format!("{}\n{}\n", self.names.join(","), self.units.join(","));
+        for row in &self.rows {
+            for (column, value) in row.iter().enumerate() {
+                let comma = if column > 0 { "," } else { "" };
+                // Whole numbers below 2⁵³ without a point: counts stay counts.
+                write!(text, "{comma}{value}").expect("a String takes all that is written to it");
+            }
+            text.push('\n');
+        }
+        text
+    }
+}
+
+/// A radial profile, and beside it what was fitted.
+///
+/// # Shape
+/// One row a ring. `fitted` is 1 for rings the fit used; `elastic` and `screened` are the fitted solutions r·d_r at the
+/// mean radius of the ring. The three are there if there was a fit, `screened` if there is such a solution.
+pub fn radial_profile(result: &SampleResult, profile: &RadialProfile) -> String {
+    let mut table = Table::new(&[
+        ("radius", "length"),
+        ("disk_count", "1"),
+        ("radial_displacement", "length"),
+        ("spread", "length"),
+        ("standard_error", "length"),
+        ("rescaled_displacement", "length^2"),
+        ("rescaled_standard_error", "length^2"),
+    ]);
+    let (curves, range) = (curves(result), fitted_range(result));
+    if range.is_some() {
+        table.names.push("fitted");
+        table.units.push("1");
+    }
+    for curve in &curves {
+        table.names.push(curve.name);
+        table.units.push("length^2");
+    }
+    for ring in &profile.rings {
+        let mut row = vec![
+            ring.radius,
+            ring.disk_count as f64,
+            ring.mean,
+            ring.spread,
+            ring.standard_error,
+            ring.radius * ring.mean,
+            ring.radius * ring.standard_error,
+        ];
+        row.extend(range.map(|[from, to]| f64::from(u8::from(from <= ring.radius && ring.radius <= to))));
+        row.extend(curves.iter().map(|curve| curve.rescaled(ring.radius)));
+        table.rows.push(row);
+    }
+    table.text()
+}
+
+/// Angular profiles, ring after ring.
+///
+/// # Shape
+/// One row a disk.
+pub fn angular_profiles(profiles: &[AngularProfile]) -> String {
+    let mut table = Table::new(&[
+        ("relative_radius", "1"),
+        ("angle", "rad"),
+        ("radius", "length"),
+        ("radial_displacement", "length"),
+        ("rescaled_displacement", "length^2"),
+    ]);
+    for profile in profiles {
+        for ((&angle, &radial), &distance) in profile.angles.iter().zip(&profile.radial).zip(&profile.distances) {
+            table.rows.push(vec![profile.relative_radius, angle, distance, radial, distance * radial]);
+        }
+    }
+    table.text()
+}

@@ -1,0 +1,79 @@
+//! The fitted solutions as curves beside a measured profile.
+
+#[cfg(feature = "fit")]
+use crate::fit::profile::{Decision, ProfileFit};
+#[cfg(feature = "fit")]
+use crate::reference::{Annulus, elastic::Elastic, screened::Screened};
+
+use crate::reference::RadialSolution;
+#[cfg(feature = "fit")]
+use crate::run::FitResult;
+use crate::run::SampleResult;
+
+/// One fitted solution.
+pub(crate) struct Curve {
+    /// Its name, also that of its column.
+    pub name: &'static str,
+    /// Whether it is the one decided for.
+    #[cfg_attr(not(feature = "plot"), expect(dead_code, reason = "figures draw it in another way"))]
+    pub decided: bool,
+    solution: Box<dyn RadialSolution>,
+}
+
+impl Curve {
+    /// r·d_r at distance `radius` \[length²\], NaN outside the annulus.
+    pub(crate) fn rescaled(&self, radius: f64) -> f64 {
+        radius * self.solution.value(radius)
+    }
+}
+
+/// The fit of a sample, if there is one.
+#[cfg(feature = "fit")]
+pub(crate) fn fit_of(result: &SampleResult) -> Option<&ProfileFit> {
+    match &result.profile_fit {
+        Some(FitResult::Fitted(fit)) => Some(fit),
+        _ => None,
+    }
+}
+
+/// Fitted solutions of a sample: none without a fit.
+#[cfg(feature = "fit")]
+pub(crate) fn curves(result: &SampleResult) -> Vec<Curve> {
+    let Some(fit) = fit_of(result) else { return Vec::new() };
+    let Ok(annulus) = Annulus::new(result.inflation.inner_radius, result.inflation.outer_radius) else {
+        return Vec::new();
+    };
+    let elastic = Elastic::<2>::new(annulus, fit.elastic.amplitude.value).ok().map(|solution| Curve {
+        name: "elastic",
+        decided: fit.decision == Decision::Elastic,
+        solution: Box::new(solution),
+    });
+    // At a pole to rounding there is no finite solution, and no curve.
+    let screened = fit
+        .screened
+        .and_then(|fit| Screened::<2>::new(annulus, fit.amplitude.value, fit.wavenumber.value).ok())
+        .map(|solution| Curve {
+            name: "screened",
+            decided: fit.decision == Decision::Screened,
+            solution: Box::new(solution),
+        });
+    elastic.into_iter().chain(screened).collect()
+}
+
+/// Without the feature `fit` nothing is fitted.
+#[cfg(not(feature = "fit"))]
+pub(crate) fn curves(_result: &SampleResult) -> Vec<Curve> {
+    Vec::new()
+}
+
+/// Inner and outer end of the radii fitted \[length\].
+#[cfg(feature = "fit")]
+pub(crate) fn fitted_range(result: &SampleResult) -> Option<[f64; 2]> {
+    fit_of(result).map(|fit| fit.range)
+}
+
+/// Without the feature `fit` nothing is fitted.
+#[cfg(not(feature = "fit"))]
+pub(crate) fn fitted_range(_result: &SampleResult) -> Option<[f64; 2]> {
+    None
+}

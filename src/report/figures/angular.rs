@@ -1,0 +1,61 @@
+//! [`angular_figure`]: r·d_r against the angle, one ring a colour.
+
+use std::f64::consts::PI;
+
+use plotters::prelude::*;
+
+use crate::observe::AngularProfile;
+use crate::report::figures::chart::{Chart, Entry, LegendLine, SCALE, Sign};
+use crate::report::figures::palette::SEQUENCE;
+use crate::report::figures::radial::with_margin;
+use crate::report::figures::{Figure, FigureError, RESCALED};
+
+/// Entries of the legend in one line.
+const ENTRIES_A_LINE: usize = 3;
+
+/// The angular profiles of a sample: every disk of a ring a point, joined in the order of their angles.
+///
+/// # Errors
+/// A profile without a finite number.
+pub fn angular_figure(name: &str, profiles: &[AngularProfile]) -> Result<Figure, FigureError> {
+    let colour = |index: usize| SEQUENCE[index % SEQUENCE.len()];
+    let entries: Vec<(usize, &AngularProfile)> = profiles.iter().enumerate().collect();
+    let legend = entries.chunks(ENTRIES_A_LINE).map(|line| {
+        let entry = |&(index, profile): &(usize, &AngularProfile)| Entry {
+            sign: Sign::PointOnLine(colour(index)),
+            text: format!("r/R = {}", profile.relative_radius),
+        };
+        LegendLine(line.iter().map(entry).collect())
+    });
+    let values = profiles.iter().flat_map(|profile| points(profile).map(|(_, value)| value));
+    let chart = Chart {
+        title: format!("{name}: angular profiles"),
+        description: format!(
+            "Rescaled radial displacement r·d_r of the disks in {} rings against their angle θ",
+            profiles.len()
+        ),
+        x_label: "θ/π",
+        x_range: [-1.0, 1.0],
+        y_label: RESCALED,
+        y_unit: "length²",
+        y_range: with_margin(values),
+        legend: legend.collect(),
+    };
+    chart.draw(|axes, scaling| {
+        for (index, profile) in profiles.iter().enumerate() {
+            let [red, green, blue] = colour(index);
+            let style = RGBColor(red, green, blue);
+            let scaled: Vec<(f64, f64)> = points(profile).map(|(x, y)| (x, scaling.apply(y))).collect();
+            axes.draw_series(LineSeries::new(scaled.iter().copied(), style.stroke_width(SCALE * 7 / 10)))?;
+            let radius = f64::from(SCALE) * 1.6;
+            axes.draw_series(scaled.iter().map(|&point| Circle::new(point, radius, style.filled())))?;
+        }
+        Ok(())
+    })
+}
+
+/// (θ/π, r·d_r) of the disks of a ring; what is not a number has no place on the axes.
+fn points(profile: &AngularProfile) -> impl Iterator<Item = (f64, f64)> {
+    let values = profile.radial.iter().zip(&profile.distances).map(|(radial, distance)| radial * distance);
+    profile.angles.iter().map(|angle| angle / PI).zip(values).filter(|(_, value)| value.is_finite())
+}

@@ -1,0 +1,105 @@
+//! Figures of one sample as SVG: [`heat_map`](heat_map::heat_map), [`radial`](radial::radial_figure),
+//! [`angular`](angular::angular_figure).
+//!
+//! All three have one height and one style, so that they stand in a row. The charts are drawn by plotters, on a canvas
+//! ten times finer than the picture, because plotters places points on whole pixels; the heat map is written
+//! directly, one stroke a disk.
+
+pub mod angular;
+mod chart;
+pub mod heat_map;
+mod palette;
+pub mod radial;
+
+/// Height of every figure \[px\].
+pub const HEIGHT: u32 = 440;
+
+/// Width of every figure \[px\].
+pub const WIDTH: u32 = 460;
+
+/// Why a figure could not be drawn.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FigureError {
+    /// A number on an axis is not finite, so there is no range to draw.
+    #[error("figure \"{title}\": {axis} has no finite range")]
+    RangeNotFinite {
+        /// The figure.
+        title: String,
+        /// The axis.
+        axis: &'static str,
+    },
+    /// The drawing itself failed.
+    #[error("figure \"{title}\": {reason}")]
+    Drawing {
+        /// The figure.
+        title: String,
+        /// What plotters says.
+        reason: String,
+    },
+}
+
+/// A picture with its title and a description for those who do not see it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// What it is, in a few words; unique on a page.
+    pub title: String,
+    /// What is to be seen, in a sentence.
+    pub description: String,
+    /// SVG elements, on a canvas of WIDTH × HEIGHT.
+    elements: String,
+}
+
+impl Figure {
+    /// A file of its own.
+    pub fn to_svg(&self) -> String {
+        self.markup(r#" xmlns="http://www.w3.org/2000/svg""#)
+    }
+
+    /// An element within HTML, where no name space is declared.
+    pub fn to_inline_svg(&self) -> String {
+        self.markup("")
+    }
+
+    fn markup(&self, name_space: &str) -> String {
+        format!(
+            "<svg{name_space} viewBox=\"0 0 {WIDTH} {HEIGHT}\" width=\"{WIDTH}\" height=\"{HEIGHT}\" role=\"img\" \
+             aria-label=\"{title}. {description}\" font-family=\"{FONT}\" fill=\"{INK}\">\n\
+             <title>{title}</title>\n<desc>{description}</desc>\n{elements}</svg>\n",
+            title = escaped(&self.title),
+            description = escaped(&self.description),
+            elements = self.elements,
+        )
+    }
+}
+
+/// r·d_r as SVG text, the index lowered.
+pub(crate) const RESCALED: &str = "r·d<tspan dy=\"3\" font-size=\"10\">r</tspan><tspan dy=\"-3\">\u{200B}</tspan>";
+
+/// d_0^eff as SVG text.
+#[cfg(feature = "fit")]
+pub(crate) const AMPLITUDE: &str = "d<tspan dy=\"3\" font-size=\"10\">0</tspan><tspan dy=\"-8\" font-size=\"10\">eff</tspan>\
+                                    <tspan dy=\"5\">\u{200B}</tspan>";
+
+/// Fonts tried in this order.
+pub(crate) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
+
+/// Colour of text and axes.
+pub(crate) const INK: &str = "#222222";
+
+/// Text that stands for itself in XML and HTML, also within double quotes.
+pub(crate) fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            // No control character but white space is allowed in XML.
+            letter if letter.is_control() && !letter.is_whitespace() => escaped.push('\u{FFFD}'),
+            letter => escaped.push(letter),
+        }
+    }
+    escaped
+}

@@ -1,0 +1,60 @@
+//! Colours that stay apart for colour-blind readers.
+
+/// Colours of lines and points. Source: Okabe, Ito (2008), Color universal design.
+pub(crate) const BLUE: [u8; 3] = [0x00, 0x72, 0xB2];
+/// As [`BLUE`].
+pub(crate) const VERMILLION: [u8; 3] = [0xD5, 0x5E, 0x00];
+/// As [`BLUE`].
+pub(crate) const GREEN: [u8; 3] = [0x00, 0x9E, 0x73];
+/// As [`BLUE`].
+pub(crate) const PURPLE: [u8; 3] = [0xCC, 0x79, 0xA7];
+/// As [`BLUE`].
+pub(crate) const ORANGE: [u8; 3] = [0xE6, 0x9F, 0x00];
+/// As [`BLUE`].
+pub(crate) const SKY: [u8; 3] = [0x56, 0xB4, 0xE9];
+
+/// Colours of curves side by side, in this order, then from the front again; the first three as in the study, fig. 1.
+pub(crate) const SEQUENCE: [[u8; 3]; 6] = [PURPLE, GREEN, VERMILLION, BLUE, ORANGE, SKY];
+
+/// Purple over white to orange. Source: ColorBrewer 2.0 (Brewer, Harrower), PuOr in 11 classes, "colorblind safe".
+const DIVERGING: [[u8; 3]; 11] = [
+    [0x2D, 0x00, 0x4B],
+    [0x54, 0x27, 0x88],
+    [0x80, 0x73, 0xAC],
+    [0xB2, 0xAB, 0xD2],
+    [0xD8, 0xDA, 0xEB],
+    [0xF7, 0xF7, 0xF7],
+    [0xFE, 0xE0, 0xB6],
+    [0xFD, 0xB8, 0x63],
+    [0xE0, 0x82, 0x14],
+    [0xB3, 0x58, 0x06],
+    [0x7F, 0x3B, 0x08],
+];
+
+/// The colour of a value in −1 … 1, beyond it that of the end.
+pub(crate) fn diverging(value: f64) -> [u8; 3] {
+    let place = (value.clamp(-1.0, 1.0) + 1.0) / 2.0 * (DIVERGING.len() - 1) as f64;
+    let class = (place as usize).min(DIVERGING.len() - 2);
+    let share = place - class as f64;
+    let (low, high) = (DIVERGING[class], DIVERGING[class + 1]);
+    std::array::from_fn(|i| (f64::from(low[i]) + share * (f64::from(high[i]) - f64::from(low[i]))).round() as u8)
+}
+
+/// As it stands in SVG.
+pub(crate) fn hexadecimal([red, green, blue]: [u8; 3]) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scale_has_its_classes_at_equal_distances() {
+        assert_eq!(diverging(-1.0), DIVERGING[0]);
+        assert_eq!(diverging(0.0), DIVERGING[5]);
+        assert_eq!(diverging(0.2), DIVERGING[6]);
+        assert_eq!(diverging(7.0), DIVERGING[10]);
+        assert_eq!(hexadecimal(BLUE), "#0072b2");
+    }
+}

@@ -1,0 +1,210 @@
+//! [`write`]: a report as files in a folder.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use crate::displacement::DisplacementField;
+use crate::io::{Column, write_atomically, write_packing};
+use crate::packing::Packing;
+use crate::report::rows::{done, law};
+use crate::report::{ReportError, csv};
+use crate::run::{Report, SampleResult};
+use crate::vector::Vector;
+
+/// Writes a report into `folder`, made if it is not there, and names the files written in that order.
+///
+/// Each file is there whole or not at all. Files of an earlier report with the same names are replaced, others left.
+///
+/// # Errors
+/// [`ReportError`] names the file and what is wrong.
+pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
+    std::fs::create_dir_all(folder).map_err(|source| ReportError::Folder { folder: folder.into(), source })?;
+    let mut files = Files { folder, written: Vec::new() };
+    files.json("report.json", report)?;
+    files.json("timings.json", &timings(report))?;
+    for sample in &report.samples {
+        if let Some(result) = done(sample) {
+            files.sample(report, &sample.name, result)?;
+        }
+    }
+    #[cfg(feature = "plot")]
+    files.text("report.html", &crate::report::page::page(report)?)?;
+    Ok(files.written)
+}
+
+/// The data files of a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum DataFile {
+    Packing,
+    Displacement,
+    Deflated,
+    RadialProfile,
+    AngularProfiles,
+}
+
+impl DataFile {
+    /// Those of a sample, by what its scene asked for.
+    pub(crate) fn of(report: &Report, result: &SampleResult) -> Vec<DataFile> {
+        let field = report.scene.observables.displacement_field.is_some();
+        let wanted = |file: &DataFile| match file {
+            DataFile::Packing => true,
+            DataFile::Displacement => field,
+            DataFile::Deflated => field && result.cycle_field.is_some(),
+            DataFile::RadialProfile => result.radial_profile.is_some(),
+            DataFile::AngularProfiles => result.angular_profiles.is_some(),
+        };
+        use DataFile::*;
+        [Packing, Displacement, Deflated, RadialProfile, AngularProfiles].into_iter().filter(wanted).collect()
+    }
+
+    /// Its name for this sample.
+    pub(crate) fn name(self, sample: &str) -> String {
+        let ending = match self {
+            DataFile::Packing => "packing.xyz",
+            DataFile::Displacement => "displacement.xyz",
+            DataFile::Deflated => "deflated.xyz",
+            DataFile::RadialProfile => "radial_profile.csv",
+            DataFile::AngularProfiles => "angular_profiles.csv",
+        };
+        format!("{sample}.{ending}")
+    }
+}
+
+/// A folder being filled.
+struct Files<'a> {
+    folder: &'a Path,
+    written: Vec<PathBuf>,
+}
+
+impl Files<'_> {
+    fn text(&mut self, name: &str, text: &str) -> Result<(), ReportError> {
+        let path = self.folder.join(name);
+        write_atomically(&path, |writer| writer.write_all(text.as_bytes()))?;
+        self.written.push(path);
+        Ok(())
+    }
+
+    fn json(&mut self, name: &str, value: &impl Serialize) -> Result<(), ReportError> {
+        let text = serde_json::to_string_pretty(value)
+            .map_err(|source| ReportError::Json { path: self.folder.join(name), source })?;
+        self.text(name, &(text + "\n"))
+    }
+
+    fn sample(&mut self, report: &Report, name: &str, result: &SampleResult) -> Result<(), ReportError> {
+        let origin = |state, pressure| Origin { report, name, state, pressure };
+        for file in DataFile::of(report, result) {
+            let path = file.name(name);
+            match file {
+                DataFile::Packing => {
+                    self.packing(&path, &result.prepared, &[], &origin("prepared", result.packing.pressure))?;
+                }
+                DataFile::Displacement => {
+                    let after = &result.inflated.after;
+                    self.field(&path, after.packing.get(), &result.field, &origin("inflated", after.pressure))?;
+                }
+                DataFile::Deflated => {
+                    if let (Some(field), Some(rest)) = (&result.cycle_field, &result.inflated.deflated) {
+                        self.field(&path, rest.packing.get(), field, &origin("deflated", rest.pressure))?;
+                    }
+                }
+                DataFile::RadialProfile => {
+                    if let Some(profile) = &result.radial_profile {
+                        self.text(&path, &csv::radial_profile(result, profile))?;
+                    }
+                }
+                DataFile::AngularProfiles => {
+                    if let Some(profiles) = &result.angular_profiles {
+                        self.text(&path, &csv::angular_profiles(profiles))?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn packing(
+        &mut self,
+        name: &str,
+        packing: &Packing<2>,
+        columns: &[Column],
+        origin: &Origin<'_>,
+    ) -> Result<(), ReportError> {
+        let path = self.folder.join(name);
+        let (law, seed, pressure) =
+            (law(&origin.report.scene.law), origin.report.scene.seed.to_string(), format!("{:?}", origin.pressure));
+        let properties = [
+            ("jamscope_version", origin.report.jamscope_version),
+            ("sample", origin.name),
+            ("state", origin.state),
+            ("law", law.as_str()),
+            ("seed", seed.as_str()),
+            ("pressure", pressure.as_str()),
+        ];
+        write_packing(&path, packing, columns, &properties)?;
+        self.written.push(path);
+        Ok(())
+    }
+
+    /// A packing with its displacements; held disks and the centre have none and do not count.
+    fn field(
+        &mut self,
+        name: &str,
+        packing: &Packing<2>,
+        field: &DisplacementField<2>,
+        origin: &Origin<'_>,
+    ) -> Result<(), ReportError> {
+        let count = packing.len();
+        let mut displacement: Vec<Vector<2>> = vec![[0.0; 2]; count];
+        let (mut radial, mut transverse, mut counted) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
+        for disk in &field.disks {
+            displacement[disk.disk] = disk.displacement;
+            radial[disk.disk] = disk.radial;
+            transverse[disk.disk] = disk.transverse();
+            counted[disk.disk] = f64::from(u8::from(disk.counted));
+        }
+        let columns = [
+            Column { name: "displacement", width: 2, values: displacement.as_flattened() },
+            Column { name: "radial", width: 1, values: &radial },
+            Column { name: "transverse", width: 1, values: &transverse },
+            Column { name: "counted", width: 1, values: &counted },
+        ];
+        self.packing(name, packing, &columns, origin)
+    }
+}
+
+/// Where a packing comes from, for the comment line of its file.
+struct Origin<'a> {
+    report: &'a Report,
+    name: &'a str,
+    state: &'a str,
+    /// Pressure of the box, or of the circle once it is cut \[force / length\].
+    pressure: f64,
+}
+
+/// Wall times of one sample \[s\].
+#[derive(Serialize)]
+struct Timing<'a> {
+    sample: &'a str,
+    preparation_seconds: f64,
+    before_inflation_seconds: f64,
+    after_inflation_seconds: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    after_deflation_seconds: Option<f64>,
+}
+
+/// Wall times of the relaxations of all samples that came to a result.
+fn timings(report: &Report) -> Vec<Timing<'_>> {
+    let timing = |sample| {
+        let result: &SampleResult = done(sample)?;
+        Some(Timing {
+            sample: &sample.name,
+            preparation_seconds: result.packing.rest.cost.seconds,
+            before_inflation_seconds: result.inflation.before.rest.cost.seconds,
+            after_inflation_seconds: result.inflation.after.rest.cost.seconds,
+            after_deflation_seconds: result.inflation.deflated.as_ref().map(|state| state.rest.cost.seconds),
+        })
+    };
+    report.samples.iter().filter_map(timing).collect()
+}

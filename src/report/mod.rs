@@ -1,0 +1,65 @@
+//! What a run came to, for people and for programs: a terminal table, data files, and, with the feature `plot`, figures
+//! and one HTML page.
+//!
+//! Start from [`write`], which fills a folder, and [`table::terminal_table`]. Nothing is computed here that a stage
+//! computes: a report is a [`Report`] written down, with units. What its scene did not ask for has no row, no column and
+//! no file.
+//!
+//! | file | content |
+//! |---|---|
+//! | `report.json` | the whole [`Report`], every number to the last bit, no wall times |
+//! | `timings.json` | wall times \[s\], the only file in which two runs of one scene differ |
+//! | `NAME.packing.xyz` | the prepared packing |
+//! | `NAME.displacement.xyz` | the packing after the inflation, with its displacement field |
+//! | `NAME.deflated.xyz` | the same after the deflation: what is left of the displacement |
+//! | `NAME.radial_profile.csv` | mean radial displacement, ring by ring, and the fitted solutions |
+//! | `NAME.angular_profiles.csv` | radial displacement against angle |
+//! | `report.html` | all of it on one page (feature `plot`) |
+
+pub mod csv;
+mod curve;
+#[cfg(feature = "plot")]
+pub mod figures;
+mod files;
+mod number;
+#[cfg(feature = "plot")]
+pub mod page;
+mod rows;
+pub mod table;
+
+use std::path::PathBuf;
+
+pub use files::write;
+
+use crate::io::WriteError;
+#[cfg(doc)]
+use crate::run::Report;
+
+/// Why a report was not written, or only in part: files named before the one at fault are complete.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// The folder could not be made.
+    #[error("{folder}: the folder could not be made: {source}")]
+    Folder {
+        /// The folder.
+        folder: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A file could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// The report has no form as JSON.
+    #[error("{path}: {source}")]
+    Json {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: serde_json::Error,
+    },
+    /// A figure could not be drawn.
+    #[cfg(feature = "plot")]
+    #[error(transparent)]
+    Figure(#[from] figures::FigureError),
+}

@@ -1,0 +1,200 @@
+//! [`page`]: the whole report on one HTML page that needs nothing else: no scripts, no fonts, no network.
+
+use std::fmt::Write as _;
+
+use crate::inflation::Boundary;
+use crate::report::figures::angular::angular_figure;
+use crate::report::figures::heat_map::heat_map;
+use crate::report::figures::radial::radial_figure;
+use crate::report::figures::{Figure, FigureError, escaped};
+use crate::report::files::DataFile;
+use crate::report::number::{count, significant};
+use crate::report::rows::{Times, done, law, sections, settings};
+use crate::run::{Report, SampleOutcome, SampleReport, SampleResult};
+use crate::scene::Source;
+
+const STYLE: &str = include_str!("page.css");
+
+/// The page of a report. Two runs of one scene give the same bytes: wall times are left out.
+///
+/// # Errors
+/// A figure whose numbers are not finite.
+pub fn page(report: &Report) -> Result<String, FigureError> {
+    let mut html = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>jamscope: response to an inflation</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+         <header>\n<h1>Response of a packing to the inflation of one disk</h1>\n<p>{}</p>\n</header>\n<main>\n",
+        introduction(report)
+    );
+    for sample in &report.samples {
+        html.push_str(&section(report, sample)?);
+    }
+    html.push_str(&numbers(report));
+    let _ = write!(
+        html,
+        "</main>\n<footer>\n<p>jamscope {}, seed {}, {}. Lengths in diameters of a small disk. \
+         The whole report: <a href=\"report.json\">report.json</a>; \
+         wall times: <a href=\"timings.json\">timings.json</a>.</p>\n</footer>\n</body>\n</html>\n",
+        escaped(report.jamscope_version),
+        report.scene.seed,
+        escaped(&law(&report.scene.law)),
+    );
+    Ok(html)
+}
+
+/// What is seen, in a paragraph; only what is there.
+fn introduction(report: &Report) -> String {
+    let scene = &report.scene;
+    let place = match scene.inflation.boundary {
+        Boundary::HeldRim { .. } => "at the centre of a circle whose rim is held",
+        Boundary::Periodic => "in a periodic box",
+    };
+    let mut text = format!(
+        "A disk {place} grows in radius by d<sub>0</sub> = {} and the packing around it comes to rest again. ",
+        significant(scene.inflation.increase, 3)
+    );
+    let any = |has: fn(&SampleResult) -> bool| report.samples.iter().filter_map(done).any(has);
+    if scene.observables.displacement_field.is_some() {
+        text.push_str(
+            "The map shows r·d<sub>r</sub>, the radial displacement of each disk times its distance from the centre, \
+             over its largest size: orange moves outwards, purple inwards; grey disks are rattlers. ",
+        );
+    }
+    if any(|it| it.radial_profile.is_some()) {
+        text.push_str("The radial profile is its mean over rings, with standard errors. ");
+    }
+    if any(|it| !crate::report::curve::curves(it).is_empty()) {
+        text.push_str(
+            "It is held against the elastic solution and the one screened by plastic events with wavenumber κ; the one \
+             that describes it is solid, the other dashed. ",
+        );
+    }
+    if any(|it| it.angular_profiles.is_some()) {
+        text.push_str("The angular profiles show single disks in narrow rings: smooth where the response is elastic, noise-like where it is not. ");
+    }
+    text.trim_end().into()
+}
+
+/// One sample: heading, pictures, files.
+fn section(report: &Report, sample: &SampleReport) -> Result<String, FigureError> {
+    let name = escaped(&sample.name);
+    let result = match &sample.result {
+        SampleOutcome::Done(result) => result,
+        SampleOutcome::Failed(reason) => {
+            return Ok(format!(
+                "<section class=\"sample failed\" aria-label=\"Sample {name}\">\n<h2>{name}: failed</h2>\n\
+                 <p class=\"reason\">{}</p>\n<p>Asked for: {}.</p>\n</section>\n",
+                escaped(reason),
+                escaped(&asked(report, sample))
+            ));
+        }
+    };
+    let mut html = format!(
+        "<section class=\"sample\" aria-label=\"Sample {name}\">\n<h2>{name}</h2>\n<p class=\"facts\">{}</p>\n",
+        facts(result)
+    );
+    let figures = figures(report, &sample.name, result)?;
+    if !figures.is_empty() {
+        html.push_str("<div class=\"figures\">\n");
+        for figure in figures {
+            let _ = write!(html, "<figure>\n{}</figure>\n", figure.to_inline_svg());
+        }
+        html.push_str("</div>\n");
+    }
+    html.push_str("<p class=\"files\">Data:");
+    for (place, file) in DataFile::of(report, result).into_iter().enumerate() {
+        let file = escaped(&file.name(&sample.name));
+        let comma = if place > 0 { "," } else { "" };
+        let _ = write!(html, "{comma} <a href=\"{file}\">{file}</a>");
+    }
+    html.push_str("</p>\n</section>\n");
+    Ok(html)
+}
+
+/// What the scene asks of a sample.
+fn asked(report: &Report, sample: &SampleReport) -> String {
+    match settings(report, &sample.name).map(|sample| &sample.source) {
+        Some(Source::PackingFraction(value)) => format!("packing fraction {value}"),
+        Some(Source::Pressure(value)) => format!("pressure {value}"),
+        Some(Source::File(path)) => format!("the packing in {}", path.display()),
+        None => "nothing the scene names".into(),
+    }
+}
+
+/// Pressure, packing fraction and what was decided.
+fn facts(result: &SampleResult) -> String {
+    let packing = &result.packing;
+    let mut facts = vec![
+        format!("p = {}", significant(packing.pressure, 4)),
+        format!("φ = {}", significant(packing.packing_fraction, 4)),
+        format!("N = {}", count(result.inflation.mobile_count)),
+    ];
+    facts.extend(decided(result));
+    facts.join(", ")
+}
+
+#[cfg(feature = "fit")]
+fn decided(result: &SampleResult) -> Option<String> {
+    use crate::fit::profile::Decision;
+    use crate::run::FitResult;
+    Some(match result.profile_fit.as_ref()? {
+        FitResult::Refused(reason) => format!("no fit: {}", escaped(reason)),
+        FitResult::Fitted(fit) => {
+            let kappa = crate::report::rows::wavenumber(fit).map_or(String::new(), |text| escaped(&text));
+            match fit.decision {
+                Decision::Elastic => format!("profile elastic (κ {kappa}, consistent with 0)"),
+                Decision::Screened => format!("profile screened (κ = {kappa})"),
+                Decision::Neither => "profile neither elastic nor screened".into(),
+            }
+        }
+    })
+}
+
+#[cfg(not(feature = "fit"))]
+fn decided(_result: &SampleResult) -> Option<String> {
+    None
+}
+
+fn figures(report: &Report, name: &str, result: &SampleResult) -> Result<Vec<Figure>, FigureError> {
+    let mut figures = Vec::new();
+    if report.scene.observables.displacement_field.is_some() {
+        figures.push(heat_map(name, result, report.scene.inflation.boundary));
+    }
+    if let Some(profile) = &result.radial_profile {
+        figures.push(radial_figure(name, result, profile)?);
+    }
+    if let Some(profiles) = &result.angular_profiles {
+        figures.push(angular_figure(name, profiles)?);
+    }
+    Ok(figures)
+}
+
+/// All rows of all samples that came to a result.
+fn numbers(report: &Report) -> String {
+    let mut html = String::from(
+        "<section aria-label=\"Numbers\">\n<h2>Numbers</h2>\n<div class=\"table\">\n<table>\n<thead>\n<tr><th scope=\"col\">Quantity</th>",
+    );
+    for sample in &report.samples {
+        let _ = write!(html, "<th scope=\"col\">{}</th>", escaped(&sample.name));
+    }
+    html.push_str("</tr>\n</thead>\n");
+    let width = report.samples.len() + 1;
+    for section in sections(report, &report.samples, Times::LeftOut) {
+        let _ = write!(
+            html,
+            "<tbody>\n<tr><th class=\"group\" scope=\"rowgroup\" colspan=\"{width}\">{}</th></tr>\n",
+            escaped(section.title)
+        );
+        for row in &section.rows {
+            let _ = write!(html, "<tr><th scope=\"row\">{}</th>", escaped(&row.label));
+            for cell in &row.cells {
+                let _ = write!(html, "<td>{}</td>", escaped(cell));
+            }
+            html.push_str("</tr>\n");
+        }
+        html.push_str("</tbody>\n");
+    }
+    html.push_str("</table>\n</div>\n</section>\n");
+    html
+}

@@ -1,0 +1,308 @@
+//! What a reader wants to know of each sample, row by row; the terminal table and the page lay the same rows out.
+
+use crate::contact::LawChoice;
+use crate::inflation::Boundary;
+use crate::relax::Criterion;
+#[cfg(feature = "fit")]
+use crate::report::curve;
+use crate::report::number::{count, significant};
+use crate::run::{Report, RestSummary, SampleOutcome, SampleReport, SampleResult};
+use crate::scene::Sample;
+
+/// Mean |d_r| of a ring from which on it counts as displaced \[length\]. Source: the study, ξ.
+pub(crate) const PENETRATION_THRESHOLD: f64 = 1e-3;
+
+/// Rows under one heading.
+pub(crate) struct Section {
+    pub title: &'static str,
+    pub rows: Vec<Row>,
+}
+
+/// One quantity.
+pub(crate) struct Row {
+    /// What it is, with its unit.
+    pub label: String,
+    /// One a sample; a dash where a sample has none.
+    pub cells: Vec<String>,
+}
+
+/// Whether wall times are wanted.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Times {
+    Shown,
+    #[cfg_attr(not(feature = "plot"), expect(dead_code, reason = "only the page leaves them out"))]
+    LeftOut,
+}
+
+/// Collects the rows of some samples.
+struct Rows<'a> {
+    samples: &'a [SampleReport],
+    rows: Vec<Row>,
+}
+
+impl Rows<'_> {
+    /// Adds a row, unless no sample has the quantity.
+    fn add(&mut self, label: impl Into<String>, cell: impl Fn(&SampleResult) -> Option<String>) -> &mut Self {
+        let cells: Vec<Option<String>> = self.samples.iter().map(|sample| done(sample).and_then(&cell)).collect();
+        if cells.iter().any(Option::is_some) {
+            let cells = cells.into_iter().map(|cell| cell.unwrap_or_else(|| "–".into())).collect();
+            self.rows.push(Row { label: label.into(), cells });
+        }
+        self
+    }
+
+    fn section(self, title: &'static str) -> Section {
+        Section { title, rows: self.rows }
+    }
+}
+
+/// The result of a sample that came to one.
+pub(crate) fn done(sample: &SampleReport) -> Option<&SampleResult> {
+    match &sample.result {
+        SampleOutcome::Done(result) => Some(result),
+        SampleOutcome::Failed(_) => None,
+    }
+}
+
+/// The samples that came to nothing, with the reason.
+pub(crate) fn failures(samples: &[SampleReport]) -> impl Iterator<Item = (&str, &str)> {
+    samples.iter().filter_map(|sample| match &sample.result {
+        SampleOutcome::Failed(reason) => Some((sample.name.as_str(), reason.as_str())),
+        SampleOutcome::Done(_) => None,
+    })
+}
+
+/// The samples whose profile could not be fitted, with the reason.
+#[cfg(feature = "fit")]
+pub(crate) fn refusals(samples: &[SampleReport]) -> impl Iterator<Item = (&str, &str)> {
+    samples.iter().filter_map(|sample| match &done(sample)?.profile_fit {
+        Some(crate::run::FitResult::Refused(reason)) => Some((sample.name.as_str(), reason.as_str())),
+        _ => None,
+    })
+}
+
+/// Without the feature `fit` nothing is fitted and nothing refused.
+#[cfg(not(feature = "fit"))]
+pub(crate) fn refusals(_samples: &[SampleReport]) -> impl Iterator<Item = (&str, &str)> {
+    std::iter::empty()
+}
+
+/// All rows of these samples of a report; sections without rows are left out.
+pub(crate) fn sections(report: &Report, samples: &[SampleReport], times: Times) -> Vec<Section> {
+    let all = [
+        packing(report, samples),
+        preparation(report, samples, times),
+        inflation(report, samples, times),
+        #[cfg(feature = "fit")]
+        fit(samples),
+    ];
+    all.into_iter().filter(|section| !section.rows.is_empty()).collect()
+}
+
+fn packing(report: &Report, samples: &[SampleReport]) -> Section {
+    let mut rows = Rows { samples, rows: Vec::new() };
+    let (inside, radius) = match report.scene.inflation.boundary {
+        Boundary::HeldRim { .. } => ("disks in the circle, N", "radius of the circle, R [length]"),
+        Boundary::Periodic => ("mobile disks, N", "half the shortest side, R [length]"),
+    };
+    rows.add("disks in the box", |it| Some(count(it.packing.disk_count)))
+        .add(inside, |it| Some(count(it.inflation.mobile_count)))
+        .add(radius, |it| Some(significant(it.inflation.outer_radius, 5)))
+        .add("packing fraction, φ", |it| Some(significant(it.packing.packing_fraction, 5)))
+        .add("packing fraction at the quench", |it| {
+            it.packing.quench_packing_fraction.map(|value| significant(value, 5))
+        })
+        .add("pressure, p [force/length]", |it| Some(significant(it.packing.pressure, 5)))
+        .add("coordination of the backbone, Z", |it| {
+            let backbone = it.packing.rattler_count < it.packing.disk_count;
+            backbone.then(|| significant(it.packing.coordination, 4))
+        })
+        .add("rattlers in the box", |it| Some(count(it.packing.rattler_count)));
+    rows.section("Packing")
+}
+
+fn preparation(report: &Report, samples: &[SampleReport], times: Times) -> Section {
+    let mut rows = Rows { samples, rows: Vec::new() };
+    rows.add("relaxer", |_| Some(report.scene.preparation.relaxer.name().into()))
+        .add("relaxations", |it| Some(count(it.packing.relaxation_count)))
+        .add("at rest by", |it| Some(criterion(&it.packing.rest).into()))
+        .add("residual / rounding floor", |it| Some(residual(&it.packing.rest)))
+        .add("force evaluations", |it| Some(count(it.packing.rest.cost.force_evaluation_count)));
+    if times == Times::Shown {
+        rows.add("wall time [s]", |it| Some(significant(it.packing.rest.cost.seconds, 3)));
+    }
+    rows.section("Preparation")
+}
+
+fn inflation(report: &Report, samples: &[SampleReport], times: Times) -> Section {
+    let mut rows = Rows { samples, rows: Vec::new() };
+    let relaxer = |it: &SampleResult| {
+        // The result stands in the report under the name of its sample.
+        let sample = samples.iter().find(|sample| done(sample).is_some_and(|other| std::ptr::eq(other, it)))?;
+        settings(report, &sample.name).map(|sample| sample.relaxer.name().into())
+    };
+    let exponent = pressure_exponent(&report.scene.law);
+    rows.add("relaxer", relaxer)
+        .add("at rest by", |it| Some(criterion(&it.inflation.after.rest).into()))
+        .add("residual / rounding floor before", |it| Some(residual(&it.inflation.before.rest)))
+        .add("residual / rounding floor after", |it| Some(residual(&it.inflation.after.rest)))
+        .add("residual / rounding floor deflated", |it| {
+            it.inflation.deflated.as_ref().map(|state| residual(&state.rest))
+        })
+        .add("force evaluations before", |it| Some(count(it.inflation.before.rest.cost.force_evaluation_count)))
+        .add("force evaluations after", |it| Some(count(it.inflation.after.rest.cost.force_evaluation_count)))
+        .add("force evaluations deflated", |it| {
+            it.inflation.deflated.as_ref().map(|state| count(state.rest.cost.force_evaluation_count))
+        });
+    if times == Times::Shown {
+        rows.add("wall time [s]", |it| Some(significant(inflation_seconds(it), 3)));
+    }
+    rows.add("rattlers before, after", |it| {
+        Some(format!("{}, {}", count(it.inflation.before.rattler_count), count(it.inflation.after.rattler_count)))
+    })
+    .add("pressure before, p [force/length]", |it| Some(significant(it.inflation.before.pressure, 5)))
+    .add("pressure change, Δp [force/length]", |it| Some(significant(it.inflation.pressure_change, 4)))
+    .add(scaled_label(exponent), |it| it.inflation.scaled_pressure_change.map(|value| significant(value, 4)))
+    .add("penetration, |⟨d_r⟩| ≥ 10⁻³ [length]", |it| {
+        penetration_depth(it).map(|depth| significant(depth, 4))
+    });
+    rows.section("Inflation")
+}
+
+#[cfg(feature = "fit")]
+fn fit(samples: &[SampleReport]) -> Section {
+    use crate::fit::profile::Decision;
+    use crate::report::number::with_error;
+    use crate::run::FitResult;
+
+    let mut rows = Rows { samples, rows: Vec::new() };
+    let chosen = |it: &SampleResult| {
+        curve::fit_of(it).and_then(|fit| match fit.decision {
+            Decision::Elastic => Some((fit.elastic.amplitude, fit.elastic.chi_squared, fit.ring_count)),
+            Decision::Screened => {
+                fit.screened.map(|screened| (screened.amplitude, screened.chi_squared, fit.ring_count))
+            }
+            Decision::Neither => None,
+        })
+    };
+    rows.add("described by", |it| match it.profile_fit.as_ref()? {
+        FitResult::Fitted(fit) => Some(decision_name(fit.decision).into()),
+        FitResult::Refused(_) => Some("fit refused".into()),
+    })
+    .add("effective inflation, d_0^eff [length]", |it| {
+        chosen(it).map(|(amplitude, ..)| with_error(amplitude.value, amplitude.standard_error))
+    })
+    .add("screening wavenumber, κ [1/length]", |it| curve::fit_of(it).and_then(wavenumber))
+    .add("κ/κ_1", |it| {
+        let annulus = crate::reference::Annulus::new(it.inflation.inner_radius, it.inflation.outer_radius).ok()?;
+        let first = crate::reference::poles::pole::<2>(annulus, 1);
+        let fit = curve::fit_of(it)?;
+        match fit.decision {
+            Decision::Screened => {
+                let kappa = fit.screened?.wavenumber;
+                Some(with_error(kappa.value / first, kappa.standard_error / first))
+            }
+            Decision::Elastic => Some(format!("< {}", significant(fit.elastic.wavenumber_bound? / first, 2))),
+            Decision::Neither => None,
+        }
+    })
+    .add("share described, elastic", |it| curve::fit_of(it).map(|fit| significant(fit.elastic.share_described, 3)))
+    .add("share described, screened", |it| {
+        curve::fit_of(it)?.screened.map(|screened| significant(screened.share_described, 3))
+    })
+    .add("chance of such a gain if κ = 0", |it| {
+        curve::fit_of(it)?.screened.map(|screened| significant(screened.chance_of_elastic, 2))
+    })
+    .add("rings fitted", |it| curve::fit_of(it).map(|fit| count(fit.ring_count)))
+    .add("rms residual / ring standard error", |it| {
+        chosen(it).map(|(_, chi_squared, rings)| significant((chi_squared / rings as f64).sqrt(), 3))
+    });
+    rows.section("Fit of the radial profile")
+}
+
+/// What describes a profile, in a word.
+#[cfg(feature = "fit")]
+pub(crate) fn decision_name(decision: crate::fit::profile::Decision) -> &'static str {
+    use crate::fit::profile::Decision;
+    match decision {
+        Decision::Elastic => "elastic",
+        Decision::Screened => "screened",
+        Decision::Neither => "neither",
+    }
+}
+
+/// κ with its error, or the bound on it.
+#[cfg(feature = "fit")]
+pub(crate) fn wavenumber(fit: &crate::fit::profile::ProfileFit) -> Option<String> {
+    use crate::fit::profile::Decision;
+    use crate::report::number::with_error;
+    match fit.decision {
+        Decision::Elastic => Some(match fit.elastic.wavenumber_bound {
+            Some(bound) => format!("< {} (95 %)", significant(bound, 2)),
+            None => "no bound found".into(),
+        }),
+        Decision::Screened => fit.screened.map(|fit| with_error(fit.wavenumber.value, fit.wavenumber.standard_error)),
+        Decision::Neither => None,
+    }
+}
+
+/// The entry of a sample in the scene.
+pub(crate) fn settings<'a>(report: &'a Report, name: &str) -> Option<&'a Sample> {
+    report.scene.sample.iter().find(|sample| sample.name == name)
+}
+
+/// Radius of the outermost ring with |⟨d_r⟩| ≥ 10⁻³, for a packing that was unjammed \[length\].
+///
+/// Rings and not disks, as in the study: single disks next to the rim move by as much in any loose packing.
+fn penetration_depth(result: &SampleResult) -> Option<f64> {
+    let profile = result.radial_profile.as_ref()?;
+    let unjammed = result.inflation.before.rest.criterion == Criterion::Unjammed;
+    let moved = || profile.rings.iter().filter(|ring| ring.mean.abs() >= PENETRATION_THRESHOLD);
+    unjammed.then(|| moved().map(|ring| ring.radius).fold(0.0, f64::max))
+}
+
+/// Wall time of all relaxations of an inflation \[s\].
+pub(crate) fn inflation_seconds(result: &SampleResult) -> f64 {
+    let states = [Some(&result.inflation.before), Some(&result.inflation.after), result.inflation.deflated.as_ref()];
+    states.into_iter().flatten().map(|state| state.rest.cost.seconds).sum()
+}
+
+/// (α − 2)/(α − 1), the power of p in the scaled pressure change.
+fn pressure_exponent(law: &LawChoice) -> f64 {
+    (law.exponent() - 2.0) / (law.exponent() - 1.0)
+}
+
+fn scaled_label(exponent: f64) -> String {
+    if exponent == 1.0 / 3.0 {
+        "Δp/p^(1/3) [(force/length)^(2/3)]".into()
+    } else {
+        format!("Δp/p^{0} [(force/length)^{1}]", significant(exponent, 3), significant(1.0 - exponent, 3))
+    }
+}
+
+fn criterion(rest: &RestSummary) -> &'static str {
+    match rest.criterion {
+        Criterion::RelativeForce => "relative force",
+        Criterion::AbsoluteForce => "absolute force",
+        Criterion::Unjammed => "no contacts",
+    }
+}
+
+/// The relative residual beside the rounding floor; the net force itself where there is no contact force to relate it to.
+fn residual(rest: &RestSummary) -> String {
+    if rest.criterion == Criterion::Unjammed {
+        return format!("{} [force]", significant(rest.largest_net_force, 2));
+    }
+    format!("{} / {}", significant(rest.relative_residual, 2), significant(rest.rounding_floor, 1))
+}
+
+/// A law in words.
+pub(crate) fn law(law: &LawChoice) -> String {
+    match law {
+        LawChoice::Hertzian(law) => format!("Hertzian contacts, stiffness {}", law.stiffness),
+        LawChoice::Hookean(law) => format!("Hookean contacts, stiffness {}", law.stiffness),
+        LawChoice::PowerLaw(law) => {
+            format!("power-law contacts, scale {}, exponent {}", law.energy_scale, law.exponent)
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! [`terminal_table`]: a report as plain text, a column a sample, no wider than [`WIDTH`].
+
+use crate::report::rows::{Section, Times, failures, refusals, sections};
+use crate::run::{Report, SampleReport};
+
+/// Characters in a line, at most.
+pub const WIDTH: usize = 100;
+
+/// Characters of the column of labels.
+const LABEL_WIDTH: usize = 40;
+
+/// Samples side by side.
+const SAMPLES_ABREAST: usize = 3;
+
+/// Characters of the column of a sample.
+const CELL_WIDTH: usize = (WIDTH - LABEL_WIDTH) / SAMPLES_ABREAST;
+
+/// The numbers of a report for a reader at a terminal, wall times included.
+///
+/// Samples stand side by side, three at a time. Those that failed are told below, with the reason.
+pub fn terminal_table(report: &Report) -> String {
+    let mut lines = vec![format!(
+        "jamscope {}, seed {}, {}",
+        report.jamscope_version,
+        report.scene.seed,
+        crate::report::rows::law(&report.scene.law)
+    )];
+    for samples in report.samples.chunks(SAMPLES_ABREAST) {
+        lines.push(String::new());
+        lines.push(line("", samples.iter().map(|sample| sample.name.as_str())));
+        for section in sections(report, samples, Times::Shown) {
+            section_lines(&section, &mut lines);
+        }
+    }
+    failure_lines(&report.samples, &mut lines);
+    lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
+}
+
+fn section_lines(section: &Section, lines: &mut Vec<String>) {
+    lines.push(section.title.into());
+    for row in &section.rows {
+        lines.push(line(&format!("  {}", row.label), row.cells.iter().map(String::as_str)));
+    }
+}
+
+fn failure_lines(samples: &[SampleReport], lines: &mut Vec<String>) {
+    let failed = failures(samples).map(|(name, reason)| format!("{name} failed: {reason}"));
+    let unfitted = refusals(samples).map(|(name, reason)| format!("{name}, no fit: {reason}"));
+    for text in failed.chain(unfitted) {
+        lines.push(String::new());
+        lines.extend(wrapped(&text));
+    }
+}
+
+/// A label and cells, each set to the right of its column.
+fn line<'a>(label: &str, cells: impl Iterator<Item = &'a str>) -> String {
+    let mut line = format!("{label:<LABEL_WIDTH$}");
+    for cell in cells {
+        // A name may be longer than its column; it is cut rather than the columns shifted.
+        let cell: String = if cell.chars().count() < CELL_WIDTH {
+            cell.into()
+        } else {
+            cell.chars().take(CELL_WIDTH - 2).chain(['…']).collect()
+        };
+        line.push_str(&format!("{cell:>CELL_WIDTH$}"));
+    }
+    line
+}
+
+/// Text in lines of at most [`WIDTH`] characters, broken between words; a longer word stands alone.
+fn wrapped(text: &str) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= WIDTH => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.into()),
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_break_between_words() {
+        let lines = wrapped(&"residual ".repeat(40));
+        assert!(lines.iter().all(|line| line.chars().count() <= WIDTH && line.starts_with("residual")));
+        assert_eq!(lines.join(" ").split(' ').count(), 40);
+    }
+}
