@@ -12,6 +12,7 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use jamscope::contact::{Hertzian, Hookean, LawChoice, PowerLaw};
+use jamscope::relax::RelaxerChoice;
 use jamscope::report;
 use jamscope::run::{SampleOutcome, run};
 use jamscope::scene::{Sample, Scene, Source};
@@ -46,7 +47,7 @@ struct RunArguments {
     /// Folder for the report.
     #[arg(long, value_name = "DIR", default_value = "jamscope-report")]
     out: PathBuf,
-    /// Seed instead of the scene's.
+    /// Seed of every sample instead of the scene's.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// Threads; without it one a core. Never changes a result.
@@ -91,10 +92,9 @@ impl InspectArguments {
             LawName::Hookean => {
                 LawChoice::Hookean(self.stiffness.map_or_else(Hookean::default, |stiffness| Hookean { stiffness }))
             }
-            LawName::PowerLaw => LawChoice::PowerLaw(PowerLaw {
-                energy_scale: self.stiffness.unwrap_or(1.0),
-                exponent: self.exponent,
-            }),
+            LawName::PowerLaw => {
+                LawChoice::PowerLaw(PowerLaw { energy_scale: self.stiffness.unwrap_or(1.0), exponent: self.exponent })
+            }
         }
     }
 }
@@ -119,11 +119,11 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         Some(path) => scene_file::read_scene(path)?,
         None => Scene::default(),
     };
-    if let Some(seed) = arguments.seed {
-        scene.seed = seed;
-    }
     if let Some(path) = &arguments.packing {
         scene.sample = vec![sample_of_file(path, &scene)];
+    }
+    if let Some(seed) = arguments.seed {
+        scene.sample.iter_mut().for_each(|sample| sample.seed = seed);
     }
     set_threads(arguments.threads)?;
     let bars = progress::Bars::new(scene.sample.iter().map(|sample| sample.name.as_str()));
@@ -147,8 +147,9 @@ fn sample_of_file(path: &std::path::Path, scene: &Scene) -> Sample {
         .map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' })
         .collect();
     let name = if stem.starts_with(|c: char| c.is_ascii_alphanumeric()) { stem } else { format!("packing{stem}") };
-    let relaxer = scene.sample.first().map(|sample| sample.relaxer).unwrap_or_default();
-    Sample { name, source: Source::File(path.to_path_buf()), relaxer }
+    let (seed, relaxer) =
+        scene.sample.first().map_or((1, RelaxerChoice::default()), |first| (first.seed, first.relaxer));
+    Sample { name, seed, source: Source::File(path.to_path_buf()), relaxer }
 }
 
 #[cfg(feature = "parallel")]

@@ -137,6 +137,11 @@ fn jamming_fraction<const D: usize>() -> f64 {
     if D == 2 { 0.842 } else { 0.648 }
 }
 
+/// x^(1/D), the same on every system (the standard library leaves powers to the system's own).
+fn side_ratio<const D: usize>(x: f64) -> f64 {
+    if D == 2 { x.sqrt() } else { libm::cbrt(x) }
+}
+
 /// Uniformly random points in a periodic cube at a packing fraction, with radii of a mixture.
 ///
 /// # Errors
@@ -152,7 +157,7 @@ pub fn random_points<const D: usize>(
     }
     let radii = mixture.radii(disk_count)?;
     let solid: f64 = radii.iter().map(|&radius| ball_volume::<D>(radius)).sum();
-    let side = (solid / packing_fraction).powf(1.0 / D as f64);
+    let side = side_ratio::<D>(solid / packing_fraction);
     let mut generator = Pcg64::seed_from_u64(seed);
     let positions = radii.iter().map(|_| std::array::from_fn(|_| side * generator.random::<f64>())).collect();
     Ok(Packing::new(Domain::cube(side), positions, radii)?)
@@ -198,7 +203,7 @@ fn affine_pressure<const D: usize, L: PairLaw>(law: &L, mixture: &Mixture, packi
     let radius = mean(&|r| r);
     let density = packing_fraction / mean(&|r| ball_volume::<D>(r));
     let reach = 2.0 * radius;
-    let overlap = reach * ((packing_fraction / jamming_fraction::<D>()).powf(1.0 / D as f64) - 1.0).max(0.0);
+    let overlap = reach * (side_ratio::<D>(packing_fraction / jamming_fraction::<D>()) - 1.0).max(0.0);
     // Z / (2 D) contacts a disk and dimension, Z slightly above isostatic.
     1.15 * density * reach * law.force(law.coefficient(radius, radius), overlap)
 }
@@ -271,7 +276,7 @@ impl<L: PairLaw, R: Relaxer> Search<'_, L, R> {
             relaxation_count: self.count,
             cost: self.cost,
         };
-        let root = pressure.powf(1.0 / (self.law.exponent() - 1.0));
+        let root = libm::pow(pressure, 1.0 / (self.law.exponent() - 1.0));
         Ok((prepared, root))
     }
 
@@ -282,7 +287,7 @@ impl<L: PairLaw, R: Relaxer> Search<'_, L, R> {
         tolerance: f64,
         trace: &mut impl Trace,
     ) -> Result<Prepared<D>, PreparationError> {
-        let wanted = target.powf(1.0 / (self.law.exponent() - 1.0));
+        let wanted = libm::pow(target, 1.0 / (self.law.exponent() - 1.0));
         let (prepared, root) = self.rest(points, trace)?;
         let mut state = State { prepared, root };
         // Slope of the root against φ: where it is not known yet, that of a straight line from jamming.
@@ -307,7 +312,7 @@ impl<L: PairLaw, R: Relaxer> Search<'_, L, R> {
                 step = 0.5 * (unjammed_above - fraction);
             }
             let next = fraction + step;
-            let packing = state.prepared.packing.get().clone().rescaled((fraction / next).powf(1.0 / D as f64));
+            let packing = state.prepared.packing.get().clone().rescaled(side_ratio::<D>(fraction / next));
             let (prepared, root) = self.rest(packing, trace)?;
             if root == 0.0 {
                 if state.root == 0.0 {

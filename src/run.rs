@@ -34,6 +34,8 @@ pub struct Report {
 pub struct SampleReport {
     /// Its name.
     pub name: String,
+    /// Seed of its random points and of the choice of the inflated disk.
+    pub seed: u64,
     /// What came out, or why nothing did.
     #[serde(flatten)]
     pub result: SampleOutcome,
@@ -262,7 +264,7 @@ pub fn run(scene: &Scene, progress: &impl Progress) -> Result<Report, RunError> 
             SampleOutcome::Done(_) => None,
         };
         progress.done(index, failure);
-        SampleReport { name: sample.name.clone(), result }
+        SampleReport { name: sample.name.clone(), seed: sample.seed, result }
     };
     #[cfg(feature = "parallel")]
     let samples = {
@@ -303,7 +305,7 @@ fn run_with<L: PairLaw>(
     progress.stage(index, "preparation", scene.preparation.relaxer.limit().value());
     let (prepared, packing) = packing_of(scene, sample, law, trace)?;
     progress.stage(index, "inflation", sample.relaxer.limit().value());
-    let inflated = inflate(&scene.inflation, &prepared, law, &sample.relaxer, scene.seed, trace)?;
+    let inflated = inflate(&scene.inflation, &prepared, law, &sample.relaxer, sample.seed, trace)?;
     progress.stage(index, "observables", 0.0);
     let field = DisplacementField::of_inflation(&inflated);
     let observables = &scene.observables;
@@ -313,12 +315,13 @@ fn run_with<L: PairLaw>(
         .as_ref()
         .map(|settings| settings.relative_radii.iter().map(|&radius| AngularProfile::of(&field, radius)).collect());
     #[cfg(feature = "fit")]
-    let profile_fit = observables.profile_fit.zip(radial_profile.as_ref()).map(|(settings, profile)| {
-        match Annulus::new(field.inner_radius, field.outer_radius) {
-            Ok(annulus) => fit_radial_profile(profile, annulus, &settings).into(),
-            Err(error) => FitResult::Refused(error.to_string()),
-        }
-    });
+    let profile_fit =
+        observables.profile_fit.zip(radial_profile.as_ref()).map(|(settings, profile)| {
+            match Annulus::new(field.inner_radius, field.outer_radius) {
+                Ok(annulus) => fit_radial_profile(profile, annulus, &settings).into(),
+                Err(error) => FitResult::Refused(error.to_string()),
+            }
+        });
     Ok(SampleResult {
         packing,
         inflation: summary(&inflated, law),
@@ -351,7 +354,7 @@ fn packing_of<L: PairLaw>(
         mixture: scene.mixture.clone(),
         target,
         tolerance: scene.preparation.pressure_tolerance,
-        seed: scene.seed,
+        seed: sample.seed,
     };
     let prepared = prepare::<2, L>(&preparation, law, &scene.preparation.relaxer, trace)?;
     let rest = RestSummary {
@@ -430,7 +433,7 @@ fn summary<L: PairLaw>(inflated: &Inflated<2>, law: &L) -> InflationSummary {
     let before = inflated.before.pressure;
     let pressure_change = inflated.after.pressure - before;
     let exponent = law.exponent();
-    let scale = before.powf((exponent - 2.0) / (exponent - 1.0));
+    let scale = libm::pow(before, (exponent - 2.0) / (exponent - 1.0));
     InflationSummary {
         centre_label: inflated.before.packing.get().labels()[inflated.centre],
         inner_radius: inflated.inner_radius,

@@ -141,9 +141,17 @@ impl std::fmt::Display for Inspection {
         writeln!(f, "{:<28} {} ({} on the backbone)", "contacts", self.contact_count, self.backbone_contact_count)?;
         writeln!(f, "{:<28} {}", "rattlers", self.rattler_count)?;
         writeln!(f, "{:<28} {} (isostatic {})", "coordination Z", self.coordination, self.isostatic_coordination)?;
-        writeln!(f, "{:<28} mean {}, largest {} [force]", "contact force", self.mean_contact_force, self.largest_contact_force)?;
+        writeln!(
+            f,
+            "{:<28} mean {}, largest {} [force]",
+            "contact force", self.mean_contact_force, self.largest_contact_force
+        )?;
         writeln!(f, "{:<28} mean {}, largest {} [length]", "overlap", self.mean_overlap, self.largest_overlap)?;
         writeln!(f, "{:<28} {:e} [force]", "largest net force", self.largest_net_force)?;
-        writeln!(f, "{:<28} {:e} (rounding floor {:e}) [1]", "relative residual", self.relative_residual, self.rounding_floor)
+        writeln!(
+            f,
+            "{:<28} {:e} (rounding floor {:e}) [1]",
+            "relative residual", self.relative_residual, self.rounding_floor
+        )
     }
 }

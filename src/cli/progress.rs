@@ -67,7 +67,10 @@ impl Progress for Bars {
         bar.set_position(position.max(bar.position()));
         let stage_name = bar.message().split_whitespace().next().unwrap_or_default().to_string();
         let left = bar.eta().as_secs();
-        bar.set_message(format!("{stage_name}  residual {residual:.1e}, limit {:.0e}, about {left} s left", stage.limit));
+        bar.set_message(format!(
+            "{stage_name}  residual {residual:.1e}, limit {:.0e}, about {left} s left",
+            stage.limit
+        ));
     }
 
     fn done(&self, sample: usize, failure: Option<&str>) {

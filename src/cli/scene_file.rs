@@ -41,10 +41,13 @@ pub fn read_scene(path: &Path) -> Result<Scene, SceneFileError> {
     let name = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|source| SceneFileError::Io { path: name.clone(), source })?;
     if text.trim().is_empty() {
-        return Err(SceneFileError::Toml { path: name, message: "the file is empty; `jamscope scene` prints a scene".into() });
+        return Err(SceneFileError::Toml {
+            path: name,
+            message: "the file is empty; `jamscope scene` prints a scene".into(),
+        });
     }
-    let scene: Scene =
-        toml::from_str(&text).map_err(|error| SceneFileError::Toml { path: name.clone(), message: error.to_string() })?;
+    let scene: Scene = toml::from_str(&text)
+        .map_err(|error| SceneFileError::Toml { path: name.clone(), message: error.to_string() })?;
     scene.check().map_err(|source| SceneFileError::Scene { path: name, source })?;
     Ok(scene)
 }

@@ -15,7 +15,7 @@
 use crate::contact::damping::DampingLaw;
 use crate::contact::law::PairLaw;
 use crate::contact::neighbours::PairList;
-use crate::vector::Vector;
+use crate::vector::{Vector, difference, scaled, sum};
 
 /// Pairs handled together; the columns of a block stay in the nearest cache.
 pub const BLOCK: usize = 128;
@@ -49,8 +49,8 @@ impl<const D: usize> Totals<D> {
 
 /// One block of pairs, column by column.
 struct Block<const D: usize> {
-    moved: [[f64; BLOCK]; D],
-    apart: [[f64; BLOCK]; D],
+    moved: [Vector<D>; BLOCK],
+    apart: [Vector<D>; BLOCK],
     overlap: [f64; BLOCK],
     force: [f64; BLOCK],
     /// Force over distance.
@@ -61,8 +61,8 @@ impl<const D: usize> Block<D> {
     #[inline(always)]
     fn new() -> Self {
         Block {
-            moved: [[0.0; BLOCK]; D],
-            apart: [[0.0; BLOCK]; D],
+            moved: [[0.0; D]; BLOCK],
+            apart: [[0.0; D]; BLOCK],
             overlap: [0.0; BLOCK],
             force: [0.0; BLOCK],
             factor: [0.0; BLOCK],
@@ -153,11 +153,9 @@ fn gather<const D: usize>(
 ) {
     for (k, ((&i, &j), &anchor)) in first.iter().zip(second).zip(separation).enumerate() {
         let (a, b) = (displacements[i as usize], displacements[j as usize]);
-        for d in 0..D {
-            let moved = a[d] - b[d];
-            block.moved[d][k] = moved;
-            block.apart[d][k] = anchor[d] + moved;
-        }
+        let moved = difference(a, b);
+        block.moved[k] = moved;
+        block.apart[k] = sum(anchor, moved);
     }
 }
 
@@ -174,19 +172,22 @@ fn evaluate<const D: usize, L: PairLaw>(
         let mut squared = 0.0;
         let mut change = 0.0;
         for d in 0..D {
-            let (apart, moved) = (block.apart[d][k], block.moved[d][k]);
+            let (apart, moved) = (block.apart[k][d], block.moved[k][d]);
             squared += apart * apart;
             // 2 D + w = (D + w) + D = 2 apart − moved.
             change += moved * (2.0 * apart - moved);
         }
         let distance = squared.sqrt();
-        let gap = anchor_overlap - change / (distance + anchor_distance);
+        let both = distance + anchor_distance;
+        // One division for change / both and 1 / distance: divisions and roots are what the loop waits for.
+        let inverse = 1.0 / (distance * both);
+        let gap = anchor_overlap - change * (distance * inverse);
         // Written so that NaN stays NaN.
         let overlap = if gap < 0.0 { 0.0 } else { gap };
         let force = law.force(coefficient, overlap);
         block.overlap[k] = overlap;
         block.force[k] = force;
-        block.factor[k] = force / distance;
+        block.factor[k] = force * (both * inverse);
     }
 }
 
@@ -208,7 +209,8 @@ pub fn geometry<const D: usize>(
         change += moved * (2.0 * apart[d] - moved);
     }
     let distance = squared.sqrt();
-    (apart, distance, pairs.overlap[pair] - change / (distance + pairs.distance[pair]))
+    let inverse = 1.0 / (distance * (distance + pairs.distance[pair]));
+    (apart, distance, pairs.overlap[pair] - change * (distance * inverse))
 }
 
 #[inline(always)]
@@ -220,7 +222,7 @@ fn tally<const D: usize, L: PairLaw>(law: &L, block: &Block<D>, count: usize, to
         part.contact_count += usize::from(block.overlap[k] > 0.0);
         for a in 0..D {
             for b in 0..=a {
-                part.virial[a][b] += block.factor[k] * (block.apart[a][k] * block.apart[b][k]);
+                part.virial[a][b] += block.factor[k] * (block.apart[k][a] * block.apart[k][b]);
             }
         }
     }
@@ -238,11 +240,9 @@ fn tally<const D: usize, L: PairLaw>(law: &L, block: &Block<D>, count: usize, to
 #[inline(always)]
 fn scatter<const D: usize>(block: &Block<D>, first: &[u32], second: &[u32], forces: &mut [Vector<D>]) {
     for (k, (&i, &j)) in first.iter().zip(second).enumerate() {
-        for d in 0..D {
-            let force = block.factor[k] * block.apart[d][k];
-            forces[i as usize][d] += force;
-            forces[j as usize][d] -= force;
-        }
+        let force = scaled(block.factor[k], block.apart[k]);
+        forces[i as usize] = sum(forces[i as usize], force);
+        forces[j as usize] = difference(forces[j as usize], force);
     }
 }
 

@@ -155,7 +155,7 @@ impl PairLaw for PowerLaw {
     }
     #[inline(always)]
     fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
-        self.energy_scale * (first_radius + second_radius).powf(-self.exponent)
+        self.energy_scale * libm::pow(first_radius + second_radius, -self.exponent)
     }
     #[inline(always)]
     fn force(&self, coefficient: f64, overlap: f64) -> f64 {

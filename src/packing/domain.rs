@@ -76,6 +76,21 @@ impl<const D: usize> Domain<D> {
         result
     }
 
+    /// The image of a point within the box; rounded, for looking up cells only.
+    pub(crate) fn wrapped(&self, point: Vector<D>) -> Vector<D> {
+        match self {
+            Domain::Periodic { corner, lengths } => std::array::from_fn(|d| {
+                let from = point[d] - corner[d];
+                if from >= 0.0 && from < lengths[d] {
+                    point[d]
+                } else {
+                    corner[d] + (from - (from / lengths[d]).floor() * lengths[d]).min(lengths[d])
+                }
+            }),
+            Domain::Open => point,
+        }
+    }
+
     pub(crate) fn check(&self) -> Result<(), PackingError> {
         if let Domain::Periodic { corner, lengths } = self {
             for axis in 0..D {

@@ -7,14 +7,14 @@ use crate::contact::network::{backbone, working_contacts};
 use crate::relax::{Criterion, ForceLimit, Look, Residual, Stop, Trace, UNJAMMED_FORCE};
 use crate::vector::{Vector, dot, larger};
 
-/// Evaluations between two looks at the residual. A look costs a tenth of an evaluation.
-pub const LOOK_EVERY: usize = 10;
+/// Evaluations between two looks at the residual. An evaluation with a look costs half as much again.
+pub const LOOK_EVERY: usize = 20;
 
 /// Looks after which the backbone is determined anew even if nothing suggests convergence.
-const REFRESH_EVERY: usize = 20;
+const REFRESH_EVERY: usize = 10;
 
 /// Looks without progress near the rounding floor after which it counts as reached.
-const PATIENCE: usize = 300;
+const PATIENCE: usize = 150;
 
 /// Watches one relaxation.
 pub struct Monitor {

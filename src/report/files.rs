@@ -10,7 +10,7 @@ use crate::io::{Column, write_atomically, write_packing};
 use crate::packing::Packing;
 use crate::report::rows::{done, law};
 use crate::report::{ReportError, csv};
-use crate::run::{Report, SampleResult};
+use crate::run::{Report, SampleReport, SampleResult};
 use crate::vector::Vector;
 
 /// Writes a report into `folder`, made if it is not there, and names the files written in that order.
@@ -26,7 +26,7 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, ReportError
     files.json("timings.json", &timings(report))?;
     for sample in &report.samples {
         if let Some(result) = done(sample) {
-            files.sample(report, &sample.name, result)?;
+            files.sample(report, sample, result)?;
         }
     }
     #[cfg(feature = "plot")]
@@ -92,8 +92,9 @@ impl Files<'_> {
         self.text(name, &(text + "\n"))
     }
 
-    fn sample(&mut self, report: &Report, name: &str, result: &SampleResult) -> Result<(), ReportError> {
-        let origin = |state, pressure| Origin { report, name, state, pressure };
+    fn sample(&mut self, report: &Report, sample: &SampleReport, result: &SampleResult) -> Result<(), ReportError> {
+        let name = sample.name.as_str();
+        let origin = |state, pressure| Origin { report, sample, state, pressure };
         for file in DataFile::of(report, result) {
             let path = file.name(name);
             match file {
@@ -133,10 +134,10 @@ impl Files<'_> {
     ) -> Result<(), ReportError> {
         let path = self.folder.join(name);
         let (law, seed, pressure) =
-            (law(&origin.report.scene.law), origin.report.scene.seed.to_string(), format!("{:?}", origin.pressure));
+            (law(&origin.report.scene.law), origin.sample.seed.to_string(), format!("{:?}", origin.pressure));
         let properties = [
             ("jamscope_version", origin.report.jamscope_version),
-            ("sample", origin.name),
+            ("sample", origin.sample.name.as_str()),
             ("state", origin.state),
             ("law", law.as_str()),
             ("seed", seed.as_str()),
@@ -177,7 +178,7 @@ impl Files<'_> {
 /// Where a packing comes from, for the comment line of its file.
 struct Origin<'a> {
     report: &'a Report,
-    name: &'a str,
+    sample: &'a SampleReport,
     state: &'a str,
     /// Pressure of the box, or of the circle once it is cut \[force / length\].
     pressure: f64,

@@ -33,11 +33,10 @@ pub fn page(report: &Report) -> Result<String, FigureError> {
     html.push_str(&numbers(report));
     let _ = write!(
         html,
-        "</main>\n<footer>\n<p>jamscope {}, seed {}, {}. Lengths in diameters of a small disk. \
+        "</main>\n<footer>\n<p>jamscope {}, {}. Lengths in diameters of a small disk. \
          The whole report: <a href=\"report.json\">report.json</a>; \
          wall times: <a href=\"timings.json\">timings.json</a>.</p>\n</footer>\n</body>\n</html>\n",
         escaped(report.jamscope_version),
-        report.scene.seed,
         escaped(&law(&report.scene.law)),
     );
     Ok(html)

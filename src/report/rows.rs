@@ -51,6 +51,11 @@ impl Rows<'_> {
         self
     }
 
+    /// Adds a row that also failed samples have.
+    fn add_of_sample(&mut self, label: &str, cell: impl Fn(&SampleReport) -> String) {
+        self.rows.push(Row { label: label.into(), cells: self.samples.iter().map(cell).collect() });
+    }
+
     fn section(self, title: &'static str) -> Section {
         Section { title, rows: self.rows }
     }
@@ -105,6 +110,7 @@ fn packing(report: &Report, samples: &[SampleReport]) -> Section {
         Boundary::HeldRim { .. } => ("disks in the circle, N", "radius of the circle, R [length]"),
         Boundary::Periodic => ("mobile disks, N", "half the shortest side, R [length]"),
     };
+    rows.add_of_sample("seed", |sample| sample.seed.to_string());
     rows.add("disks in the box", |it| Some(count(it.packing.disk_count)))
         .add(inside, |it| Some(count(it.inflation.mobile_count)))
         .add(radius, |it| Some(significant(it.inflation.outer_radius, 5)))

@@ -19,12 +19,8 @@ const CELL_WIDTH: usize = (WIDTH - LABEL_WIDTH) / SAMPLES_ABREAST;
 ///
 /// Samples stand side by side, three at a time. Those that failed are told below, with the reason.
 pub fn terminal_table(report: &Report) -> String {
-    let mut lines = vec![format!(
-        "jamscope {}, seed {}, {}",
-        report.jamscope_version,
-        report.scene.seed,
-        crate::report::rows::law(&report.scene.law)
-    )];
+    let mut lines =
+        vec![format!("jamscope {}, {}", report.jamscope_version, crate::report::rows::law(&report.scene.law))];
     for samples in report.samples.chunks(SAMPLES_ABREAST) {
         lines.push(String::new());
         lines.push(line("", samples.iter().map(|sample| sample.name.as_str())));
