@@ -1,4 +1,4 @@
-//! [`write`]: a report as files in a folder.
+//! [`write()`]: a report as files in a folder.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! What a run came to, for people and for programs: a terminal table, data files, and, with the feature `plot`, figures
 //! and one HTML page.
 //!
-//! Start from [`write`], which fills a folder, and [`table::terminal_table`]. Nothing is computed here that a stage
+//! Start from [`write()`], which fills a folder, and [`table::terminal_table`]. Nothing is computed here that a stage
 //! computes: a report is a [`Report`] written down, with units. What its scene did not ask for has no row, no column and
 //! no file.
 //!

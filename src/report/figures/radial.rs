@@ -23,7 +23,8 @@ const MEASURED: [u8; 3] = [0x22, 0x22, 0x22];
 /// # Errors
 /// A profile without a finite number.
 pub fn radial_figure(name: &str, result: &SampleResult, profile: &RadialProfile) -> Result<Figure, FigureError> {
-    let (curves, range) = (curves(result), fitted_range(result));
+    let range = fitted_range(result);
+    let curves: Vec<Curve> = curves(result).into_iter().filter(|curve| distinct(result, curve)).collect();
     let fitted = |radius: f64| range.is_none_or(|[from, to]| from <= radius && radius <= to);
     let outer_radius = result.inflation.outer_radius;
     let y_range = y_range(profile, &curves, outer_radius);
@@ -89,6 +90,19 @@ fn legend(result: &SampleResult, curves: &[Curve]) -> Vec<LegendLine> {
     lines
 }
 
+/// Whether a curve says more than the elastic one: a screened one with κ far below its error lies upon it.
+#[cfg(feature = "fit")]
+fn distinct(result: &SampleResult, curve: &Curve) -> bool {
+    let screened = crate::report::curve::fit_of(result).and_then(|fit| fit.screened);
+    let undetermined = screened.is_some_and(|fit| fit.wavenumber.standard_error > 10.0 * fit.wavenumber.value);
+    curve.decided || curve.name == "elastic" || !undetermined
+}
+
+#[cfg(not(feature = "fit"))]
+fn distinct(_result: &SampleResult, _curve: &Curve) -> bool {
+    true
+}
+
 /// The parameters of a solution, in words.
 #[cfg(feature = "fit")]
 fn parameters(result: &SampleResult, curve: &Curve) -> String {
@@ -96,8 +110,6 @@ fn parameters(result: &SampleResult, curve: &Curve) -> String {
     let with = |estimate: crate::fit::Estimate| with_error(estimate.value, estimate.standard_error);
     let fit = crate::report::curve::fit_of(result);
     match fit.and_then(|fit| if curve.name == "screened" { fit.screened } else { None }) {
-        // κ went to zero, where the two solutions are one and its error says nothing.
-        Some(fit) if fit.wavenumber.standard_error > 10.0 * fit.wavenumber.value => "screened: no better, κ → 0".into(),
         Some(fit) => format!("screened: {AMPLITUDE} = {}, κ = {}", with(fit.amplitude), with(fit.wavenumber)),
         None => format!("elastic: {AMPLITUDE} = {}", fit.map_or(String::new(), |fit| with(fit.elastic.amplitude))),
     }
