@@ -152,16 +152,16 @@ fn check_against_all_pairs<const D: usize, L: PairLaw>(law: L, seed: u64, count:
     let packing = disks(seed, count, domain, 0.2);
     let mut assembly = Assembly::new(&packing, law).expect("no coincidence");
     let mut generator = Pcg64::seed_from_u64(seed ^ 1);
-    // First as listed, then moved in steps of up to a quarter of the skin, with the list kept.
-    for round in 0..6 {
+    // First as listed, then in flight, each disk on its own straight way for up to half the skin a round: between two
+    // rounds the list stays or is made anew, and at the end disks have come together from well beyond the skin.
+    let mobile = assembly.mobile_count();
+    let mut away = |_| std::array::from_fn(|_| 0.15 * SKIN * (2.0 * generator.random::<f64>() - 1.0));
+    let flight: Vec<Vector<D>> = (0..mobile).map(&mut away).collect();
+    let longest = flight.iter().map(|&step| norm(step)).fold(0.0, f64::max);
+    for round in 0..8 {
         if round > 0 {
-            let step = 0.25 * SKIN * 0.3;
-            let mobile = assembly.mobile_count();
-            let mut longest = 0.0f64;
-            for u in &mut assembly.displacements[..mobile] {
-                let moved: Vector<D> = std::array::from_fn(|_| step * (generator.random::<f64>() - 0.5));
-                *u = sum(*u, moved);
-                longest = longest.max(norm(moved));
+            for (u, &step) in assembly.displacements[..mobile].iter_mut().zip(&flight) {
+                *u = sum(*u, step);
             }
             assembly.keep_listed(longest).expect("no coincidence");
         }
