@@ -27,7 +27,10 @@ fn relaxers(criterion: &mut Criterion) {
         for limit in [1e-4, 1e-8] {
             let fire = Fire { limit: ForceLimit::Relative(limit), ..Fire::default() };
             let outcome = fire.relax(start.clone(), &law, &mut ()).expect("disks apart");
-            println!("FIRE {name} to {limit:e}: {} force evaluations, {:?}", outcome.cost.force_evaluation_count, outcome.stop);
+            println!(
+                "FIRE {name} to {limit:e}: {} force evaluations, {:?}",
+                outcome.cost.force_evaluation_count, outcome.stop
+            );
             group.bench_function(BenchmarkId::new(format!("fire/{name}"), limit), |bencher| {
                 bencher.iter(|| fire.relax(start.clone(), &law, &mut ()));
             });
@@ -36,7 +39,10 @@ fn relaxers(criterion: &mut Criterion) {
     let start = inflated("hertz_N1000_p800");
     let damped = DampedDynamics { limit: ForceLimit::Relative(1e-4), ..DampedDynamics::default() };
     let outcome = damped.relax(start.clone(), &law, &mut ()).expect("disks apart");
-    println!("damped hertz_N1000_p800 to 1e-4: {} force evaluations, {:?}", outcome.cost.force_evaluation_count, outcome.stop);
+    println!(
+        "damped hertz_N1000_p800 to 1e-4: {} force evaluations, {:?}",
+        outcome.cost.force_evaluation_count, outcome.stop
+    );
     group.bench_function(BenchmarkId::new("damped/hertz_N1000_p800", 1e-4), |bencher| {
         bencher.iter(|| damped.relax(start.clone(), &law, &mut ()));
     });
