@@ -103,3 +103,42 @@ pub mod report;
 pub mod run;
 pub mod scene;
 pub mod vector;
+
+/// The chapters of the book, so that `cargo test --doc` compiles and runs their snippets.
+#[cfg(doctest)]
+mod book {
+    #[doc = include_str!("../book/src/experiment.md")]
+    mod experiment {}
+    #[doc = include_str!("../book/src/units.md")]
+    mod units {}
+    #[doc = include_str!("../book/src/packing.md")]
+    mod packing {}
+    #[doc = include_str!("../book/src/io.md")]
+    mod io {}
+    #[doc = include_str!("../book/src/contact/law.md")]
+    mod contact_law {}
+    #[doc = include_str!("../book/src/contact/damping.md")]
+    mod contact_damping {}
+    #[doc = include_str!("../book/src/contact/neighbours.md")]
+    mod contact_neighbours {}
+    #[doc = include_str!("../book/src/contact/forces.md")]
+    mod contact_forces {}
+    #[doc = include_str!("../book/src/contact/network.md")]
+    mod contact_network {}
+    #[doc = include_str!("../book/src/relax/fire.md")]
+    mod relax_fire {}
+    #[doc = include_str!("../book/src/relax/damped.md")]
+    mod relax_damped {}
+    #[doc = include_str!("../book/src/relax/stopping.md")]
+    mod relax_stopping {}
+    #[doc = include_str!("../book/src/preparation.md")]
+    mod preparation {}
+    #[doc = include_str!("../book/src/inflation.md")]
+    mod inflation {}
+    #[doc = include_str!("../book/src/displacement.md")]
+    mod displacement {}
+    #[doc = include_str!("../book/src/observe/radial_profile.md")]
+    mod observe_radial_profile {}
+    #[doc = include_str!("../book/src/observe/angular_profile.md")]
+    mod observe_angular_profile {}
+}
