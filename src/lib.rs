@@ -141,4 +141,13 @@ mod book {
     mod observe_radial_profile {}
     #[doc = include_str!("../book/src/observe/angular_profile.md")]
     mod observe_angular_profile {}
+    #[doc = include_str!("../book/src/reference.md")]
+    mod reference {}
+    #[cfg(feature = "fit")]
+    #[doc = include_str!("../book/src/fit.md")]
+    mod fit {}
+    #[doc = include_str!("../book/src/scene.md")]
+    mod scene {}
+    #[doc = include_str!("../book/src/report.md")]
+    mod report {}
 }
