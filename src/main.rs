@@ -133,8 +133,12 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let page = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
     let shown = page.unwrap_or(&arguments.out);
     print(&format!("\n{} files in {}, start from {}\n", files.len(), arguments.out.display(), shown.display()))?;
-    let failed = report.samples.iter().any(|sample| matches!(sample.result, SampleOutcome::Failed(_)));
-    Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+    let failed = report.samples.iter().filter(|sample| matches!(sample.result, SampleOutcome::Failed(_))).count();
+    if failed == 0 {
+        return Ok(ExitCode::SUCCESS);
+    }
+    let scene_name = arguments.scene.as_ref().map_or("the built-in scene".into(), |path| path.display().to_string());
+    Err(format!("{scene_name}: {failed} of {} samples failed, see above", report.samples.len()).into())
 }
 
 /// The sample of `--packing`: the file, relaxed after the inflation as the first sample of the scene.

@@ -91,6 +91,16 @@ pub enum PreparationError {
         /// The value asked for.
         pressure: f64,
     },
+    /// p must be below what disks at φ = 4 would give.
+    #[error(
+        "pressure is {pressure}, above {largest}, about that at packing fraction 4, where every disk overlaps all of a dozen neighbours"
+    )]
+    PressureOutOfReach {
+        /// The value asked for.
+        pressure: f64,
+        /// Estimate of the pressure at φ = 4.
+        largest: f64,
+    },
     /// The tolerance on the pressure must lie between 0 and 1.
     #[error("pressure tolerance is {tolerance}, not a number between 0 and 1")]
     ToleranceOutOfRange {
@@ -217,8 +227,9 @@ fn quench_fraction<const D: usize, L: PairLaw>(
     // Quenching closer to jamming than this is slow and often ends unjammed; the search decompresses from here.
     let lowest = jamming_fraction::<D>() + 0.004;
     let (mut low, mut high) = (lowest, 4.0);
-    if 0.7 * affine_pressure::<D, L>(law, mixture, high) < pressure {
-        return Err(PreparationError::PackingFractionOutOfRange { packing_fraction: f64::INFINITY });
+    let largest = 0.7 * affine_pressure::<D, L>(law, mixture, high);
+    if largest < pressure {
+        return Err(PreparationError::PressureOutOfReach { pressure, largest });
     }
     for _ in 0..60 {
         let middle = 0.5 * (low + high);

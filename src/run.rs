@@ -1,5 +1,7 @@
 //! [`run`]: from a [`Scene`] to a [`Report`], one line a stage. The only file that knows all stages.
 
+use std::path::{Path, PathBuf};
+
 use serde::Serialize;
 
 use crate::contact::{ContactNetwork, LawChoice, PairLaw};
@@ -198,12 +200,22 @@ pub enum RunError {
     /// A packing could not be prepared.
     #[error("preparation: {0}")]
     Preparation(#[from] PreparationError),
-    /// A packing from a file makes no sense or did not come to rest.
+    /// A packing makes no sense.
     #[error("packing: {0}")]
     Packing(#[from] PackingError),
+    /// A packing from a file makes no sense.
+    #[error("{}: {source}", path.display())]
+    PackingOfFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: PackingError,
+    },
     /// A packing from a file did not come to rest.
-    #[error("packing: the relaxation stopped with {stop:?} after {step_count} steps, residual {residual:e}")]
+    #[error("{}: the relaxation stopped with {stop:?} after {step_count} steps, residual {residual:e}", path.display())]
     NotAtRest {
+        /// The file.
+        path: PathBuf,
         /// Why it stopped.
         stop: Stop,
         /// Steps taken.
@@ -345,7 +357,7 @@ fn packing_of<L: PairLaw>(
     trace: &mut impl Trace,
 ) -> Result<(Packing<2>, PackingSummary), RunError> {
     let target = match &sample.source {
-        Source::File(path) => return packing_from(read_packing(path)?, &scene.preparation.relaxer, law, trace),
+        Source::File(path) => return packing_from(path, &scene.preparation.relaxer, law, trace),
         Source::PackingFraction(fraction) => Target::PackingFraction(*fraction),
         Source::Pressure(pressure) => Target::Pressure(*pressure),
     };
@@ -375,15 +387,17 @@ fn packing_of<L: PairLaw>(
 
 /// A packing from outside, relaxed if it is not at rest already.
 fn packing_from<L: PairLaw>(
-    packing: Packing<2>,
+    path: &Path,
     relaxer: &RelaxerChoice,
     law: &L,
     trace: &mut impl Trace,
 ) -> Result<(Packing<2>, PackingSummary), RunError> {
-    let outcome = relaxer.relax(packing, law, trace)?;
+    let named = |source| RunError::PackingOfFile { path: path.into(), source };
+    let outcome = relaxer.relax(read_packing(path)?, law, trace).map_err(named)?;
     let Outcome { stop, residual, rounding_floor, cost, .. } = outcome;
     let (Stop::Converged(criterion), Ok(packing)) = (stop, outcome.converged()) else {
-        return Err(RunError::NotAtRest { stop, step_count: cost.step_count, residual: residual.relative() });
+        let (step_count, residual) = (cost.step_count, residual.relative());
+        return Err(RunError::NotAtRest { path: path.into(), stop, step_count, residual });
     };
     let rest = RestSummary {
         criterion,

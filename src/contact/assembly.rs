@@ -207,7 +207,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             for d in 0..D {
                 let (high, low) = two_sum(self.anchors[index][d], self.displacements[index][d]);
                 if let Some(saved) = self.checkpoint.get_mut(index) {
-                    saved[d] = (self.anchors[index][d] - high) + saved[d];
+                    saved[d] += self.anchors[index][d] - high;
                 }
                 (self.anchors[index][d], self.displacements[index][d]) = (high, low);
             }

@@ -119,10 +119,13 @@ impl DampedDynamics {
         let mut monitor = Monitor::new(self.limit, &motion.assembly);
         let mut time_step = 0.0;
         let mut step_count = 0;
+        // The one that made the motion.
+        let mut evaluation_count = 1;
         let mobile = motion.assembly.mobile_count();
         let stop = loop {
             if step_count % LOOK_EVERY == 0 {
                 let totals = motion.assembly.evaluate_totals();
+                evaluation_count += 1;
                 let look = Look {
                     step_count,
                     energy: totals.energy,
@@ -154,6 +157,7 @@ impl DampedDynamics {
             }
             motion.step(time_step)?;
             step_count += 1;
+            evaluation_count += 1;
         };
         let net_forces = match self.net_force {
             NetForce::Elastic => &motion.assembly.forces[..mobile],
@@ -162,7 +166,7 @@ impl DampedDynamics {
         let (residual, rounding_floor) = monitor.finish(&motion.assembly, net_forces);
         let cost = Cost {
             step_count,
-            force_evaluation_count: step_count + 1,
+            force_evaluation_count: evaluation_count,
             rebuild_count: motion.assembly.rebuild_count(),
             seconds: start.elapsed().as_secs_f64(),
         };

@@ -137,6 +137,10 @@ impl Run<'_> {
                 if let Some(stop) = monitor.look(assembly, &assembly.forces[..mobile], totals, look, trace) {
                     return Ok((stop, self.cost()));
                 }
+                if self.step_count == 0 {
+                    rest_energy = totals.energy;
+                    assembly.set_checkpoint();
+                }
                 if monitor.takes_new_anchors() {
                     assembly.reanchor()?;
                 }

@@ -67,10 +67,10 @@ impl Monitor {
             return Some(Stop::Converged(Criterion::Unjammed));
         }
         let promising = self.within(inner, mean);
-        if promising || self.look_count.is_multiple_of(REFRESH_EVERY) || self.look_count == 1 {
-            if let Some(stop) = self.refresh(assembly, net_forces) {
-                return Some(stop);
-            }
+        let due = promising || self.look_count.is_multiple_of(REFRESH_EVERY) || self.look_count == 1;
+        let converged = if due { self.refresh(assembly, net_forces) } else { None };
+        if converged.is_some() {
+            return converged;
         }
         self.at_the_floor().then_some(Stop::RoundingFloor)
     }

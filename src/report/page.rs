@@ -57,7 +57,7 @@ fn introduction(report: &Report) -> String {
     if scene.observables.displacement_field.is_some() {
         text.push_str(
             "The map shows r·d<sub>r</sub>, the radial displacement of each disk times its distance from the centre, \
-             over its largest size: orange moves outwards, purple inwards; grey disks are rattlers. ",
+             over a size that 98 % of the disks stay below: orange moves outwards, purple inwards; grey disks are rattlers. ",
         );
     }
     if any(|it| it.radial_profile.is_some()) {

@@ -23,31 +23,55 @@ const SIDE: f64 = 368.0;
 const LEFT: f64 = 4.0;
 const TOP: f64 = 22.0;
 
-/// The displacement field of a sample as a map of r·d_r over its largest absolute value.
+/// Share of the disks within the range of the colours; a few around a plastic event may move ten times as far.
+const SHOWN_SHARE: f64 = 0.98;
+
+/// The displacement field of a sample as a map of r·d_r, on a scale symmetric about zero that spans 98 % of the disks;
+/// the others have the colour of its ends.
 ///
 /// Disks stand at their positions before the inflation, with their radii. Grey: not counted (rattlers). Black: the
 /// inflated disk. Each disk is a line of no length with round ends, as wide as the disk: ten letters instead of sixty.
 pub fn heat_map(name: &str, result: &SampleResult, boundary: Boundary) -> Figure {
     let field = &result.field;
-    let largest = field.counted().map(|disk| (disk.distance * disk.radial).abs()).fold(0.0, f64::max);
+    let range = Range::of(field);
     let half_sides = match boundary {
         Boundary::HeldRim { .. } => [field.outer_radius; 2],
         Boundary::Periodic => result.packing.box_sides.map(|side| 0.5 * side),
     };
     let frame = Frame::new(half_sides, result);
     let mut elements = String::new();
-    push(&mut elements, frame.disks(field, largest));
+    push(&mut elements, frame.disks(field, range.shown));
     push(&mut elements, frame.boundary(half_sides, boundary));
     push(&mut elements, frame.scale_bar());
-    push(&mut elements, colour_bar(largest));
+    push(&mut elements, colour_bar(&range));
     Figure {
         title: format!("{name}: map of r·d_r"),
         description: format!(
-            "Each disk coloured by its rescaled radial displacement, orange outwards, purple inwards, up to {} length²; \
-             grey disks are rattlers, the black one is inflated",
-            significant(largest, 3)
+            "Each disk coloured by its rescaled radial displacement, orange outwards, purple inwards, full at {} length² \
+             (98 % of the disks are below it, the largest has {}); grey disks are rattlers, the black one is inflated",
+            significant(range.shown, 3),
+            significant(range.largest, 3)
         ),
         elements,
+    }
+}
+
+/// Values of |r·d_r| \[length²\].
+struct Range {
+    /// Where the colours end.
+    shown: f64,
+    /// The largest one.
+    largest: f64,
+}
+
+impl Range {
+    fn of(field: &DisplacementField<2>) -> Self {
+        let mut values: Vec<f64> = field.counted().map(|disk| (disk.distance * disk.radial).abs()).collect();
+        values.sort_by(f64::total_cmp);
+        let largest = values.last().copied().unwrap_or(0.0);
+        let shown = values.get((SHOWN_SHARE * values.len() as f64) as usize).copied().unwrap_or(largest);
+        // Where fewer than two in a hundred move at all, the largest sets the scale.
+        Range { shown: if shown > 0.0 { shown } else { largest }, largest }
     }
 }
 
@@ -71,13 +95,13 @@ impl<'a> Frame<'a> {
     }
 
     /// All mobile disks and the inflated one, in a group whose origin is the centre.
-    fn disks(&self, field: &DisplacementField<2>, largest: f64) -> String {
+    fn disks(&self, field: &DisplacementField<2>, full: f64) -> String {
         let radii = self.result.inflated.before.packing.get().radii();
         let width = |radius: f64| (2.0 * self.zoom * radius).round() as i64;
         // Colour level, then width: few groups, in an order that does not depend on the disks.
         let mut groups: BTreeMap<(Option<i32>, i64), String> = BTreeMap::new();
         for disk in &field.disks {
-            let level = disk.counted.then(|| level(disk.distance * disk.radial, largest));
+            let level = disk.counted.then(|| level(disk.distance * disk.radial, full));
             let path = groups.entry((level, width(radii[disk.disk]))).or_default();
             let [x, y] = disk.position.map(|coordinate| (self.zoom * coordinate).round() as i64);
             // The y axis of SVG points down.
@@ -131,8 +155,8 @@ impl<'a> Frame<'a> {
 }
 
 /// The colour of a value of r·d_r.
-fn level(value: f64, largest: f64) -> i32 {
-    if largest > 0.0 { (value / largest * f64::from(LEVELS)).round() as i32 } else { 0 }
+fn level(value: f64, full: f64) -> i32 {
+    if full > 0.0 { ((value / full).clamp(-1.0, 1.0) * f64::from(LEVELS)).round() as i32 } else { 0 }
 }
 
 /// 1, 2 or 5 times a power of ten, at most `length`.
@@ -141,7 +165,7 @@ fn round_below(length: f64) -> f64 {
     [5.0, 2.0, 1.0].into_iter().map(|digit| digit * power).find(|&round| round <= length).unwrap_or(power)
 }
 
-fn colour_bar(largest: f64) -> String {
+fn colour_bar(range: &Range) -> String {
     let (x, top, width, height) = (LEFT + SIDE + 14.0, TOP + 40.0, 14.0, SIDE - 80.0);
     let step = height / f64::from(2 * LEVELS + 1);
     let mut bar = String::new();
@@ -171,8 +195,9 @@ fn colour_bar(largest: f64) -> String {
     }
     let _ = writeln!(
         bar,
-        "<text x=\"456\" y=\"14\" font-size=\"13\" text-anchor=\"end\">{RESCALED} / max,  max |{RESCALED}| = {} length²</text>",
-        escaped(&significant(largest, 3))
+        "<text x=\"456\" y=\"14\" font-size=\"13\" text-anchor=\"end\">{RESCALED} / ({} length²),  largest |{RESCALED}| = {}</text>",
+        escaped(&significant(range.shown, 3)),
+        escaped(&significant(range.largest, 3))
     );
     bar
 }

@@ -1,0 +1,53 @@
+//! Relaxers to equal residuals, from the same inflated packing; force evaluations are printed beside the seconds.
+//!
+//! `cargo bench --bench relax`.
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use jamscope::contact::Hertzian;
+use jamscope::inflation::Circle;
+use jamscope::io::read_packing;
+use jamscope::packing::Packing;
+use jamscope::relax::{DampedDynamics, Fire, ForceLimit, Relaxer};
+
+/// The centre of a stored packing inflated by 0.1 in its circle, everything else still where it was.
+fn inflated(name: &str) -> Packing<2> {
+    let path = format!("{}/fixtures/packings/{name}.xyz", env!("CARGO_MANIFEST_DIR"));
+    let packing = read_packing::<2>(path).expect("a fixture");
+    let side = packing.domain().lengths().expect("periodic")[0];
+    let circle = Circle::cut(&packing, 0, 0.48 * side).expect("a circle in its box");
+    circle.packing.with_radius(circle.centre, 0.6).expect("a positive radius")
+}
+
+fn relaxers(criterion: &mut Criterion) {
+    let law = Hertzian::default();
+    let mut group = criterion.benchmark_group("relax");
+    group.sample_size(10);
+    for name in ["hertz_N1000_p10", "hertz_N1000_p100", "hertz_N1000_p800", "hertz_N5548_p100"] {
+        let start = inflated(name);
+        for limit in [1e-4, 1e-8] {
+            let fire = Fire { limit: ForceLimit::Relative(limit), ..Fire::default() };
+            let outcome = fire.relax(start.clone(), &law, &mut ()).expect("disks apart");
+            println!(
+                "FIRE {name} to {limit:e}: {} force evaluations, {:?}",
+                outcome.cost.force_evaluation_count, outcome.stop
+            );
+            group.bench_function(BenchmarkId::new(format!("fire/{name}"), limit), |bencher| {
+                bencher.iter(|| fire.relax(start.clone(), &law, &mut ()));
+            });
+        }
+    }
+    let start = inflated("hertz_N1000_p800");
+    let damped = DampedDynamics { limit: ForceLimit::Relative(1e-4), ..DampedDynamics::default() };
+    let outcome = damped.relax(start.clone(), &law, &mut ()).expect("disks apart");
+    println!(
+        "damped hertz_N1000_p800 to 1e-4: {} force evaluations, {:?}",
+        outcome.cost.force_evaluation_count, outcome.stop
+    );
+    group.bench_function(BenchmarkId::new("damped/hertz_N1000_p800", 1e-4), |bencher| {
+        bencher.iter(|| damped.relax(start.clone(), &law, &mut ()));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, relaxers);
+criterion_main!(benches);

@@ -1,0 +1,148 @@
+//! The program as its user meets it: what it prints, what it writes, and what it says of bad input.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn jamscope(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_jamscope")).args(arguments).output().expect("the program starts")
+}
+
+fn fixture(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("a path in Unicode")
+}
+
+/// Writes a scene into a folder of its own; the folder goes with the value returned.
+fn scene(content: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, content).expect("a temporary file");
+    (folder, path)
+}
+
+fn complaint(arguments: &[&str]) -> String {
+    let output = jamscope(arguments);
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+    String::from_utf8(output.stderr).expect("Unicode") + &String::from_utf8(output.stdout).expect("Unicode")
+}
+
+#[test]
+fn inspect_gives_the_stored_numbers_of_every_packing() {
+    let expected: Value =
+        serde_json::from_slice(&std::fs::read(fixture("packings/expected.json")).expect("a fixture")).expect("JSON");
+    let expected = expected.as_object().expect("a table by name");
+    assert!(expected.len() >= 16);
+    for (name, stored) in expected {
+        let path = fixture(&format!("packings/{name}.xyz"));
+        let law = if name.starts_with("hooke") { "hookean" } else { "hertzian" };
+        let output = jamscope(&["inspect", text(&path), "--law", law, "--json"]);
+        assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        let found: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        for (ours, theirs) in [
+            ("contact_count", "contacts"),
+            ("rattler_count", "rattlers"),
+            ("backbone_contact_count", "contacts_backbone"),
+        ] {
+            assert_eq!(found[ours].as_u64(), stored[theirs].as_u64(), "{name}: {ours}");
+        }
+        for (ours, theirs) in [("energy", "energy"), ("pressure", "p"), ("coordination", "Z")] {
+            let (a, b) = (found[ours].as_f64().expect("a number"), stored[theirs].as_f64().expect("a number"));
+            // Unjammed packings have energies and pressures of rounding only, below 10⁻¹³.
+            assert!((a - b).abs() <= 1e-10 * b.abs() + 1e-13, "{name}: {ours} {a}, stored {b}");
+        }
+    }
+}
+
+#[test]
+fn a_run_on_a_packing_from_a_file_writes_the_whole_report() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().join("report");
+    let packing = fixture("packings/hertz_N1000_p800.xyz");
+    let output = jamscope(&["run", "--packing", text(&packing), "--out", text(&out), "--threads", "1"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.stderr.is_empty(), "progress must be silent where nobody looks");
+    let table = String::from_utf8(output.stdout).expect("Unicode");
+    assert!(table.contains("hertz_N1000_p800"), "{table}");
+    let report: Value =
+        serde_json::from_slice(&std::fs::read(out.join("report.json")).expect("a report")).expect("JSON");
+    let done = &report["samples"][0]["done"];
+    // The header of the packing: p = 799.634…, relaxed by LAMMPS to 10⁻¹¹ of the mean force; nothing moves it here.
+    let pressure = done["packing"]["pressure"].as_f64().expect("a number");
+    assert!((pressure / 799.6342106591023 - 1.0).abs() < 1e-10, "{pressure}");
+    assert!(done["inflation"]["after"]["rest"]["relative_residual"].as_f64().expect("a number") <= 1e-8);
+}
+
+#[test]
+fn the_printed_scene_is_a_scene() {
+    let output = jamscope(&["scene"]);
+    let (_folder, path) = scene(&String::from_utf8(output.stdout).expect("Unicode").replace("5548", "0"));
+    let said = complaint(&["run", text(&path)]);
+    assert!(said.contains("scene.toml") && said.contains("at least one disk"), "{said}");
+}
+
+#[test]
+fn bad_scenes_are_refused_by_file_field_and_value() {
+    for (content, parts) in [
+        ("disk_cuont = 5", vec!["disk_cuont", "line 1"]),
+        ("[[mixture]]\nradius = -0.5\nshare = 1.0", vec!["radius", "-0.5"]),
+        ("[[sample]]\nname = \"x\"\nsource = { packing_fraction = 4.0 }", vec!["\"x\"", "packing_fraction", "4"]),
+        ("[[sample]]\nname = \"x\"\nsource = { pressure = -1.0 }", vec!["\"x\"", "pressure", "-1"]),
+        ("[[sample]]\nname = \"../x\"\nsource = { pressure = 1.0 }", vec!["name", "../x"]),
+        ("[law.hertzian]\nstiffness = nan", vec!["stiffness", "NaN"]),
+        ("disk_count = 0", vec!["disk_count"]),
+        ("", vec!["empty"]),
+        ("[inflation", vec!["line 1"]),
+    ] {
+        let (_folder, path) = scene(content);
+        let said = complaint(&["run", text(&path)]);
+        for part in ["scene.toml"].iter().chain(&parts) {
+            assert!(said.contains(part), "{content:?}: no {part:?} in {said}");
+        }
+    }
+}
+
+#[test]
+fn an_inflation_beyond_the_neighbours_is_refused_with_the_largest_possible() {
+    let (folder, path) = scene(
+        "disk_count = 300\n[inflation]\nincrease = 0.9\n[[sample]]\nname = \"x\"\nsource = { pressure = 2000.0 }",
+    );
+    let out = folder.path().join("out");
+    let said = complaint(&["run", text(&path), "--out", text(&out)]);
+    for part in ["scene.toml", "x failed", "increase is 0.9", "must stay below"] {
+        assert!(said.contains(part), "no {part:?} in {said}");
+    }
+}
+
+#[test]
+fn bad_packings_are_refused_by_file_line_and_value() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let good = std::fs::read_to_string(fixture("packings/hertz_N1000_p100.xyz")).expect("a fixture");
+    let lines: Vec<&str> = good.lines().collect();
+    let moved = |line: &str, onto: &str| {
+        let (mut words, onto): (Vec<&str>, Vec<&str>) = (line.split(' ').collect(), onto.split(' ').collect());
+        words[1..4].copy_from_slice(&onto[1..4]);
+        words.join(" ")
+    };
+    let replaced = |index: usize, line: String| {
+        let mut lines: Vec<String> = lines.iter().map(|line| line.to_string()).collect();
+        lines[index] = line;
+        lines.join("\n") + "\n"
+    };
+    for (content, part) in [
+        (String::new(), "empty"),
+        (lines[..100].join("\n") + "\n", "line 100"),
+        (replaced(4, lines[4].replacen(" 0.5 ", " nan ", 1)), "line 5: radius is `nan`"),
+        (replaced(4, lines[4].replacen(" 0.5 ", " -0.5 ", 1)), "line 5: radius is `-0.5`"),
+        (replaced(4, moved(lines[4], lines[5])), "disks 2 and 3 have the same centre"),
+    ] {
+        let path = folder.path().join("packing.xyz");
+        std::fs::write(&path, content).expect("a temporary file");
+        let said = complaint(&["inspect", text(&path)]);
+        assert!(said.contains("packing.xyz") && said.contains(part), "no {part:?} in {said}");
+    }
+}

@@ -1,0 +1,156 @@
+//! Forces against differences of the energy, the virial against a stretched box, Newton's third law.
+
+use super::*;
+
+/// Bound on the error of a central difference over ±s of u(|r + s e|), e a unit vector.
+///
+/// Away from contact, s²/6 times the third derivative, |u'''| + 3|u''|/r + 3|u'|/r², taken at the ends of the interval.
+/// Within s of contact u'' = F' is only Hölder continuous (for α < 3; it jumps for α = 2): F differs from its tangent by
+/// at most its growth over the interval.
+fn difference_error<L: PairLaw>(law: &L, coefficient: f64, overlap: f64, distance: f64, s: f64) -> f64 {
+    if overlap < -s {
+        return 0.0;
+    }
+    let alpha = law.exponent();
+    let ends = [overlap - s, overlap + s].map(|overlap| overlap.max(0.0));
+    let force = law.force(coefficient, ends[1]);
+    let stiffness = law.stiffness(force, ends[1]);
+    let near = distance - s;
+    let geometry = s * s / 6.0 * (3.0 * stiffness / near + 3.0 * force / (near * near));
+    if overlap > 2.0 * s {
+        let third = |overlap: f64| (alpha - 2.0) * law.stiffness(law.force(coefficient, overlap), overlap) / overlap;
+        geometry + s * s / 6.0 * third(ends[0]).max(third(ends[1]))
+    } else {
+        geometry + law.force(coefficient, overlap.max(0.0) + s) - law.force(coefficient, 0.0)
+    }
+}
+
+/// What a central difference of the energy may be off by: truncation of each pair; over h, the rounding of the energy and
+/// that of the separations, `blur`.
+fn slope_error<const D: usize, L: PairLaw>(
+    packing: &Packing<D>,
+    law: &L,
+    h: f64,
+    blur: f64,
+    speed: impl Fn(&all_pairs::Pair<D>) -> f64,
+) -> f64 {
+    let pairs = pairs_within(packing, 0.1);
+    let mut error = 0.0;
+    let mut energy = 0.0;
+    for pair in &pairs {
+        let coefficient = law.coefficient(packing.radii()[pair.first], packing.radii()[pair.second]);
+        let speed = speed(pair);
+        error += speed * difference_error(law, coefficient, pair.overlap, pair.distance, h * speed);
+        let overlap = pair.overlap.max(0.0) + h * speed;
+        let force = law.force(coefficient, overlap);
+        energy += law.energy(force, overlap);
+        error += force * blur / h;
+    }
+    error + (pairs.len() + 16) as f64 * EPSILON * energy / h
+}
+
+/// Step of the differences: rounding ε/h and truncation h^1.5 to h² are both near 1e-9 of what is differentiated.
+const STEP: f64 = 1.0 / 65536.0;
+
+fn check_gradient<const D: usize, L: PairLaw>(law: L, seed: u64, count: usize, domain: Domain<D>) {
+    let packing = disks(seed, count, domain, 0.2);
+    let mut assembly = Assembly::new(&packing, law).expect("no coincidence");
+    assembly.evaluate();
+    let forces = assembly.forces.clone();
+    for index in 0..assembly.mobile_count() {
+        let disk = assembly.order()[index] as usize;
+        let touches = |pair: &all_pairs::Pair<D>| if pair.first == disk || pair.second == disk { 1.0 } else { 0.0 };
+        let allowed = slope_error(&packing, &law, STEP, 4.0 * EPSILON, touches);
+        for d in 0..D {
+            let mut energy_at = |h: f64| {
+                let before = assembly.displacements[index];
+                assembly.displacements[index][d] += h;
+                let energy = assembly.evaluate_totals().energy;
+                assembly.displacements[index] = before;
+                energy
+            };
+            let slope = (energy_at(STEP) - energy_at(-STEP)) / (2.0 * STEP);
+            let off = (forces[index][d] + slope).abs();
+            assert!(
+                off <= allowed,
+                "{law:?}, disk {disk}, axis {d}: force {} and slope {slope}, {off:e} > {allowed:e}",
+                forces[index][d]
+            );
+        }
+    }
+}
+
+/// Stretching the box along one axis with the positions: dE/dε = −(virial along that axis), radii kept.
+fn check_virial<const D: usize, L: PairLaw>(law: L, seed: u64, count: usize, sides: Vector<D>) {
+    let packing = disks(seed, count, periodic(sides), 0.0);
+    let (_, totals) = forces_of(&packing, law);
+    for axis in 0..D {
+        let stretched = |h: f64| {
+            let Domain::Periodic { mut corner, mut lengths } = *packing.domain() else { panic!("made periodic") };
+            corner[axis] *= 1.0 + h;
+            lengths[axis] *= 1.0 + h;
+            let mut positions = packing.positions().to_vec();
+            positions.iter_mut().for_each(|position| position[axis] *= 1.0 + h);
+            let packing = Packing::new(Domain::Periodic { corner, lengths }, positions, packing.radii().to_vec());
+            forces_of(&packing.expect("valid"), law).1.energy
+        };
+        let slope = (stretched(STEP) - stretched(-STEP)) / (2.0 * STEP);
+        let off = (slope + totals.virial[axis][axis]).abs();
+        // The stretched coordinates are rounded anew.
+        let allowed = slope_error(&packing, &law, STEP, blur(&packing), |pair| pair.separation[axis].abs());
+        assert!(
+            off <= allowed,
+            "{law:?}, axis {axis}: virial {} and slope {slope}, {off:e} > {allowed:e}",
+            totals.virial[axis][axis]
+        );
+    }
+    let volume = packing.domain().volume().expect("periodic");
+    let network = ContactNetwork::new(&packing, &law).expect("no coincidence");
+    let expected = totals.virial_trace() / (D as f64 * volume);
+    // Two sums of the same positive terms.
+    assert!((network.pressure(volume) - expected).abs() <= (16 + network.contacts.len()) as f64 * EPSILON * expected);
+}
+
+proptest! {
+    #![proptest_config(cases(32))]
+
+    #[test]
+    fn force_is_minus_the_energy_gradient(seed: u64, exponent in 2.0..4.0f64, flat in domains::<2>(), deep in domains::<3>()) {
+        check_gradient(Hertzian { stiffness: 1.0 }, seed, 24, flat);
+        check_gradient(Hookean { stiffness: 1.0 }, seed, 24, flat);
+        check_gradient(PowerLaw { energy_scale: 1.0, exponent }, seed, 24, flat);
+        check_gradient(Hertzian { stiffness: 1.0 }, seed, 24, deep);
+        check_gradient(Hookean { stiffness: 1.0 }, seed, 24, deep);
+        check_gradient(PowerLaw { energy_scale: 1.0, exponent }, seed, 24, deep);
+    }
+
+    #[test]
+    fn virial_is_minus_the_energy_change_when_the_box_is_stretched(seed: u64, exponent in 2.0..4.0f64, x in 1.1..3.0f64, y in 1.1..3.0f64, z in 1.1..2.0f64) {
+        let (flat, deep) = ([x, y].map(on_grid), [x, y, z].map(on_grid));
+        check_virial(Hertzian { stiffness: 1.0 }, seed, 24, flat);
+        check_virial(Hookean { stiffness: 1.0 }, seed, 24, flat);
+        check_virial(PowerLaw { energy_scale: 1.0, exponent }, seed, 24, flat);
+        check_virial(Hertzian { stiffness: 1.0 }, seed, 24, deep);
+    }
+
+    #[test]
+    fn forces_of_a_packing_without_held_disks_add_up_to_nothing(seed: u64, count in 2usize..80, domain in domains::<2>()) {
+        let packing = disks(seed, count, domain, 0.0);
+        let (forces, totals) = forces_of(&packing, Hertzian::default());
+        let net = forces.iter().fold([0.0; 2], |total, &force| sum(total, force));
+        // Each contact adds and takes the same number, exactly; what remains is the rounding of the sums: at most one
+        // rounding of a partial sum below ΣF for every contact and disk.
+        let roundings = (2 * totals.contact_count + count) as f64;
+        prop_assert!(norm(net) <= roundings * EPSILON * totals.force_sum, "{net:?}, ΣF {}", totals.force_sum);
+    }
+
+    #[test]
+    fn two_disks_push_each_other_with_opposite_forces_to_the_last_bit(x in 0.01..0.7f64, y in 0.01..0.7f64, z in 0.01..0.7f64) {
+        let packing = Packing::new(Domain::<3>::cube(8.0), vec![[7.9, 0.1, 4.0], [(7.9 + x) % 8.0, 0.1 + y, 4.0 + z]], vec![0.7, 0.8]);
+        let (forces, totals) = forces_of(&packing.expect("valid"), Hertzian::default());
+        prop_assert_eq!(totals.contact_count, 1);
+        prop_assert_eq!(forces[0], forces[1].map(|component| -component));
+        // Along the line of centres, pushing apart.
+        prop_assert!(forces[1][0] > 0.0 && forces[1][1] > 0.0 && forces[1][2] > 0.0);
+    }
+}

@@ -1,0 +1,85 @@
+//! The slow twin of cell grid, neighbour list and hot loop: every pair, every image, plain arithmetic.
+
+use jamscope::contact::PairLaw;
+use jamscope::packing::{Domain, Packing};
+use jamscope::vector::{Vector, norm};
+
+/// A pair of disks near each other.
+pub struct Pair<const D: usize> {
+    pub first: usize,
+    pub second: usize,
+    /// From the second to the first.
+    pub separation: Vector<D>,
+    pub distance: f64,
+    /// R_i + R_j − distance, of either sign.
+    pub overlap: f64,
+}
+
+/// Boxes looked at to either side: for disks anywhere within one box of the box.
+const IMAGES: i32 = 3;
+
+/// All pairs, held–held ones left out, with a gap below `gap`; first < second.
+pub fn pairs_within<const D: usize>(packing: &Packing<D>, gap: f64) -> Vec<Pair<D>> {
+    let (positions, radii, held) = (packing.positions(), packing.radii(), packing.held());
+    let (lengths, images) = match packing.domain() {
+        Domain::Periodic { lengths, .. } => (*lengths, IMAGES),
+        Domain::Open => ([0.0; D], 0),
+    };
+    let width = 2 * images + 1;
+    let mut pairs = Vec::new();
+    for first in 0..packing.len() {
+        for second in first + 1..packing.len() {
+            if held[first] && held[second] {
+                continue;
+            }
+            for code in 0..width.pow(D as u32) {
+                let separation: Vector<D> = std::array::from_fn(|d| {
+                    let boxes = (code / width.pow(d as u32)) % width - images;
+                    positions[first][d] - positions[second][d] + boxes as f64 * lengths[d]
+                });
+                let distance = norm(separation);
+                let overlap = radii[first] + radii[second] - distance;
+                if overlap > -gap {
+                    pairs.push(Pair { first, second, separation, distance, overlap });
+                }
+            }
+        }
+    }
+    pairs
+}
+
+/// Energy, virial and forces, one contact after the other.
+pub struct Mechanics<const D: usize> {
+    pub energy: f64,
+    pub virial: [[f64; D]; D],
+    pub contact_count: usize,
+    pub force_sum: f64,
+    pub forces: Vec<Vector<D>>,
+}
+
+/// The plainest evaluation of a packing under a law.
+pub fn mechanics<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> Mechanics<D> {
+    let mut total = Mechanics {
+        energy: 0.0,
+        virial: [[0.0; D]; D],
+        contact_count: 0,
+        force_sum: 0.0,
+        forces: vec![[0.0; D]; packing.len()],
+    };
+    for pair in pairs_within(packing, 0.0) {
+        let (a, b) = (packing.radii()[pair.first], packing.radii()[pair.second]);
+        let force = law.force(law.coefficient(a, b), pair.overlap);
+        total.energy += law.energy(force, pair.overlap);
+        total.contact_count += 1;
+        total.force_sum += force;
+        for d in 0..D {
+            let part = force * pair.separation[d] / pair.distance;
+            total.forces[pair.first][d] += part;
+            total.forces[pair.second][d] -= part;
+            for e in 0..D {
+                total.virial[d][e] += part * pair.separation[e];
+            }
+        }
+    }
+    total
+}
