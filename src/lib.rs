@@ -104,9 +104,11 @@ pub mod run;
 pub mod scene;
 pub mod vector;
 
-/// The chapters of the book, so that `cargo test --doc` compiles and runs their snippets.
+/// The README and the chapters of the book, so that `cargo test --doc` compiles and runs their snippets.
 #[cfg(doctest)]
 mod book {
+    #[doc = include_str!("../README.md")]
+    mod readme {}
     #[doc = include_str!("../book/src/experiment.md")]
     mod experiment {}
     #[doc = include_str!("../book/src/units.md")]
@@ -150,4 +152,12 @@ mod book {
     mod scene {}
     #[doc = include_str!("../book/src/report.md")]
     mod report {}
+    #[doc = include_str!("../book/src/validation.md")]
+    mod validation {}
+    #[doc = include_str!("../book/src/performance.md")]
+    mod performance {}
+    #[doc = include_str!("../book/src/figures.md")]
+    mod figures {}
+    #[doc = include_str!("../book/src/references.md")]
+    mod references {}
 }
