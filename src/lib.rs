@@ -1,4 +1,92 @@
-//! The mechanics of jammed packings.
+//! The mechanics of jammed packings: prepare, inflate, relax, and hold the response against exact solutions.
+//!
+//! Soft frictionless disks push each other where they overlap, δ_ij = R_i + R_j − r_ij > 0. A packing is relaxed to a
+//! minimum of its energy, one disk is inflated by d_0, the packing is relaxed again, and the radial part of how far the
+//! disks moved is held against the solution of a continuum between the inflated disk, radius a, and a held rim, radius R:
+//!
+//! ```text
+//! E = Σ_(i<j) u(δ_ij)      −∂E/∂r_i = 0 for every mobile disk, before and after
+//!
+//! d_r'' + d_r'/r − d_r/r² + κ² d_r = 0      d_r(a) = d_0,  d_r(R) = 0
+//! ```
+//!
+//! κ = 0 is the elastic medium; κ > 0 is one whose plastic events screen the elastic field, as close to jamming.
+//!
+//! # Example
+//!
+//! 200 disks far from jamming answer as an elastic medium does.
+//!
+//! ```
+//! use jamscope::contact::Hertzian;
+//! use jamscope::displacement::DisplacementField;
+//! use jamscope::inflation::{Inflation, inflate};
+//! use jamscope::observe::RadialProfile;
+//! use jamscope::packing::Mixture;
+//! use jamscope::preparation::{Preparation, Target, prepare};
+//! use jamscope::reference::{Annulus, RadialSolution, elastic::Elastic};
+//! use jamscope::relax::Fire;
+//!
+//! let (law, fire, seed) = (Hertzian::default(), Fire::default(), 1);
+//! let (mixture, target) = (Mixture::default(), Target::Pressure(3000.0));
+//! let preparation = Preparation { disk_count: 200, mixture, target, tolerance: 0.01, seed };
+//! let prepared = prepare::<2, _>(&preparation, &law, &fire, &mut ())?;
+//! assert!((prepared.pressure / 3000.0 - 1.0).abs() <= 0.01);
+//!
+//! let inflated = inflate(&Inflation::default(), prepared.packing.get(), &law, &fire, seed, &mut ())?;
+//! let field = DisplacementField::of_inflation(&inflated);
+//! let profile = RadialProfile::of(&field, 1.0);
+//!
+//! // The amplitude d_0^eff of the elastic solution by least squares in r·d_r, and the share of Σ (r·d_r)² it describes.
+//! let medium = Elastic::<2>::new(Annulus::new(field.inner_radius, field.outer_radius)?, 1.0)?;
+//! let sum = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
+//!     profile.rings.iter().map(|ring| ring.radius.powi(2) * f(ring.mean, medium.value(ring.radius))).sum()
+//! };
+//! let (both, ours, theirs) = (sum(&|d, e| d * e), sum(&|d, _| d * d), sum(&|_, e| e * e));
+//! let (amplitude, share) = (both / theirs, both * both / (ours * theirs));
+//! assert!(share > 0.9, "the elastic solution describes {share} of the profile");
+//! assert!(amplitude > 0.05 && amplitude < 0.15, "d_0 = 0.1 acts as {amplitude}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Modules
+//!
+//! In the order in which they build on each other: a module imports only from modules above it.
+//!
+//! | module | content | start from |
+//! |---|---|---|
+//! | [`vector`] | vectors of D = 2 or 3 components, error-free sums | [`Vector`](vector::Vector) |
+//! | [`packing`] | centres, radii, domain, which disks are held | [`Packing`](packing::Packing) |
+//! | [`io`] | packings in files | [`read_packing`](io::read_packing) |
+//! | [`contact`] | laws, damping, neighbour list, hot loop, contact network | [`ContactNetwork`](contact::ContactNetwork) |
+//! | [`relax`] | bringing a packing to rest | [`Relaxer`](relax::Relaxer), [`Fire`](relax::Fire) |
+//! | [`preparation`] | random points to a packing at a packing fraction or a pressure | [`prepare`](preparation::prepare) |
+//! | [`inflation`] | one disk grows, the rest relaxes; and back | [`inflate`](inflation::inflate) |
+//! | [`displacement`] | how far every disk moved | [`DisplacementField`](displacement::DisplacementField) |
+//! | [`observe`] | radial and angular profile | [`RadialProfile`](observe::RadialProfile) |
+//! | [`reference`](mod@reference) | exact solutions, elastic and screened | [`Annulus`](reference::Annulus) |
+//! | `fit` (feature `fit`) | a profile against both solutions, with errors and a decision | `fit::profile::fit_radial_profile` |
+//! | [`scene`] | everything a run needs, as plain data | [`Scene`](scene::Scene) |
+//! | [`run`] | scene to report, one line a stage | [`run::run`] |
+//! | [`report`] | table, data files, figures, one page | [`report::write`] |
+//!
+//! What a stage gives has a type that says what is known of it: only a converged relaxation makes a
+//! [`Relaxed`](relax::Relaxed) packing, and only two of those make a displacement field.
+//!
+//! # Features
+//!
+//! | feature | adds | with |
+//! |---|---|---|
+//! | `fit` | fits of a measured profile | argmin, statrs |
+//! | `parallel` | the samples of a scene side by side; never changes a bit of a result | rayon |
+//! | `plot` | figures and the HTML page of a report | plotters |
+//! | `cli` | the program `jamscope`, scenes from TOML | clap, toml, indicatif |
+//!
+//! All are on by default; every subset compiles.
+//!
+//! # Further
+//!
+//! The book (`book/src`) has a chapter a module: the question, the equation, how it is computed, how it is checked, and
+//! where it ends. Its snippets are compiled and run by `cargo test --doc`.
 
 pub mod contact;
 pub mod displacement;
@@ -15,3 +103,61 @@ pub mod report;
 pub mod run;
 pub mod scene;
 pub mod vector;
+
+/// The README and the chapters of the book, so that `cargo test --doc` compiles and runs their snippets.
+#[cfg(doctest)]
+mod book {
+    #[doc = include_str!("../README.md")]
+    mod readme {}
+    #[doc = include_str!("../book/src/experiment.md")]
+    mod experiment {}
+    #[doc = include_str!("../book/src/units.md")]
+    mod units {}
+    #[doc = include_str!("../book/src/packing.md")]
+    mod packing {}
+    #[doc = include_str!("../book/src/io.md")]
+    mod io {}
+    #[doc = include_str!("../book/src/contact/law.md")]
+    mod contact_law {}
+    #[doc = include_str!("../book/src/contact/damping.md")]
+    mod contact_damping {}
+    #[doc = include_str!("../book/src/contact/neighbours.md")]
+    mod contact_neighbours {}
+    #[doc = include_str!("../book/src/contact/forces.md")]
+    mod contact_forces {}
+    #[doc = include_str!("../book/src/contact/network.md")]
+    mod contact_network {}
+    #[doc = include_str!("../book/src/relax/fire.md")]
+    mod relax_fire {}
+    #[doc = include_str!("../book/src/relax/damped.md")]
+    mod relax_damped {}
+    #[doc = include_str!("../book/src/relax/stopping.md")]
+    mod relax_stopping {}
+    #[doc = include_str!("../book/src/preparation.md")]
+    mod preparation {}
+    #[doc = include_str!("../book/src/inflation.md")]
+    mod inflation {}
+    #[doc = include_str!("../book/src/displacement.md")]
+    mod displacement {}
+    #[doc = include_str!("../book/src/observe/radial_profile.md")]
+    mod observe_radial_profile {}
+    #[doc = include_str!("../book/src/observe/angular_profile.md")]
+    mod observe_angular_profile {}
+    #[doc = include_str!("../book/src/reference.md")]
+    mod reference {}
+    #[cfg(feature = "fit")]
+    #[doc = include_str!("../book/src/fit.md")]
+    mod fit {}
+    #[doc = include_str!("../book/src/scene.md")]
+    mod scene {}
+    #[doc = include_str!("../book/src/report.md")]
+    mod report {}
+    #[doc = include_str!("../book/src/validation.md")]
+    mod validation {}
+    #[doc = include_str!("../book/src/performance.md")]
+    mod performance {}
+    #[doc = include_str!("../book/src/figures.md")]
+    mod figures {}
+    #[doc = include_str!("../book/src/references.md")]
+    mod references {}
+}
