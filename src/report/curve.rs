@@ -15,7 +15,7 @@ pub(crate) struct Curve {
     /// Its name, also that of its column.
     pub name: &'static str,
     /// Whether it is the one decided for.
-    #[cfg_attr(not(feature = "plot"), expect(dead_code, reason = "figures draw it in another way"))]
+    #[cfg_attr(not(feature = "plot"), allow(dead_code, reason = "figures draw it in another way"))]
     pub decided: bool,
     solution: Box<dyn RadialSolution>,
 }

@@ -30,7 +30,7 @@ pub(crate) struct Row {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Times {
     Shown,
-    #[cfg_attr(not(feature = "plot"), expect(dead_code, reason = "only the page leaves them out"))]
+    #[cfg_attr(not(feature = "plot"), allow(dead_code, reason = "only the page leaves them out"))]
     LeftOut,
 }
 
@@ -206,7 +206,7 @@ fn fit(samples: &[SampleReport]) -> Section {
         Some(significant(curve::fit_of(it)?.elastic.wavenumber_bound? / first_pole(it)?, 2))
     })
     .add("elastic: share described", |it| curve::fit_of(it).map(|fit| significant(fit.elastic.share_described, 3)))
-    .add("elastic: rms residual / ring standard error", |it| {
+    .add("elastic: rms residual / ring error", |it| {
         curve::fit_of(it).map(|fit| rms(fit.elastic.chi_squared, fit.ring_count))
     })
     .add("screened: d_0^eff [length]", |it| {
@@ -220,7 +220,7 @@ fn fit(samples: &[SampleReport]) -> Section {
         Some(with_error(kappa.value / first, kappa.standard_error / first))
     })
     .add("screened: share described", |it| screened(it).map(|fit| significant(fit.share_described, 3)))
-    .add("screened: rms residual / ring standard error", |it| {
+    .add("screened: rms residual / ring error", |it| {
         Some(rms(screened(it)?.chi_squared, curve::fit_of(it)?.ring_count))
     })
     .add("chance of such a gain if κ = 0", |it| screened(it).map(|fit| significant(fit.chance_of_elastic, 2)));
