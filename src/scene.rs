@@ -155,9 +155,9 @@ impl Default for Scene {
     /// 1200. As in the study, FIRE relaxes the unjammed packing and damped dynamics the quasielastic one; in the plastic
     /// one damped dynamics would take 10⁶ steps, so FIRE does it there too.
     ///
-    /// Samples differ a lot at this size; these show what their phase is known for. Of 27 seeds tried, the response of
-    /// about half of the unjammed packings dies out within the circle (the others feel its rim), and one in twenty
-    /// plastic packings of p = 2 to 50 has a profile that is significantly screened.
+    /// Samples differ a lot at this size; the seeds are those of samples that show what their phase is known for. Relaxed by
+    /// FIRE, 24 of 38 unjammed packings answer like this one (neither solution describes the profile; the others feel the
+    /// rim), 11 of 54 at p = 10 (neither, and Δp < 0 in 7), and 34 of 38 at p = 4000 (elastic).
     fn default() -> Self {
         Scene {
             disk_count: 5548,
@@ -169,19 +169,19 @@ impl Default for Scene {
             sample: vec![
                 Sample {
                     name: "unjammed".into(),
-                    seed: 2,
+                    seed: 9,
                     source: Source::PackingFraction(0.82),
                     relaxer: RelaxerChoice::Fire(Fire::default()),
                 },
                 Sample {
                     name: "plastic".into(),
-                    seed: 25,
+                    seed: 48,
                     source: Source::Pressure(10.0),
                     relaxer: RelaxerChoice::Fire(Fire::default()),
                 },
                 Sample {
                     name: "quasielastic".into(),
-                    seed: 1,
+                    seed: 11,
                     source: Source::Pressure(4000.0),
                     relaxer: RelaxerChoice::Damped(DampedDynamics::default()),
                 },

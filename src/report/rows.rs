@@ -177,52 +177,53 @@ fn inflation(report: &Report, samples: &[SampleReport], times: Times) -> Section
 
 #[cfg(feature = "fit")]
 fn fit(samples: &[SampleReport]) -> Section {
-    use crate::fit::profile::Decision;
     use crate::report::number::with_error;
     use crate::run::FitResult;
 
     let mut rows = Rows { samples, rows: Vec::new() };
-    let chosen = |it: &SampleResult| {
-        curve::fit_of(it).and_then(|fit| match fit.decision {
-            Decision::Elastic => Some((fit.elastic.amplitude, fit.elastic.chi_squared, fit.ring_count)),
-            Decision::Screened => {
-                fit.screened.map(|screened| (screened.amplitude, screened.chi_squared, fit.ring_count))
-            }
-            Decision::Neither => None,
-        })
+    // A κ known to nothing is the elastic solution again.
+    let screened = |it: &SampleResult| {
+        curve::fit_of(it)?.screened.filter(|fit| fit.wavenumber.standard_error < 10.0 * fit.wavenumber.value)
     };
+    let first_pole = |it: &SampleResult| {
+        let annulus = crate::reference::Annulus::new(it.inflation.inner_radius, it.inflation.outer_radius).ok()?;
+        Some(crate::reference::poles::pole::<2>(annulus, 1))
+    };
+    let rms = |chi_squared: f64, rings: usize| significant((chi_squared / rings as f64).sqrt(), 3);
     rows.add("described by", |it| match it.profile_fit.as_ref()? {
         FitResult::Fitted(fit) => Some(decision_name(fit.decision).into()),
         FitResult::Refused(_) => Some("fit refused".into()),
     })
-    .add("effective inflation, d_0^eff [length]", |it| {
-        chosen(it).map(|(amplitude, ..)| with_error(amplitude.value, amplitude.standard_error))
-    })
-    .add("screening wavenumber, κ [1/length]", |it| curve::fit_of(it).and_then(wavenumber))
-    .add("κ/κ_1", |it| {
-        let annulus = crate::reference::Annulus::new(it.inflation.inner_radius, it.inflation.outer_radius).ok()?;
-        let first = crate::reference::poles::pole::<2>(annulus, 1);
-        let fit = curve::fit_of(it)?;
-        match fit.decision {
-            Decision::Screened => {
-                let kappa = fit.screened?.wavenumber;
-                Some(with_error(kappa.value / first, kappa.standard_error / first))
-            }
-            Decision::Elastic => Some(format!("< {}", significant(fit.elastic.wavenumber_bound? / first, 2))),
-            Decision::Neither => None,
-        }
-    })
-    .add("share described, elastic", |it| curve::fit_of(it).map(|fit| significant(fit.elastic.share_described, 3)))
-    .add("share described, screened", |it| {
-        curve::fit_of(it)?.screened.map(|screened| significant(screened.share_described, 3))
-    })
-    .add("chance of such a gain if κ = 0", |it| {
-        curve::fit_of(it)?.screened.map(|screened| significant(screened.chance_of_elastic, 2))
-    })
     .add("rings fitted", |it| curve::fit_of(it).map(|fit| count(fit.ring_count)))
-    .add("rms residual / ring standard error", |it| {
-        chosen(it).map(|(_, chi_squared, rings)| significant((chi_squared / rings as f64).sqrt(), 3))
-    });
+    .add("elastic: d_0^eff [length]", |it| {
+        curve::fit_of(it).map(|fit| with_error(fit.elastic.amplitude.value, fit.elastic.amplitude.standard_error))
+    })
+    .add("elastic: κ below (95 %) [1/length]", |it| {
+        let bound = curve::fit_of(it)?.elastic.wavenumber_bound;
+        Some(bound.map_or_else(|| "no bound".into(), |bound| significant(bound, 2)))
+    })
+    .add("elastic: κ/κ_1 below (95 %)", |it| {
+        Some(significant(curve::fit_of(it)?.elastic.wavenumber_bound? / first_pole(it)?, 2))
+    })
+    .add("elastic: share described", |it| curve::fit_of(it).map(|fit| significant(fit.elastic.share_described, 3)))
+    .add("elastic: rms residual / ring standard error", |it| {
+        curve::fit_of(it).map(|fit| rms(fit.elastic.chi_squared, fit.ring_count))
+    })
+    .add("screened: d_0^eff [length]", |it| {
+        screened(it).map(|fit| with_error(fit.amplitude.value, fit.amplitude.standard_error))
+    })
+    .add("screened: κ [1/length]", |it| {
+        screened(it).map(|fit| with_error(fit.wavenumber.value, fit.wavenumber.standard_error))
+    })
+    .add("screened: κ/κ_1", |it| {
+        let (kappa, first) = (screened(it)?.wavenumber, first_pole(it)?);
+        Some(with_error(kappa.value / first, kappa.standard_error / first))
+    })
+    .add("screened: share described", |it| screened(it).map(|fit| significant(fit.share_described, 3)))
+    .add("screened: rms residual / ring standard error", |it| {
+        Some(rms(screened(it)?.chi_squared, curve::fit_of(it)?.ring_count))
+    })
+    .add("chance of such a gain if κ = 0", |it| screened(it).map(|fit| significant(fit.chance_of_elastic, 2)));
     rows.section("Fit of the radial profile")
 }
 
