@@ -73,6 +73,8 @@ pub enum Stop {
     RoundingFloor,
     /// A force became NaN or infinite.
     NonFinite,
+    /// A damped motion gained energy: its time step is too long.
+    Unstable,
 }
 
 /// How far from equilibrium a state is.

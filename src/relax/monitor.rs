@@ -134,7 +134,9 @@ impl Monitor {
             self.best = residual;
             self.best_look = self.look_count;
         }
-        residual <= 16.0 * self.floor && self.look_count - self.best_look >= PATIENCE
+        // Without a backbone the residual is 0 and says nothing.
+        let told = self.last.largest_net_force > 0.0;
+        told && residual <= 16.0 * self.floor && self.look_count - self.best_look >= PATIENCE
     }
 
     /// Whether the rounding of displacements from the anchors is felt, so that the caller should re-anchor; asked once a look.

@@ -239,7 +239,7 @@ pub(crate) fn decision_name(decision: crate::fit::profile::Decision) -> &'static
 }
 
 /// κ with its error, or the bound on it.
-#[cfg(feature = "fit")]
+#[cfg(all(feature = "fit", feature = "plot"))]
 pub(crate) fn wavenumber(fit: &crate::fit::profile::ProfileFit) -> Option<String> {
     use crate::fit::profile::Decision;
     use crate::report::number::with_error;
