@@ -105,7 +105,7 @@ fn main() -> ExitCode {
     let result = match Cli::parse().command {
         None => run_scene(&RunArguments { out: "jamscope-report".into(), ..RunArguments::default() }),
         Some(Command::Run(arguments)) => run_scene(&arguments),
-        Some(Command::Scene) => print(scene_file::COMMENTED_SCENE),
+        Some(Command::Scene) => print(&scene_file::commented_scene()),
         Some(Command::Inspect(arguments)) => inspect_packing(&arguments),
     };
     result.unwrap_or_else(|error| {
