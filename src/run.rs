@@ -230,8 +230,8 @@ pub enum RunError {
 
 /// What a run tells while it works; `()` hears nothing.
 pub trait Progress: Sync {
-    /// A sample enters a stage that brings the residual down to `limit` (0 where it is not relative).
-    fn stage(&self, sample: usize, stage: &str, limit: f64) {
+    /// A sample begins a relaxation of a stage, which brings the residual down to `limit`.
+    fn stage(&self, sample: usize, stage: &'static str, limit: f64) {
         let _ = (sample, stage, limit);
     }
     /// The residual of the stage, every now and then.
@@ -250,10 +250,15 @@ impl Progress for () {}
 struct Watch<'a, P> {
     progress: &'a P,
     sample: usize,
+    stage: &'static str,
+    limit: f64,
 }
 
 impl<P: Progress> Trace for Watch<'_, P> {
     fn look(&mut self, look: &Look) {
+        if look.step_count == 0 {
+            self.progress.stage(self.sample, self.stage, self.limit);
+        }
         if !look.restart {
             self.progress.residual(self.sample, look.residual);
         }
@@ -313,12 +318,12 @@ fn run_with<L: PairLaw>(
     index: usize,
     progress: &impl Progress,
 ) -> Result<SampleResult, RunError> {
-    let trace = &mut Watch { progress, sample: index };
-    progress.stage(index, "preparation", scene.preparation.relaxer.limit().value());
+    let watch =
+        |stage, relaxer: &RelaxerChoice| Watch { progress, sample: index, stage, limit: relaxer.limit().value() };
+    let trace = &mut watch("preparation", &scene.preparation.relaxer);
     let (prepared, packing) = packing_of(scene, sample, law, trace)?;
-    progress.stage(index, "inflation", sample.relaxer.limit().value());
+    let trace = &mut watch("inflation", &sample.relaxer);
     let inflated = inflate(&scene.inflation, &prepared, law, &sample.relaxer, sample.seed, trace)?;
-    progress.stage(index, "observables", 0.0);
     let field = DisplacementField::of_inflation(&inflated);
     let observables = &scene.observables;
     let radial_profile = observables.radial_profile.map(|settings| RadialProfile::of(&field, settings.ring_width));

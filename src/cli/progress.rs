@@ -1,6 +1,7 @@
 //! Progress on a terminal: one bar a sample, its stage, residual and time left. Silent when the output is not a terminal.
 
 use std::sync::Mutex;
+use std::time::Instant;
 
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use jamscope::run::Progress;
@@ -18,8 +19,11 @@ pub struct Bars {
 
 #[derive(Clone, Copy)]
 struct Stage {
+    name: &'static str,
     limit: f64,
     first: f64,
+    start: Instant,
+    relaxation_count: usize,
 }
 
 impl Bars {
@@ -37,19 +41,19 @@ impl Bars {
                 bar
             })
             .collect();
-        let stages = Mutex::new(vec![Stage { limit: 0.0, first: f64::NAN }; bars.len()]);
+        let waits = Stage { name: "", limit: 0.0, first: f64::NAN, start: Instant::now(), relaxation_count: 0 };
+        let stages = Mutex::new(vec![waits; bars.len()]);
         Bars { bars, stages, _all: all }
     }
 }
 
 impl Progress for Bars {
-    fn stage(&self, sample: usize, stage: &str, limit: f64) {
-        let Some(bar) = self.bars.get(sample) else { return };
-        if let Ok(mut stages) = self.stages.lock() {
-            stages[sample] = Stage { limit, first: f64::NAN };
-        }
-        bar.reset();
-        bar.set_message(format!("{stage} "));
+    fn stage(&self, sample: usize, name: &'static str, limit: f64) {
+        let (Some(bar), Ok(mut stages)) = (self.bars.get(sample), self.stages.lock()) else { return };
+        let before = &stages[sample];
+        let relaxation_count = if before.name == name { before.relaxation_count + 1 } else { 1 };
+        stages[sample] = Stage { name, limit, first: f64::NAN, start: Instant::now(), relaxation_count };
+        bar.set_position(0);
     }
 
     fn residual(&self, sample: usize, residual: f64) {
@@ -61,16 +65,20 @@ impl Progress for Bars {
         if stage.first.is_nan() {
             stage.first = residual.max(1.0);
         }
-        let part = (stage.first / residual).ln() / (stage.first / stage.limit).ln();
-        let position = (part * PARTS as f64).clamp(0.0, PARTS as f64) as u64;
+        let part = ((stage.first / residual).ln() / (stage.first / stage.limit).ln()).clamp(0.0, 1.0);
         // A quench climbs in between; the bar shows how far it ever came.
-        bar.set_position(position.max(bar.position()));
-        let stage_name = bar.message().split_whitespace().next().unwrap_or_default().to_string();
-        let left = bar.eta().as_secs();
-        bar.set_message(format!(
-            "{stage_name}  residual {residual:.1e}, limit {:.0e}, about {left} s left",
-            stage.limit
-        ));
+        let position = ((part * PARTS as f64) as u64).max(bar.position());
+        bar.set_position(position);
+        let part = position as f64 / PARTS as f64;
+        // The residual falls about as fast in its logarithm all the way.
+        let left = match part {
+            part if part > 0.02 => {
+                format!("about {:.0} s left", stage.start.elapsed().as_secs_f64() * (1.0 - part) / part)
+            }
+            _ => "time left not known yet".into(),
+        };
+        let Stage { name, limit, relaxation_count, .. } = stage;
+        bar.set_message(format!("{name} {relaxation_count}: residual {residual:.1e} to {limit:.0e}, {left}"));
     }
 
     fn done(&self, sample: usize, failure: Option<&str>) {
