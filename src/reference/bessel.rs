@@ -122,13 +122,6 @@ pub(crate) fn first_order(x: f64, x_low: f64) -> (f64, f64) {
     (j - turn * y, y + turn * j)
 }
 
-/// `a · b` without error: the rounded product and what rounding took away.
-#[inline]
-pub(crate) fn two_product(a: f64, b: f64) -> (f64, f64) {
-    let high = a * b;
-    (high, a.mul_add(b, -high))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

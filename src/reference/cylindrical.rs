@@ -13,8 +13,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::reference::bessel::{ASYMPTOTIC_FROM, first_order, modulus_phase, reduced_square_slope, two_product};
-use crate::reference::rim::RimDistance;
+use crate::reference::bessel::{ASYMPTOTIC_FROM, first_order, modulus_phase, reduced_square_slope};
+use crate::reference::rim_distance::RimDistance;
+use crate::vector::two_product;
 
 /// Largest (R − r)/R of the series: its singularity is at 1 (r = 0), so a term gains a factor 0.3.
 const SERIES_SHARE: f64 = 0.3;

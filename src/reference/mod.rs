@@ -23,6 +23,7 @@ mod cylindrical;
 pub mod elastic;
 pub mod poles;
 pub mod rim;
+mod rim_distance;
 pub mod screened;
 mod spherical;
 

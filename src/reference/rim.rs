@@ -1,11 +1,9 @@
 //! [`RimSolution`]: the solution that leaves the held rim with slope −1, smooth in κ, poles or no poles.
 
-use crate::reference::bessel::two_product;
 use crate::reference::cylindrical::Cylindrical;
 use crate::reference::elastic::power_gap;
 use crate::reference::spherical::Spherical;
 use crate::reference::{Annulus, RadialSolution, ReferenceError};
-use crate::vector::two_sum;
 
 /// Up to this κR the elastic solution stands for the screened one: the relative error is (κR)²/8 ≤ 1.3·10⁻¹⁷ in two
 /// dimensions, (κR)²/10 in three (the next term of J_1(y) = y/2 − y³/16 + …, j_1(y) = y/3 − y³/30 + …, which is what
@@ -102,38 +100,5 @@ impl<const D: usize> RadialSolution for RimSolution<D> {
             Form::Cylindrical(solution) => solution.derivative(radius),
             Form::Spherical(solution) => solution.derivative(radius),
         }
-    }
-}
-
-/// `δ = κ(R − r)` as an unevaluated sum of two numbers, so that its sine is known for any κR.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct RimDistance {
-    high: f64,
-    low: f64,
-}
-
-impl RimDistance {
-    pub(crate) fn new(wavenumber: f64, outer_radius: f64, radius: f64) -> Self {
-        let (gap, gap_low) = two_sum(outer_radius, -radius);
-        let (high, low) = two_product(wavenumber, gap);
-        RimDistance { high, low: low + wavenumber * gap_low }
-    }
-
-    /// δ, rounded.
-    pub(crate) fn value(self) -> f64 {
-        self.high
-    }
-
-    /// sin and cos of δ + `shift`.
-    pub(crate) fn sine_cosine(self, shift: f64) -> (f64, f64) {
-        let (angle, rest) = two_sum(self.high, shift);
-        let rest = rest + self.low;
-        let (sine, cosine) = libm::sincos(angle);
-        (sine + rest * cosine, cosine - rest * sine)
-    }
-
-    /// `δ + shift − n π`, to 2⁻⁵² of n π.
-    pub(crate) fn beyond(self, shift: f64, index: f64) -> f64 {
-        (self.high - index * std::f64::consts::PI) + (self.low + shift)
     }
 }

@@ -8,7 +8,7 @@
 //! Both terms have one sign for δ < π, so nothing cancels on the way to the rim or as κ → 0. The phase of j_1 + i y_1
 //! is x − π + φ with φ = arctan(1/x) exactly.
 
-use crate::reference::rim::RimDistance;
+use crate::reference::rim_distance::RimDistance;
 
 /// The rim solution for one κ > 0.
 #[derive(Debug, Clone, Copy)]

@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::displacement::DisplacementField;
 use crate::io::{Column, write_atomically, write_packing};
 use crate::packing::Packing;
+use crate::report::data_file::DataFile;
 use crate::report::rows::{done, law};
 use crate::report::{ReportError, csv};
 use crate::run::{Report, SampleReport, SampleResult};
@@ -32,44 +33,6 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, ReportError
     #[cfg(feature = "plot")]
     files.text("report.html", &crate::report::page::page(report)?)?;
     Ok(files.written)
-}
-
-/// The data files of a sample.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum DataFile {
-    Packing,
-    Displacement,
-    Deflated,
-    RadialProfile,
-    AngularProfiles,
-}
-
-impl DataFile {
-    /// Those of a sample, by what its scene asked for.
-    pub(crate) fn of(report: &Report, result: &SampleResult) -> Vec<DataFile> {
-        let field = report.scene.observables.displacement_field.is_some();
-        let wanted = |file: &DataFile| match file {
-            DataFile::Packing => true,
-            DataFile::Displacement => field,
-            DataFile::Deflated => field && result.cycle_field.is_some(),
-            DataFile::RadialProfile => result.radial_profile.is_some(),
-            DataFile::AngularProfiles => result.angular_profiles.is_some(),
-        };
-        use DataFile::*;
-        [Packing, Displacement, Deflated, RadialProfile, AngularProfiles].into_iter().filter(wanted).collect()
-    }
-
-    /// Its name for this sample.
-    pub(crate) fn name(self, sample: &str) -> String {
-        let ending = match self {
-            DataFile::Packing => "packing.xyz",
-            DataFile::Displacement => "displacement.xyz",
-            DataFile::Deflated => "deflated.xyz",
-            DataFile::RadialProfile => "radial_profile.csv",
-            DataFile::AngularProfiles => "angular_profiles.csv",
-        };
-        format!("{sample}.{ending}")
-    }
 }
 
 /// A folder being filled.

@@ -18,6 +18,7 @@
 
 pub mod csv;
 mod curve;
+mod data_file;
 #[cfg(feature = "plot")]
 pub mod figures;
 mod files;

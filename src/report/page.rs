@@ -3,11 +3,11 @@
 use std::fmt::Write as _;
 
 use crate::inflation::Boundary;
+use crate::report::data_file::DataFile;
 use crate::report::figures::angular::angular_figure;
 use crate::report::figures::heat_map::heat_map;
 use crate::report::figures::radial::radial_figure;
 use crate::report::figures::{Figure, FigureError, escaped};
-use crate::report::files::DataFile;
 use crate::report::number::{count, significant};
 use crate::report::rows::{Times, done, law, sections, settings};
 use crate::run::{Report, SampleOutcome, SampleReport, SampleResult};

@@ -1,0 +1,41 @@
+//! [`DataFile`]: which files a sample writes, and their names.
+
+use crate::run::{Report, SampleResult};
+
+/// The data files of a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum DataFile {
+    Packing,
+    Displacement,
+    Deflated,
+    RadialProfile,
+    AngularProfiles,
+}
+
+impl DataFile {
+    /// Those of a sample, by what its scene asked for.
+    pub(crate) fn of(report: &Report, result: &SampleResult) -> Vec<DataFile> {
+        let field = report.scene.observables.displacement_field.is_some();
+        let wanted = |file: &DataFile| match file {
+            DataFile::Packing => true,
+            DataFile::Displacement => field,
+            DataFile::Deflated => field && result.cycle_field.is_some(),
+            DataFile::RadialProfile => result.radial_profile.is_some(),
+            DataFile::AngularProfiles => result.angular_profiles.is_some(),
+        };
+        use DataFile::*;
+        [Packing, Displacement, Deflated, RadialProfile, AngularProfiles].into_iter().filter(wanted).collect()
+    }
+
+    /// Its name for this sample.
+    pub(crate) fn name(self, sample: &str) -> String {
+        let ending = match self {
+            DataFile::Packing => "packing.xyz",
+            DataFile::Displacement => "displacement.xyz",
+            DataFile::Deflated => "deflated.xyz",
+            DataFile::RadialProfile => "radial_profile.csv",
+            DataFile::AngularProfiles => "angular_profiles.csv",
+        };
+        format!("{sample}.{ending}")
+    }
+}

@@ -1,0 +1,181 @@
+//! [`Report`]: all numbers of a run, with units, as plain data.
+
+use serde::Serialize;
+
+use crate::displacement::{DisplacementField, MeasuredOn};
+#[cfg(feature = "fit")]
+use crate::fit::FitError;
+#[cfg(feature = "fit")]
+use crate::fit::profile::ProfileFit;
+use crate::inflation::Inflated;
+use crate::observe::{AngularProfile, RadialProfile};
+use crate::packing::Packing;
+use crate::relax::{Cost, Criterion};
+use crate::scene::Scene;
+
+/// What a run gives.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// Version of jamscope that made it.
+    pub jamscope_version: &'static str,
+    /// The scene, all defaults filled in.
+    pub scene: Scene,
+    /// One entry a sample, in the order of the scene.
+    pub samples: Vec<SampleReport>,
+}
+
+/// One sample of a run.
+#[derive(Debug, Clone, Serialize)]
+pub struct SampleReport {
+    /// Its name.
+    pub name: String,
+    /// Seed of its random points and of the choice of the inflated disk.
+    pub seed: u64,
+    /// What came out, or why nothing did.
+    #[serde(flatten)]
+    pub result: SampleOutcome,
+}
+
+/// What came out of a sample, or why nothing did.
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SampleOutcome {
+    /// All stages done.
+    Done(Box<SampleResult>),
+    /// A stage failed, in its own words.
+    Failed(String),
+}
+
+/// What came out of a sample.
+#[derive(Debug, Clone, Serialize)]
+pub struct SampleResult {
+    /// The packing before anything is cut or inflated.
+    pub packing: PackingSummary,
+    /// The inflation.
+    pub inflation: InflationSummary,
+    /// Which disks the observables below are measured on.
+    pub measured_on: MeasuredOn,
+    /// Mean radial displacement in rings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radial_profile: Option<RadialProfile>,
+    /// The fits of it.
+    #[cfg(feature = "fit")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub profile_fit: Option<FitResult>,
+    /// Radial displacement against angle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angular_profiles: Option<Vec<AngularProfile>>,
+    /// The displacement field.
+    #[serde(skip)]
+    pub field: DisplacementField<2>,
+    /// What the deflation leaves of it.
+    #[serde(skip)]
+    pub cycle_field: Option<DisplacementField<2>>,
+    /// The states themselves.
+    #[serde(skip)]
+    pub inflated: Inflated<2>,
+    /// The packing itself.
+    #[serde(skip)]
+    pub prepared: Packing<2>,
+}
+
+/// A fit, or why there is none.
+#[cfg(feature = "fit")]
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FitResult {
+    /// The fit.
+    Fitted(ProfileFit),
+    /// Why there is none.
+    Refused(String),
+}
+
+#[cfg(feature = "fit")]
+impl From<Result<ProfileFit, FitError>> for FitResult {
+    fn from(result: Result<ProfileFit, FitError>) -> Self {
+        result.map_or_else(|error| FitResult::Refused(error.to_string()), FitResult::Fitted)
+    }
+}
+
+/// A packing in numbers.
+#[derive(Debug, Clone, Serialize)]
+pub struct PackingSummary {
+    /// Number of disks.
+    pub disk_count: usize,
+    /// Sides of the box \[length\].
+    pub box_sides: [f64; 2],
+    /// Packing fraction \[1\].
+    pub packing_fraction: f64,
+    /// Packing fraction at which random points were quenched; absent for a packing from a file \[1\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quench_packing_fraction: Option<f64>,
+    /// Pressure \[force / length\].
+    pub pressure: f64,
+    /// Elastic energy \[energy\].
+    pub energy: f64,
+    /// Number of contacts.
+    pub contact_count: usize,
+    /// Number of rattlers.
+    pub rattler_count: usize,
+    /// Coordination of the backbone, Z \[1\].
+    pub coordination: f64,
+    /// Number of relaxations.
+    pub relaxation_count: usize,
+    /// How well it is at rest.
+    pub rest: RestSummary,
+}
+
+/// How well a state is at rest.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct RestSummary {
+    /// Which limit was met.
+    pub criterion: Criterion,
+    /// Largest net force on the backbone over the mean contact force \[1\].
+    pub relative_residual: f64,
+    /// Largest net force on the backbone \[force\].
+    pub largest_net_force: f64,
+    /// What rounding alone makes of the relative residual \[1\].
+    pub rounding_floor: f64,
+    /// What it cost.
+    pub cost: Cost,
+}
+
+/// An inflation in numbers.
+#[derive(Debug, Clone, Serialize)]
+pub struct InflationSummary {
+    /// Label of the inflated disk.
+    pub centre_label: u64,
+    /// Its radius before, a \[length\].
+    pub inner_radius: f64,
+    /// r_out, R \[length\].
+    pub outer_radius: f64,
+    /// Number of mobile disks.
+    pub mobile_count: usize,
+    /// Before.
+    pub before: StateSummary,
+    /// After.
+    pub after: StateSummary,
+    /// After the deflation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deflated: Option<StateSummary>,
+    /// Δp = p_after − p_before \[force / length\].
+    pub pressure_change: f64,
+    /// Δp / p^((α−2)/(α−1)), absent for an unjammed packing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scaled_pressure_change: Option<f64>,
+}
+
+/// One state of an inflation in numbers.
+#[derive(Debug, Clone, Serialize)]
+pub struct StateSummary {
+    /// Pressure of the circle or the box \[force / length\].
+    pub pressure: f64,
+    /// Elastic energy \[energy\].
+    pub energy: f64,
+    /// Number of contacts.
+    pub contact_count: usize,
+    /// Number of rattlers.
+    pub rattler_count: usize,
+    /// How well it is at rest.
+    pub rest: RestSummary,
+}
