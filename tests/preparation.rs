@@ -1,6 +1,8 @@
 //! Preparation: targets met, unjammed packings, and what is refused.
 
 use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw};
+use jamscope::displacement::DisplacementField;
+use jamscope::inflation::{Boundary, Inflation, inflate};
 use jamscope::packing::{Component, Mixture, PackingError};
 use jamscope::preparation::{Preparation, PreparationError, Prepared, Target, prepare, random_points};
 use jamscope::relax::{Criterion, Fire, Stop};
@@ -165,4 +167,34 @@ fn random_points_fill_the_box_evenly() {
         let count = packing.positions().iter().filter(inside).count();
         assert!(count.abs_diff(1000) < 137, "{count} points in {quadrant:?}");
     }
+}
+
+/// The same code in space: balls are jammed at a pressure, with at least 2 D contacts each less the D that translation takes,
+/// and one of them inflated in a sphere cut out of the box pushes its neighbours outwards.
+#[test]
+fn balls_are_prepared_and_inflated_by_the_same_code() {
+    let preparation = Preparation {
+        disk_count: 400,
+        mixture: Mixture::default(),
+        target: Target::Pressure(2000.0),
+        tolerance: 0.01,
+        seed: 3,
+    };
+    let (law, fire) = (Hertzian::default(), Fire::default());
+    let prepared = prepare::<3, _>(&preparation, &law, &fire, &mut ()).expect("within reach");
+    assert!((prepared.pressure / 2000.0 - 1.0).abs() <= 0.01);
+    let network = ContactNetwork::new(prepared.packing.get(), &law).expect("valid");
+    let count = network.backbone_count() as f64;
+    let contacts = network.backbone_contacts().count() as f64;
+    assert!(contacts >= 3.0 * count - 3.0, "{contacts} contacts cannot hold {count} balls");
+
+    // Three diameters hold a ball's neighbours; the box has a side of about nine.
+    let boundary = Boundary::HeldRim { outer_radius_over_side: 0.45 };
+    let inflation = Inflation { boundary, ..Inflation::default() };
+    let inflated = inflate(&inflation, prepared.packing.get(), &law, &fire, 3, &mut ()).expect("room to grow");
+    let field = DisplacementField::of_inflation(&inflated);
+    assert_eq!(field.disks.len(), inflated.mobile_count);
+    let near: Vec<f64> = field.counted().filter(|ball| ball.distance < 1.3).map(|ball| ball.radial).collect();
+    assert!(near.len() >= 4 && near.iter().sum::<f64>() > 0.0, "{near:?}");
+    assert!(inflated.after.pressure > inflated.before.pressure);
 }
