@@ -242,7 +242,10 @@ impl RelaxerChoice {
     pub fn name(&self) -> &'static str {
         match self {
             RelaxerChoice::Fire(_) => "FIRE",
-            RelaxerChoice::Damped(_) => "damped dynamics",
+            RelaxerChoice::Damped(damped) => match damped.net_force {
+                NetForce::Elastic => "damped dynamics",
+                NetForce::Total => "damped, total force",
+            },
         }
     }
 }

@@ -169,6 +169,14 @@ fn inflation(report: &Report, samples: &[SampleReport], times: Times) -> Section
     .add("pressure before, p [force/length]", |it| Some(significant(it.inflation.before.pressure, 5)))
     .add("pressure change, Δp [force/length]", |it| Some(significant(it.inflation.pressure_change, 4)))
     .add(scaled_label(exponent), |it| it.inflation.scaled_pressure_change.map(|value| significant(value, 4)))
+    .add("Δp left, deflated [force/length]", |it| {
+        let deflated = it.inflation.deflated.as_ref()?;
+        Some(significant(deflated.pressure - it.inflation.before.pressure, 4))
+    })
+    .add("largest |d| left, deflated [length]", |it| {
+        let left = it.cycle_field.as_ref()?.counted().map(|disk| crate::vector::norm(disk.displacement));
+        Some(significant(left.fold(0.0, crate::vector::larger), 3))
+    })
     .add("penetration, |⟨d_r⟩| ≥ 10⁻³ [length]", |it| {
         penetration_depth(it).map(|depth| significant(depth, 4))
     });
