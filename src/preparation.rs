@@ -142,7 +142,7 @@ pub enum PreparationError {
 /// Relaxations a search for a pressure may take; secants need 3 to 8.
 const RELAXATION_LIMIT: usize = 60;
 
-/// Jamming of random bidisperse packings, to start a search from. Source: O'Hern et al. (2003), table II.
+/// Jamming of random bidisperse packings, to start a search from. Source: O'Hern et al. (2003).
 fn jamming_fraction<const D: usize>() -> f64 {
     if D == 2 { 0.842 } else { 0.648 }
 }
@@ -205,7 +205,7 @@ pub fn prepare<const D: usize, L: PairLaw>(
     }
 }
 
-/// Pressure that affine compression from jamming would give; packings have 0.6 to 0.8 of it.
+/// Pressure that affine compression from jamming would give; packings have about 0.7 of it (a start for the search only).
 fn affine_pressure<const D: usize, L: PairLaw>(law: &L, mixture: &Mixture, packing_fraction: f64) -> f64 {
     let total: f64 = mixture.components.iter().map(|kind| kind.share).sum();
     let mean =

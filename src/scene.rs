@@ -92,7 +92,7 @@ pub struct Observables {
     /// Radial displacement against angle in rings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angular_profiles: Option<AngularProfileSettings>,
-    /// The packing after the inflation with its displacement field, as a file and as a map of r d_r.
+    /// The packing before and after the inflation, with its displacement field, as files; the map of r d_r.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub displacement_field: Option<DisplacementFieldSettings>,
 }
@@ -157,7 +157,7 @@ impl Default for Scene {
     ///
     /// Samples differ a lot at this size; the seeds are those of samples that show what their phase is known for. Relaxed by
     /// FIRE, 24 of 38 unjammed packings answer like this one (neither solution describes the profile; the others feel the
-    /// rim), 11 of 54 at p = 10 (neither, and Δp < 0 in 7), and 34 of 38 at p = 4000 (elastic).
+    /// rim), 11 of 54 at p = 10 (Δp < 0 in 7 of the 54), and 34 of 38 at p = 4000 (elastic).
     fn default() -> Self {
         Scene {
             disk_count: 5548,

@@ -317,26 +317,24 @@ fn damped(name: &str, law: &impl PairLaw) -> Packing<2> {
     damped.relax(start, law, &mut ()).expect("no coincidence").converged().expect("at rest").into_inner()
 }
 
-#[test]
-fn fire_and_damped_dynamics_end_where_those_of_lammps_do_hertzian() {
-    let (name, law) = ("hertz_N1000_p800", Hertzian::default());
-    let ends = [fire(&format!("{name}_fire"), &law), damped(&format!("{name}_md"), &law)];
+/// FIRE and damped dynamics of ours against FIRE and both damped runs of LAMMPS: one minimum.
+fn all_end_together(name: &str, law: &impl PairLaw) {
+    let ends = [fire(&format!("{name}_fire"), law), damped(&format!("{name}_md"), law)];
     for method in ["fire", "md", "mdnet"] {
         let inflated = Inflated::read(&format!("{name}_{method}"));
-        relaxed_agrees(&inflated, &format!("FIRE, {name}_{method}"), &ends[0], &law);
-        relaxed_agrees(&inflated, &format!("damped, {name}_{method}"), &ends[1], &law);
+        relaxed_agrees(&inflated, &format!("FIRE, {name}_{method}"), &ends[0], law);
+        relaxed_agrees(&inflated, &format!("damped, {name}_{method}"), &ends[1], law);
     }
 }
 
 #[test]
+fn fire_and_damped_dynamics_end_where_those_of_lammps_do_hertzian() {
+    all_end_together("hertz_N1000_p800", &Hertzian::default());
+}
+
+#[test]
 fn fire_and_damped_dynamics_end_where_those_of_lammps_do_hookean() {
-    let (name, law) = ("hooke_N1000_p5000", Hookean::default());
-    let ends = [fire(&format!("{name}_fire"), &law), damped(&format!("{name}_md"), &law)];
-    for method in ["fire", "md", "mdnet"] {
-        let inflated = Inflated::read(&format!("{name}_{method}"));
-        relaxed_agrees(&inflated, &format!("FIRE, {name}_{method}"), &ends[0], &law);
-        relaxed_agrees(&inflated, &format!("damped, {name}_{method}"), &ends[1], &law);
-    }
+    all_end_together("hooke_N1000_p5000", &Hookean::default());
 }
 
 /// Here FIRE and damped dynamics end in two minima, in LAMMPS (header `same false`) and with ours: each method meets its

@@ -86,7 +86,7 @@ fn text(files: &BTreeMap<String, Vec<u8>>, name: &str) -> String {
 
 #[test]
 fn the_files_are_those_asked_for() {
-    let always = ["report.json", "timings.json", "loose.packing.xyz"];
+    let always = ["report.json", "timings.json"];
     let page: &[&str] = if cfg!(feature = "plot") { &["report.html"] } else { &[] };
     let nothing = Observables {
         radial_profile: None,
@@ -103,10 +103,10 @@ fn the_files_are_those_asked_for() {
         (nothing, &[], &[]),
         (radial, &["loose.radial_profile.csv"], &["radial profile"]),
         (angular, &["loose.angular_profiles.csv"], &["angular profiles"]),
-        (field, &["loose.displacement.xyz"], &["map of"]),
+        (field, &["loose.packing.xyz", "loose.displacement.xyz"], &["map of"]),
         (
             all,
-            &["loose.radial_profile.csv", "loose.angular_profiles.csv", "loose.displacement.xyz"],
+            &["loose.radial_profile.csv", "loose.angular_profiles.csv", "loose.packing.xyz", "loose.displacement.xyz"],
             &["radial profile", "angular profiles", "map of"],
         ),
     ];

@@ -82,7 +82,7 @@ pub struct Hookean {
 /// [`Hookean`] or [`Hertzian`], whose coefficients depend on the radii in another way.
 ///
 /// # Source
-/// O'Hern, Silbert, Liu, Nagel (2003), Phys. Rev. E 68, 011306, eq. (1).
+/// O'Hern, Silbert, Liu, Nagel (2003), Phys. Rev. E 68, 011306.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PowerLaw {

@@ -17,8 +17,7 @@ impl DataFile {
     pub(crate) fn of(report: &Report, result: &SampleResult) -> Vec<DataFile> {
         let field = report.scene.observables.displacement_field.is_some();
         let wanted = |file: &DataFile| match file {
-            DataFile::Packing => true,
-            DataFile::Displacement => field,
+            DataFile::Packing | DataFile::Displacement => field,
             DataFile::Deflated => field && result.cycle_field.is_some(),
             DataFile::RadialProfile => result.radial_profile.is_some(),
             DataFile::AngularProfiles => result.angular_profiles.is_some(),

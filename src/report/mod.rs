@@ -9,7 +9,7 @@
 //! |---|---|
 //! | `report.json` | the whole [`Report`], every number to the last bit, no wall times |
 //! | `timings.json` | wall times \[s\], the only file in which two runs of one scene differ |
-//! | `NAME.packing.xyz` | the prepared packing |
+//! | `NAME.packing.xyz` | the prepared packing, if the scene asks for the displacement field |
 //! | `NAME.displacement.xyz` | the packing after the inflation, with its displacement field |
 //! | `NAME.deflated.xyz` | the same after the deflation: what is left of the displacement |
 //! | `NAME.radial_profile.csv` | mean radial displacement, ring by ring, and the fitted solutions |
