@@ -1,7 +1,7 @@
 //! Bringing a packing to rest: [`Relaxer`], its [`Outcome`], and [`Relaxed`], which only a converged outcome can make.
 //!
 //! The residual is the largest net force on a mobile disk of the backbone over the mean contact force of the backbone.
-//! Held disks never count. Rattlers are held to the square root of the limit only: their contacts open algebraically
+//! Where disks press each other but there is no backbone, as in a chain, all mobile disks count. Held disks never do. Rattlers are held to the square root of the limit only: their contacts open algebraically
 //! slowly, without touching the backbone.
 
 pub mod damped;
@@ -57,7 +57,8 @@ pub enum Criterion {
     RelativeForce,
     /// The absolute residual.
     AbsoluteForce,
-    /// Every contact force and every net force vanished, see [`UNJAMMED_FORCE`].
+    /// Every contact force and every net force vanished, see [`UNJAMMED_FORCE`]; and is below the limit, if that is
+    /// absolute.
     Unjammed,
 }
 

@@ -33,9 +33,14 @@ impl Monitor {
     /// A watch with this limit.
     pub fn new<const D: usize, L: PairLaw>(limit: ForceLimit, assembly: &Assembly<D, L>) -> Self {
         let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
+        let unjammed_force = UNJAMMED_FORCE * assembly.law().force_scale(radius);
         Monitor {
             limit,
-            unjammed_force: UNJAMMED_FORCE * assembly.law().force_scale(radius),
+            // Who asks for less than what counts as no force gets it.
+            unjammed_force: match limit {
+                ForceLimit::Absolute(limit) => unjammed_force.min(limit),
+                ForceLimit::Relative(_) => unjammed_force,
+            },
             backbone: vec![true; assembly.len()],
             look_count: 0,
             best: f64::INFINITY,
@@ -75,7 +80,8 @@ impl Monitor {
         self.at_the_floor().then_some(Stop::RoundingFloor)
     }
 
-    /// Determines the backbone and the residual on it; whether it is within the limit.
+    /// Determines the backbone and the residual on it (on all disks where there are forces but no backbone); whether it is
+    /// within the limit.
     fn refresh<const D: usize, L: PairLaw>(
         &mut self,
         assembly: &Assembly<D, L>,
@@ -85,6 +91,11 @@ impl Monitor {
         let links: Vec<(u32, u32)> = contacts.iter().map(|contact| (contact.first, contact.second)).collect();
         let held: Vec<bool> = (0..assembly.len()).map(|disk| disk >= assembly.mobile_count()).collect();
         self.backbone = backbone::<D>(&held, &links);
+        let rigid = self.backbone[..assembly.mobile_count()].iter().any(|&member| member);
+        if !rigid && contacts.iter().any(|contact| contact.force > self.unjammed_force) {
+            // A chain between walls has no backbone and may be at rest under forces all the same: every disk counts.
+            self.backbone.fill(true);
+        }
         let members = &self.backbone;
         let (count, total) = contacts
             .iter()
@@ -92,20 +103,18 @@ impl Monitor {
             .fold((0usize, 0.0), |(count, total), contact| (count + 1, total + contact.force));
         let mean = if count == 0 { 0.0 } else { total / count as f64 };
         let (inner, outer) = self.largest(net_forces);
-        let rigid = members[..assembly.mobile_count()].iter().any(|&member| member);
         self.floor = floor_of(assembly, members, mean, assembly.longest_displacement());
         self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
         // Felt: within a factor 20 of the residual, and new anchors would lower the floor by more than 4.
         self.anchors_felt =
             self.floor > 0.05 * self.last.relative() && self.floor > 4.0 * floor_of(assembly, members, mean, 0.0);
         let stop = match self.limit {
-            ForceLimit::Relative(limit) => {
-                (rigid && inner <= limit * mean && outer <= limit.sqrt() * mean).then_some(Criterion::RelativeForce)
-            }
+            ForceLimit::Relative(limit) => (mean > 0.0 && inner <= limit * mean && outer <= limit.sqrt() * mean)
+                .then_some(Criterion::RelativeForce),
             ForceLimit::Absolute(limit) if rigid => {
                 (inner <= limit && outer <= limit.sqrt() * mean.max(limit)).then_some(Criterion::AbsoluteForce)
             }
-            ForceLimit::Absolute(limit) => (outer <= limit).then_some(Criterion::AbsoluteForce),
+            ForceLimit::Absolute(limit) => (larger(inner, outer) <= limit).then_some(Criterion::AbsoluteForce),
         };
         stop.map(Stop::Converged)
     }
