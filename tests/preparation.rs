@@ -124,7 +124,7 @@ fn nonsense_is_refused_with_its_number() {
         refused(&preparation(0, target, 1), PreparationError::Packing(PackingError::NoDisks), "at least one disk");
         let components = vec![Component { radius: 0.5, share: 1.0 }, Component { radius: -0.7, share: 1.0 }];
         let negative = Preparation { mixture: Mixture { components }, ..preparation(10, target, 1) };
-        let expected = PackingError::MixtureRadiusNotPositive { component: 1, radius: -0.7 };
+        let expected = PackingError::MixtureRadiusOutOfRange { component: 1, radius: -0.7 };
         refused(&negative, PreparationError::Packing(expected), "-0.7");
     }
     let nan = made(&preparation(10, Target::PackingFraction(f64::NAN), 1), &Hertzian::default());

@@ -2,7 +2,8 @@
 //!
 //! Mobile disks come first, then the held ones, each part in spatial order, so that neighbours in space are neighbours
 //! in memory; the caller's numbering stays outside. A centre is an anchor plus a displacement; the displacement is all
-//! that a relaxer moves. When the neighbour list is made anew, anchors take over what the displacements have gathered
+//! that a relaxer moves. Anchors are counted from a corner of the disks' own surroundings, so it does not matter how far
+//! from the origin a packing lies. When the neighbour list is made anew, anchors take over what the displacements have gathered
 //! (without rounding: the remainder stays in the displacement).
 
 use crate::contact::forces::{self, Totals};
@@ -19,7 +20,10 @@ pub const SKIN: f64 = 0.25;
 #[derive(Debug, Clone)]
 pub struct Assembly<const D: usize, L> {
     law: L,
+    /// The domain, moved by −`origin`.
     domain: Domain<D>,
+    /// What anchors are counted from.
+    origin: Vector<D>,
     /// Caller's index of each disk in working order.
     order: Vec<u32>,
     mobile_count: usize,
@@ -57,12 +61,21 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             let shortest = lengths.iter().copied().fold(f64::INFINITY, f64::min);
             skin = skin.min((0.5 * shortest - 2.0 * largest).max(0.0));
         }
+        let (origin, domain) = origin_and_domain(packing);
+        let (mut anchors, mut displacements) = (pick(packing.positions()), pick(packing.corrections()));
+        for (anchor, displacement) in anchors.iter_mut().zip(&mut displacements) {
+            for d in 0..D {
+                let (high, low) = two_sum(anchor[d], -origin[d]);
+                (anchor[d], displacement[d]) = (high, low + displacement[d]);
+            }
+        }
         let mut assembly = Assembly {
             law,
-            domain: *packing.domain(),
+            domain,
+            origin,
             mobile_count: packing.held().iter().filter(|&&held| !held).count(),
-            anchors: pick(packing.positions()),
-            displacements: pick(packing.corrections()),
+            anchors,
+            displacements,
             forces: vec![[0.0; D]; packing.len()],
             listed: Vec::new(),
             checkpoint: Vec::new(),
@@ -84,7 +97,10 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     pub fn placed(&self, mut packing: Packing<D>) -> Packing<D> {
         assert_eq!(packing.len(), self.order.len(), "an assembly belongs to the packing it was made from");
         for (index, &disk) in self.order.iter().enumerate().take(self.mobile_count) {
-            packing.place(disk as usize, self.anchors[index], self.displacements[index]);
+            let (anchor, displacement) = (self.anchors[index], self.displacements[index]);
+            let sums: Vector<D> = std::array::from_fn(|d| anchor[d] + self.origin[d]);
+            let rest = std::array::from_fn(|d| two_sum(anchor[d], self.origin[d]).1 + displacement[d]);
+            packing.place(disk as usize, sums, rest);
         }
         packing
     }
@@ -241,5 +257,22 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         row.resize(self.len(), 0.0);
         forces::stiffness_rows(&self.law, &self.pairs, &self.displacements, self.mobile_count, weight, row);
         row[..self.mobile_count].iter().fold(0.0, |most, &value| if value > most { value } else { most })
+    }
+}
+
+/// What anchors are counted from, and the domain seen from there: the corner of a periodic box; in the open plane the
+/// plane's own origin, or a corner of the disks if they all lie so far on one side of it that their distances would be
+/// rounded like their positions.
+fn origin_and_domain<const D: usize>(packing: &Packing<D>) -> (Vector<D>, Domain<D>) {
+    match packing.domain() {
+        Domain::Periodic { corner, lengths } => (*corner, Domain::Periodic { corner: [0.0; D], lengths: *lengths }),
+        Domain::Open => {
+            let origin = std::array::from_fn(|d| {
+                let column = || packing.positions().iter().map(|position| position[d]);
+                let (low, high) = (column().fold(f64::INFINITY, f64::min), column().fold(f64::NEG_INFINITY, f64::max));
+                if high - low < low.abs() { low } else { 0.0 }
+            });
+            (origin, Domain::Open)
+        }
     }
 }

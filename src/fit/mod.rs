@@ -6,9 +6,12 @@ pub mod profile;
 mod rings;
 mod screening;
 mod significance;
+mod units;
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
+
+use crate::reference::ReferenceError;
 
 /// A fitted number and its standard error, in the units of the number.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -36,16 +39,19 @@ pub enum FitError {
         /// Outer end of the range \[length\].
         to: f64,
     },
-    /// Every ring in the range is at rest.
-    #[error("all {ring_count} rings of the range have zero displacement")]
+    /// Every ring is at rest, to less than 10⁻¹⁰⁰ of the errors.
+    #[error("all {ring_count} rings have zero displacement")]
     NoDisplacement {
         /// Rings in the range.
         ring_count: usize,
     },
+    /// Radii further apart than numbers reach.
+    #[error("the annulus: {0}")]
+    Annulus(#[from] ReferenceError),
     /// A ring whose numbers cannot be used.
     #[error(
-        "ring {ring}: radius {radius} (positive), mean {mean} (finite), standard error {standard_error} (not negative) \
-         of {disk_count} disks (at least one)"
+        "ring {ring}: radius {radius} (positive), mean {mean} (up to 1e200), standard error {standard_error} (not negative, \
+         up to 1e200) of {disk_count} disks (at least one)"
     )]
     RingUnusable {
         /// Index of the ring, from 0.

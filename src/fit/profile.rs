@@ -33,6 +33,7 @@ use serde::{Deserialize, Serialize};
 use crate::fit::rings::Rings;
 use crate::fit::screening::{Landscape, Projection};
 use crate::fit::significance::{chance, corrected, effective_count, freedom};
+use crate::fit::units::Units;
 use crate::fit::{Estimate, FitError};
 use crate::observe::radial_profile::RadialProfile;
 use crate::reference::Annulus;
@@ -182,8 +183,12 @@ pub fn fit_radial_profile(
     annulus: Annulus,
     settings: &ProfileFitSettings,
 ) -> Result<ProfileFit, FitError> {
+    settings.range(annulus)?;
+    let units = Units::of(&profile.rings, annulus)?;
+    let annulus = units.annulus(annulus)?;
     let [from, to] = settings.range(annulus)?;
-    let rings = Rings::new(&profile.rings, from, to, LEAST_RING_COUNT)?;
+    let rings =
+        Rings::new(&units.rings(&profile.rings), from, to, LEAST_RING_COUNT).map_err(|error| units.error(error))?;
     let landscape = Landscape::new(&rings, annulus);
     let ring_count = rings.len() as f64;
     let shortest_wavelength = settings.rings_per_wavelength * (to - from) / ring_count;
@@ -207,7 +212,9 @@ pub fn fit_radial_profile(
         None if describes(elastic.share_described, elastic.chance_of_nothing) => Decision::Elastic,
         _ => Decision::Neither,
     };
-    Ok(ProfileFit { decision, elastic, screened, ring_count: rings.len(), range: [from, to], largest_wavenumber })
+    let fit =
+        ProfileFit { decision, elastic, screened, ring_count: rings.len(), range: [from, to], largest_wavenumber };
+    Ok(units.fit(fit, rings.errors_known))
 }
 
 impl ProfileFitSettings {

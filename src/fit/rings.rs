@@ -34,23 +34,6 @@ impl Rings {
     /// so no ring has infinite weight. Source: Smyth (2004), Stat. Appl. Genet. Mol. Biol. 3, 3, eq. for the moderated
     /// variance, with fixed ν.
     pub(crate) fn new(rings: &[Ring], from: f64, to: f64, needed: usize) -> Result<Self, FitError> {
-        for (index, ring) in rings.iter().enumerate() {
-            let usable = ring.radius > 0.0
-                && ring.radius.is_finite()
-                && ring.mean.is_finite()
-                && ring.standard_error >= 0.0
-                && ring.standard_error.is_finite()
-                && ring.disk_count > 0;
-            if !usable {
-                return Err(FitError::RingUnusable {
-                    ring: index,
-                    radius: ring.radius,
-                    mean: ring.mean,
-                    standard_error: ring.standard_error,
-                    disk_count: ring.disk_count,
-                });
-            }
-        }
         let mut used: Vec<&Ring> = rings.iter().filter(|ring| from <= ring.radius && ring.radius <= to).collect();
         used.sort_by(|a, b| a.radius.total_cmp(&b.radius));
         if used.len() < needed {
@@ -63,8 +46,9 @@ impl Rings {
         let variance = |ring: &Ring| (ring.radius * ring.standard_error).powi(2) * ring.disk_count as f64;
         let total: f64 = used.iter().map(|ring| freedom(ring)).sum();
         let pooled = used.iter().map(|ring| freedom(ring) * variance(ring)).sum::<f64>() / total;
-        // No ring of two disks or no spread in any: 0/0 or 0.
-        let errors_known = pooled > 0.0;
+        // No ring of two disks or no spread in any: 0/0 or 0. In the units of the fit the largest number is about 1, and an
+        // error of 10⁻¹⁰⁰ is none.
+        let errors_known = pooled > 1e-200;
         let error = |ring: &Ring| {
             let moderated = if errors_known {
                 (freedom(ring) * variance(ring) + PRIOR_FREEDOM * pooled) / (freedom(ring) + PRIOR_FREEDOM)

@@ -37,15 +37,16 @@ impl RadialProfile {
     /// If the width is not positive.
     pub fn of<const D: usize>(field: &DisplacementField<D>, ring_width: f64) -> Self {
         assert!(ring_width > 0.0, "a ring has a positive width, not {ring_width}");
-        let count = ((field.outer_radius - field.inner_radius) / ring_width).ceil().max(1.0) as usize;
-        let mut members: Vec<Vec<(f64, f64)>> = vec![Vec::new(); count];
-        for disk in field.counted() {
-            let ring = (disk.distance - field.inner_radius) / ring_width;
-            if ring >= 0.0 && (ring as usize) < count {
-                members[ring as usize].push((disk.distance, disk.radial));
-            }
-        }
-        RadialProfile { rings: members.iter().filter_map(|ring| Ring::of(ring)).collect() }
+        let last = ((field.outer_radius - field.inner_radius) / ring_width).ceil().max(1.0);
+        let ring_of = |distance: f64| ((distance - field.inner_radius) / ring_width).floor();
+        let counted = field.counted().map(|disk| (ring_of(disk.distance), (disk.distance, disk.radial)));
+        let mut members: Vec<(f64, (f64, f64))> = counted.filter(|(ring, _)| (0.0..last).contains(ring)).collect();
+        // Stable: within a ring the disks stay in their order. Grouping what is there, not listing what might be, keeps the
+        // narrowest ring as cheap as the widest.
+        members.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let rings = members.chunk_by(|a, b| a.0 == b.0);
+        let rings = rings.filter_map(|ring| Ring::of(&ring.iter().map(|&(_, disk)| disk).collect::<Vec<_>>()));
+        RadialProfile { rings: rings.collect() }
     }
 }
 

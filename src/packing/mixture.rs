@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::packing::PackingError;
+use crate::packing::{LARGEST_RADIUS, PackingError, SMALLEST_RADIUS};
 
 /// One kind of disk in a mixture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -41,14 +41,15 @@ impl Mixture {
     /// proportions by less than one disk a kind.
     ///
     /// # Errors
-    /// No component, a radius or share that is not positive and finite, or no disk.
+    /// No component, a radius outside [`SMALLEST_RADIUS`] to [`LARGEST_RADIUS`], a share that is not positive and finite, or
+    /// no disk.
     pub fn radii(&self, count: usize) -> Result<Vec<f64>, PackingError> {
         if count == 0 || self.components.is_empty() {
             return Err(PackingError::NoDisks);
         }
         for (component, kind) in self.components.iter().enumerate() {
-            if !(kind.radius.is_finite() && kind.radius > 0.0) {
-                return Err(PackingError::MixtureRadiusNotPositive { component, radius: kind.radius });
+            if !(SMALLEST_RADIUS..=LARGEST_RADIUS).contains(&kind.radius) {
+                return Err(PackingError::MixtureRadiusOutOfRange { component, radius: kind.radius });
             }
             if !(kind.share.is_finite() && kind.share > 0.0) {
                 return Err(PackingError::MixtureShareNotPositive { component, share: kind.share });

@@ -25,6 +25,12 @@ pub struct Packing<const D: usize> {
     labels: Vec<u64>,
 }
 
+/// Smallest radius \[length\]: the square of its rounding, 10⁻³² of its own, is still a normal number.
+pub const SMALLEST_RADIUS: f64 = 1e-130;
+
+/// Largest radius \[length\]: the square of ten of them is still a number, and so are forces of stiffness constants up to 10¹⁵⁰.
+pub const LARGEST_RADIUS: f64 = 1e150;
+
 /// What is wrong with the disks given.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -56,17 +62,21 @@ pub enum PackingError {
         /// The value found.
         value: f64,
     },
-    /// A radius that is not a positive finite number.
-    #[error("disk {disk}: radius is {radius}, not a positive number")]
-    RadiusNotPositive {
+    /// A radius whose square, or that of whose rounding, is not a number.
+    #[error(
+        "disk {disk}: radius is {radius:e}, outside {SMALLEST_RADIUS:e} to {LARGEST_RADIUS:e}, where squares of lengths keep their digits"
+    )]
+    RadiusOutOfRange {
         /// Index of the disk, from 0.
         disk: usize,
         /// The value found.
         radius: f64,
     },
-    /// A kind of disk in a mixture with a radius that is not a positive finite number.
-    #[error("mixture component {component}: radius is {radius}, not a positive number")]
-    MixtureRadiusNotPositive {
+    /// A kind of disk in a mixture with a radius that no disk can have.
+    #[error(
+        "mixture component {component}: radius is {radius:?}, not a number from {SMALLEST_RADIUS:e} to {LARGEST_RADIUS:e}"
+    )]
+    MixtureRadiusOutOfRange {
         /// Index of the component, from 0.
         component: usize,
         /// The value found.
@@ -136,9 +146,7 @@ impl<const D: usize> Packing<D> {
             if let Some(axis) = position.iter().position(|value| !value.is_finite()) {
                 return Err(PackingError::PositionNotFinite { disk, axis, value: position[axis] });
             }
-            if !(radius.is_finite() && radius > 0.0) {
-                return Err(PackingError::RadiusNotPositive { disk, radius });
-            }
+            check_radius(disk, radius)?;
         }
         Ok(Packing {
             domain,
@@ -197,14 +205,12 @@ impl<const D: usize> Packing<D> {
     /// The same packing with another radius for one disk.
     ///
     /// # Errors
-    /// The radius must be positive and finite.
+    /// The radius must lie between [`SMALLEST_RADIUS`] and [`LARGEST_RADIUS`].
     ///
     /// # Panics
     /// If there is no such disk.
     pub fn with_radius(mut self, disk: usize, radius: f64) -> Result<Self, PackingError> {
-        if !(radius.is_finite() && radius > 0.0) {
-            return Err(PackingError::RadiusNotPositive { disk, radius });
-        }
+        check_radius(disk, radius)?;
         self.radii[disk] = radius;
         Ok(self)
     }
@@ -302,6 +308,12 @@ impl<const D: usize> Packing<D> {
     }
 }
 
+fn check_radius(disk: usize, radius: f64) -> Result<(), PackingError> {
+    // NaN is in no range.
+    let possible = (SMALLEST_RADIUS..=LARGEST_RADIUS).contains(&radius);
+    if possible { Ok(()) } else { Err(PackingError::RadiusOutOfRange { disk, radius }) }
+}
+
 /// Area of a disk (D = 2) or volume of a ball (D = 3).
 ///
 /// # Panics
@@ -324,7 +336,7 @@ mod tests {
         assert_eq!(Packing::new(domain, vec![], vec![]), Err(PackingError::NoDisks));
         assert_eq!(
             Packing::new(domain, vec![[1.0, 1.0]], vec![-0.5]),
-            Err(PackingError::RadiusNotPositive { disk: 0, radius: -0.5 })
+            Err(PackingError::RadiusOutOfRange { disk: 0, radius: -0.5 })
         );
         let nan = Packing::new(domain, vec![[1.0, f64::NAN]], vec![0.5]);
         assert!(matches!(nan, Err(PackingError::PositionNotFinite { disk: 0, axis: 1, .. })));

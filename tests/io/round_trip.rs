@@ -39,7 +39,7 @@ fn row<const D: usize>() -> impl Strategy<Value = Row<D>> {
     (
         prop::array::uniform::<_, D>(coordinate),
         prop::array::uniform::<_, D>(low),
-        prop_oneof![positive(), 0.1..1.0],
+        prop_oneof![(-129.0..149.0f64).prop_map(|power| 10f64.powf(power)), 0.1..1.0],
         any::<bool>(),
         label,
     )

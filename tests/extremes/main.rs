@@ -1,0 +1,42 @@
+//! The stress suite: numbers far beyond what packings are made of. Each case says what is expected of it, a value with a
+//! bound or a named outcome. Nothing hangs, overflows unseen, or comes back as NaN.
+//!
+//! `.ci/run` runs it twice, with the tests' profile and optimised as a release with overflow checks on.
+
+mod command;
+#[cfg(feature = "fit")]
+mod fits;
+mod geometry;
+mod inflations;
+mod preparations;
+mod scales;
+
+use jamscope::contact::PairLaw;
+use jamscope::packing::{Domain, Mixture, Packing};
+use jamscope::preparation::random_points;
+use jamscope::relax::{Fire, ForceLimit, Outcome, Relaxer};
+
+/// FIRE with this relative limit and no more than 200 000 steps: a hang would show as the step limit.
+fn fire(limit: f64) -> Fire {
+    Fire { limit: ForceLimit::Relative(limit), step_limit: 200_000, ..Fire::default() }
+}
+
+fn relax<const D: usize, L: PairLaw>(packing: Packing<D>, law: &L, fire: &Fire) -> Outcome<Packing<D>> {
+    fire.relax(packing, law, &mut ()).expect("no coincidence")
+}
+
+fn points(count: usize, packing_fraction: f64, seed: u64) -> Packing<2> {
+    random_points::<2>(count, &Mixture::default(), packing_fraction, seed).expect("a possible packing fraction")
+}
+
+/// Disks in the open plane, the flagged ones held.
+fn open(disks: &[([f64; 2], f64)], held: &[bool]) -> Packing<2> {
+    let (positions, radii) = disks.iter().copied().unzip();
+    Packing::new(Domain::Open, positions, radii).and_then(|packing| packing.with_held(held.to_vec())).expect("valid")
+}
+
+/// Whether every number of a packing is finite.
+fn all_finite<const D: usize>(packing: &Packing<D>) -> bool {
+    let numbers = packing.positions().iter().chain(packing.corrections()).flatten();
+    numbers.copied().all(f64::is_finite)
+}
