@@ -39,8 +39,8 @@ pub enum FitError {
         /// Outer end of the range \[length\].
         to: f64,
     },
-    /// Every ring is at rest, to less than 10⁻¹⁰⁰ of the errors.
-    #[error("all {ring_count} rings have zero displacement")]
+    /// Every ring in the range is at rest, to less than 10⁻¹⁰⁰ of the errors.
+    #[error("all {ring_count} rings of the range have zero displacement")]
     NoDisplacement {
         /// Rings in the range.
         ring_count: usize,

@@ -183,8 +183,7 @@ pub fn fit_radial_profile(
     annulus: Annulus,
     settings: &ProfileFitSettings,
 ) -> Result<ProfileFit, FitError> {
-    settings.range(annulus)?;
-    let units = Units::of(&profile.rings, annulus)?;
+    let units = Units::of(&profile.rings, annulus, settings.range(annulus)?)?;
     let annulus = units.annulus(annulus)?;
     let [from, to] = settings.range(annulus)?;
     let rings =

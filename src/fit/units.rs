@@ -25,11 +25,11 @@ fn power_of_two(value: f64) -> f64 {
 }
 
 impl Units {
-    /// The units of rings in an annulus.
+    /// The units of the rings of an annulus with `from` ≤ r ≤ `to`.
     ///
     /// # Errors
-    /// A ring whose numbers cannot be used; no displacement in any, or none to speak of beside the errors.
-    pub(crate) fn of(rings: &[Ring], annulus: Annulus) -> Result<Self, FitError> {
+    /// A ring whose numbers cannot be used; no displacement to speak of beside the errors.
+    pub(crate) fn of(rings: &[Ring], annulus: Annulus, [from, to]: [f64; 2]) -> Result<Self, FitError> {
         for (index, ring) in rings.iter().enumerate() {
             let usable = ring.radius > 0.0
                 && ring.radius.is_finite()
@@ -46,10 +46,11 @@ impl Units {
                 });
             }
         }
-        let mean = rings.iter().fold(0.0, |most: f64, ring| most.max(ring.mean.abs()));
-        let error = rings.iter().fold(0.0, |most: f64, ring| most.max(ring.standard_error));
-        if !rings.is_empty() && (mean < f64::MIN_POSITIVE || mean < LEAST_DISPLACEMENT * error) {
-            return Err(FitError::NoDisplacement { ring_count: rings.len() });
+        let used = || rings.iter().filter(|ring| from <= ring.radius && ring.radius <= to);
+        let mean = used().fold(0.0, |most: f64, ring| most.max(ring.mean.abs()));
+        let error = used().fold(0.0, |most: f64, ring| most.max(ring.standard_error));
+        if mean < LEAST_DISPLACEMENT * error {
+            return Err(FitError::NoDisplacement { ring_count: used().count() });
         }
         let displacement = power_of_two(mean.max(error).max(f64::MIN_POSITIVE));
         Ok(Units { length: power_of_two(annulus.outer_radius().max(f64::MIN_POSITIVE)), displacement })
