@@ -256,6 +256,9 @@ impl Scene {
         check_relaxer("preparation.relaxer", &self.preparation.relaxer)?;
         let increase = self.inflation.increase;
         within("inflation.increase", increase, "a finite number", increase.is_finite())?;
+        if let Some(coupling) = self.inflation.on_site_coupling {
+            within("inflation.on_site_coupling", coupling, "a finite number", coupling.is_finite())?;
+        }
         if let Boundary::HeldRim { outer_radius_over_side: ratio } = self.inflation.boundary {
             let field = "inflation.boundary.held_rim.outer_radius_over_side";
             within(field, ratio, "above 0 and at most 0.5", ratio > 0.0 && ratio <= 0.5)?;

@@ -10,7 +10,7 @@ use crate::contact::forces::{self, Totals};
 use crate::contact::law::PairLaw;
 use crate::contact::neighbours::{Disks, PairList, build_pairs, spatial_order};
 use crate::packing::{Domain, Packing, PackingError};
-use crate::vector::{Vector, difference, dot, two_sum};
+use crate::vector::{Vector, difference, dot, extended_sum, two_sum};
 
 /// Width of the skin over the smallest radius \[1\]. Changes speed only: a wider one makes lists last longer and adds pairs
 /// that do not touch.
@@ -28,6 +28,8 @@ pub struct Assembly<const D: usize, L> {
     order: Vec<u32>,
     mobile_count: usize,
     anchors: Vec<Vector<D>>,
+    /// Anchor minus site of each mobile disk, as unevaluated sums; empty for a law without sites.
+    from_sites: Vec<[(f64, f64); D]>,
     radii: Vec<f64>,
     pairs: PairList<D>,
     skin: f64,
@@ -81,11 +83,21 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             checkpoint: Vec::new(),
             moved: 0.0,
             rebuild_count: 0,
+            from_sites: Vec::new(),
             pairs: PairList::default(),
             radii,
             skin,
             order,
         };
+        if L::ON_SITE {
+            // An anchor is the position less the origin, rounded; the displacement has the rest.
+            let from_site = |&disk: &u32| {
+                let position = packing.positions()[disk as usize];
+                let way = packing.way_from_site(disk as usize, position);
+                std::array::from_fn(|d| extended_sum(way[d], -two_sum(position[d], -origin[d]).1))
+            };
+            assembly.from_sites = assembly.order[..assembly.mobile_count].iter().map(from_site).collect();
+        }
         assembly.rebuild()?;
         Ok(assembly)
     }
@@ -96,6 +108,9 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// If `packing` is not the one the assembly was made from.
     pub fn placed(&self, mut packing: Packing<D>) -> Packing<D> {
         assert_eq!(packing.len(), self.order.len(), "an assembly belongs to the packing it was made from");
+        if L::ON_SITE && packing.sites().is_none() {
+            packing = packing.with_sites_here();
+        }
         for (index, &disk) in self.order.iter().enumerate().take(self.mobile_count) {
             let (anchor, displacement) = (self.anchors[index], self.displacements[index]);
             let sums: Vector<D> = std::array::from_fn(|d| anchor[d] + self.origin[d]);
@@ -148,11 +163,46 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Forces of the present displacements into [`Assembly::forces`].
     pub fn evaluate(&mut self) {
         forces::forces(&self.law, &self.pairs, &self.displacements, &mut self.forces);
+        if L::ON_SITE {
+            let _ = self.add_on_site_forces();
+        }
     }
 
     /// Forces as by [`Assembly::evaluate`], with energy, virial and contact count.
     pub fn evaluate_totals(&mut self) -> Totals<D> {
-        forces::forces_and_totals(&self.law, &self.pairs, &self.displacements, &mut self.forces)
+        let mut totals = forces::forces_and_totals(&self.law, &self.pairs, &self.displacements, &mut self.forces);
+        if L::ON_SITE {
+            totals.on_site_energy = self.add_on_site_forces();
+            totals.energy += totals.on_site_energy;
+        }
+        totals
+    }
+
+    /// Adds Γ u to the forces on mobile disks; their energy −(Γ/2) Σ u² is returned.
+    fn add_on_site_forces(&mut self) -> f64 {
+        let coupling = self.law.on_site_coupling();
+        let mut squares = 0.0;
+        for index in 0..self.mobile_count {
+            let away = self.way_from_site(index);
+            squares += dot(away, away);
+            for d in 0..D {
+                self.forces[index][d] += coupling * away[d];
+            }
+        }
+        -0.5 * coupling * squares
+    }
+
+    /// How far a mobile disk is from its site, to the rounding of that distance; 0 for a law without sites \[length\].
+    pub fn way_from_site(&self, index: usize) -> Vector<D> {
+        self.from_sites
+            .get(index)
+            .map_or([0.0; D], |from| std::array::from_fn(|d| (from[d].0 + self.displacements[index][d]) + from[d].1))
+    }
+
+    /// The longest way of a mobile disk from its site \[length\].
+    pub fn longest_way_from_site(&self) -> f64 {
+        let squared = (0..self.from_sites.len()).map(|index| dot(self.way_from_site(index), self.way_from_site(index)));
+        squared.fold(0.0, |most, value| if value > most { value } else { most }).sqrt()
     }
 
     /// Tells that no disk has moved by more than `bound` since the last call, and makes the list anew if it must be.
@@ -223,6 +273,10 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
                 if let Some(saved) = self.checkpoint.get_mut(index) {
                     saved[d] += self.anchors[index][d] - high;
                 }
+                if let Some(from) = self.from_sites.get_mut(index) {
+                    // What the anchor takes over, without rounding.
+                    from[d] = extended_sum(extended_sum(from[d], self.displacements[index][d]), -low);
+                }
                 (self.anchors[index][d], self.displacements[index][d]) = (high, low);
             }
         }
@@ -248,8 +302,11 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     }
 
     /// Upper bound on the largest eigenvalue of the stiffness matrix (masses 1), by Gershgorin's rows \[1 / time²\].
+    ///
+    /// Sites shift every eigenvalue by −Γ; |Γ| is added for either sign, so that disks that run away do so in small steps.
     pub fn stiffness_bound(&self, row: &mut Vec<f64>) -> f64 {
-        self.row_bound(row, |_, _, stiffness| stiffness)
+        let bound = self.row_bound(row, |_, _, stiffness| stiffness);
+        if L::ON_SITE { bound + self.law.on_site_coupling().abs() } else { bound }
     }
 
     /// Upper bound on the largest eigenvalue of a contact matrix with this weight (pair, overlap, stiffness) a contact.

@@ -23,8 +23,10 @@ pub const BLOCK: usize = 128;
 /// What the loop sums beside the forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Totals<const D: usize> {
-    /// Energy Σ u(δ) \[energy\].
+    /// Energy Σ u(δ), with that of the sites where the law has one \[energy\].
     pub energy: f64,
+    /// The part of it that sites have, −(Γ/2) Σ u²; 0 without them \[energy\].
+    pub on_site_energy: f64,
     /// Virial tensor Σ F r_a r_b / |r| \[energy\]; its trace over D V is the pressure.
     pub virial: [[f64; D]; D],
     /// Number of pairs with δ > 0.
@@ -34,11 +36,17 @@ pub struct Totals<const D: usize> {
 }
 
 impl<const D: usize> Totals<D> {
-    const ZERO: Self = Totals { energy: 0.0, virial: [[0.0; D]; D], contact_count: 0, force_sum: 0.0 };
+    const ZERO: Self =
+        Totals { energy: 0.0, on_site_energy: 0.0, virial: [[0.0; D]; D], contact_count: 0, force_sum: 0.0 };
 
     /// Mean contact force, 0 where there is no contact \[force\].
     pub fn mean_contact_force(&self) -> f64 {
         if self.contact_count == 0 { 0.0 } else { self.force_sum / self.contact_count as f64 }
+    }
+
+    /// Contact energy plus the size of that of the sites: what the rounding of the energy is relative to \[energy\].
+    pub fn energy_scale(&self) -> f64 {
+        (self.energy - self.on_site_energy).abs() + self.on_site_energy.abs()
     }
 
     /// Trace of the virial tensor Σ F r \[energy\].

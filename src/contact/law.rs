@@ -29,6 +29,10 @@ pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
     /// Coefficient c of a pair \[force / length^(α−1)\].
     fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64;
 
+    /// Relative growth of the coefficient with the first radius, ∂ ln c/∂R_i \[1 / length\]: what a disk that grows at a
+    /// fixed overlap adds to its contact forces.
+    fn coefficient_growth(&self, first_radius: f64, second_radius: f64) -> f64;
+
     /// Repulsive force F(δ) for an overlap δ ≥ 0 \[force\]. A NaN stays one.
     fn force(&self, coefficient: f64, overlap: f64) -> f64;
 
@@ -45,6 +49,14 @@ pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
     #[inline(always)]
     fn stiffness(&self, force: f64, overlap: f64) -> f64 {
         if overlap > 0.0 { (self.exponent() - 1.0) * force / overlap } else { 0.0 }
+    }
+
+    /// Whether every disk has an energy −Γu²/2 of its displacement u from its site, see [`OnSite`](crate::contact::OnSite).
+    const ON_SITE: bool = false;
+
+    /// Γ of that energy, 0 without it \[force / length\].
+    fn on_site_coupling(&self) -> f64 {
+        0.0
     }
 
     /// The force of a disk pressed against its like by its own radius: the scale on which a force counts as none.
@@ -118,6 +130,11 @@ impl PairLaw for Hertzian {
         self.stiffness * effective_radius(first_radius, second_radius).sqrt()
     }
     #[inline(always)]
+    fn coefficient_growth(&self, first_radius: f64, second_radius: f64) -> f64 {
+        // ln c = (ln R_i + ln R_j − ln(R_i + R_j))/2 + constant.
+        0.5 * second_radius / (first_radius * (first_radius + second_radius))
+    }
+    #[inline(always)]
     fn force(&self, coefficient: f64, overlap: f64) -> f64 {
         coefficient * overlap * overlap.sqrt()
     }
@@ -138,6 +155,10 @@ impl PairLaw for Hookean {
         self.stiffness
     }
     #[inline(always)]
+    fn coefficient_growth(&self, _first_radius: f64, _second_radius: f64) -> f64 {
+        0.0
+    }
+    #[inline(always)]
     fn force(&self, coefficient: f64, overlap: f64) -> f64 {
         coefficient * overlap
     }
@@ -156,6 +177,10 @@ impl PairLaw for PowerLaw {
     #[inline(always)]
     fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
         self.energy_scale * libm::pow(first_radius + second_radius, -self.exponent)
+    }
+    #[inline(always)]
+    fn coefficient_growth(&self, first_radius: f64, second_radius: f64) -> f64 {
+        -self.exponent / (first_radius + second_radius)
     }
     #[inline(always)]
     fn force(&self, coefficient: f64, overlap: f64) -> f64 {
@@ -251,6 +276,10 @@ mod tests {
             let slope = (law.force(coefficient, overlap + h) - law.force(coefficient, overlap - h)) / (2.0 * h);
             assert!((slope / law.stiffness(force, overlap) - 1.0).abs() < 1e-9, "{law:?} stiffness at {overlap}");
         }
+        let h = 1e-5;
+        let slope = (law.coefficient(0.5 + h, 0.7) - law.coefficient(0.5 - h, 0.7)) / (2.0 * h);
+        // Truncation h² times a third derivative below 10² of c, rounding ε/h = 2e-11.
+        assert!((slope / coefficient - law.coefficient_growth(0.5, 0.7)).abs() < 1e-8, "{law:?} growth");
     }
 
     #[test]

@@ -8,7 +8,9 @@ pub mod forces;
 pub mod law;
 pub mod neighbours;
 pub mod network;
+pub mod on_site;
 
 pub use assembly::Assembly;
 pub use law::{Hertzian, Hookean, LawChoice, PairLaw, PowerLaw};
 pub use network::{Contact, ContactNetwork};
+pub use on_site::OnSite;

@@ -39,6 +39,7 @@ pub struct ContactNetwork<const D: usize> {
     pub backbone: Vec<bool>,
     held: Vec<bool>,
     forces: Vec<Vector<D>>,
+    on_site_energy: f64,
 }
 
 /// Which disks remain after rattlers are removed, held ones among them.
@@ -93,7 +94,7 @@ impl<const D: usize> ContactNetwork<D> {
     /// As [`Assembly::new`].
     pub fn new<L: PairLaw>(packing: &Packing<D>, law: &L) -> Result<Self, PackingError> {
         let mut assembly = Assembly::new(packing, *law)?;
-        assembly.evaluate();
+        let on_site_energy = assembly.evaluate_totals().on_site_energy;
         let order = assembly.order();
         let mut contacts: Vec<Contact<D>> = working_contacts(&assembly)
             .into_iter()
@@ -118,10 +119,11 @@ impl<const D: usize> ContactNetwork<D> {
             contacts,
             held: packing.held().to_vec(),
             forces,
+            on_site_energy,
         })
     }
 
-    /// Net elastic force on each disk \[force\].
+    /// Net elastic force on each disk, with the push from its site where the law has one \[force\].
     pub fn forces(&self) -> &[Vector<D>] {
         &self.forces
     }
@@ -132,9 +134,14 @@ impl<const D: usize> ContactNetwork<D> {
         mobile.fold(0.0, |most, (force, _)| crate::vector::larger(norm(*force), most))
     }
 
-    /// Elastic energy \[energy\].
+    /// Elastic energy of the contacts \[energy\].
     pub fn energy(&self) -> f64 {
         self.contacts.iter().map(|contact| contact.energy).sum()
+    }
+
+    /// Energy −(Γ/2) Σ u² of the disks at their sites, 0 for a law without them \[energy\].
+    pub fn on_site_energy(&self) -> f64 {
+        self.on_site_energy
     }
 
     /// Mobile disks that are not on the backbone.

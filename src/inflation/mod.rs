@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 pub use circle::Circle;
 
-use crate::contact::{ContactNetwork, PairLaw};
+use crate::contact::{ContactNetwork, OnSite, PairLaw};
 use crate::packing::{Packing, PackingError};
 use crate::relax::{Cost, Criterion, Outcome, Relaxed, Relaxer, Residual, Stop, Trace};
 use crate::vector::{norm, scaled, sum};
@@ -62,12 +62,22 @@ pub struct Inflation {
     pub centre: Centre,
     /// Whether the disk is deflated again afterwards.
     pub deflate: bool,
+    /// Γ of an energy −Γu²/2 on every mobile disk, u its displacement from where it was in the packing given; absent, there
+    /// is none \[force / length\]. The packing itself is prepared without it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on_site_coupling: Option<f64>,
 }
 
 impl Default for Inflation {
     /// Source: design §4 (d_0 = 0.1).
     fn default() -> Self {
-        Inflation { increase: 0.1, boundary: Boundary::default(), centre: Centre::default(), deflate: false }
+        Inflation {
+            increase: 0.1,
+            boundary: Boundary::default(),
+            centre: Centre::default(),
+            deflate: false,
+            on_site_coupling: None,
+        }
     }
 }
 
@@ -115,6 +125,12 @@ pub enum InflationError {
         radius: f64,
         /// Distance of the nearest centre.
         nearest: f64,
+    },
+    /// Γ must be a number.
+    #[error("on_site_coupling is {coupling}, not a finite number")]
+    CouplingNotFinite {
+        /// The value asked for.
+        coupling: f64,
     },
     /// There is no disk with the label asked for.
     #[error("no disk has the label {label}")]
@@ -165,7 +181,7 @@ pub struct Rest<const D: usize> {
     pub packing: Relaxed<Packing<D>>,
     /// Pressure of the circle or the box \[force / length^(D−1)\].
     pub pressure: f64,
-    /// Elastic energy \[energy\].
+    /// Elastic energy, with that of the sites where there are some \[energy\].
     pub energy: f64,
     /// Number of contacts, held–held ones left out.
     pub contact_count: usize,
@@ -237,6 +253,23 @@ pub fn inflate<const D: usize, L: PairLaw>(
     seed: u64,
     trace: &mut impl Trace,
 ) -> Result<Inflated<D>, InflationError> {
+    match inflation.on_site_coupling {
+        None => inflate_with(inflation, packing, law, relaxer, seed, trace),
+        Some(coupling) if coupling.is_finite() => {
+            inflate_with(inflation, packing, &OnSite { law: *law, coupling }, relaxer, seed, trace)
+        }
+        Some(coupling) => Err(InflationError::CouplingNotFinite { coupling }),
+    }
+}
+
+fn inflate_with<const D: usize, L: PairLaw>(
+    inflation: &Inflation,
+    packing: &Packing<D>,
+    law: &L,
+    relaxer: &impl Relaxer,
+    seed: u64,
+    trace: &mut impl Trace,
+) -> Result<Inflated<D>, InflationError> {
     let chosen = choose_centre(packing, law, inflation.centre, seed)?;
     let inner_radius = packing.radii()[chosen];
     let increase = inflation.increase;
@@ -287,7 +320,8 @@ impl<const D: usize> Experiment<D> {
     fn start(&self) -> Packing<D> {
         match self {
             Experiment::HeldRim(circle) => circle.packing.clone(),
-            Experiment::Periodic { packing, .. } => packing.clone(),
+            // Sites of an earlier relaxation are not those of this one.
+            Experiment::Periodic { packing, .. } => packing.clone().without_sites(),
         }
     }
 
@@ -318,7 +352,8 @@ impl<const D: usize> Experiment<D> {
         trace: &mut impl Trace,
     ) -> Result<Rest<D>, InflationError> {
         let mut outcome = relaxer.relax(packing.clone(), law, trace)?;
-        if let Experiment::Periodic { .. } = self {
+        // Sites keep the packing where it is: there the centre of mass is part of the answer.
+        if let (Experiment::Periodic { .. }, false) = (self, L::ON_SITE) {
             outcome.state = with_centre_of_mass_of(&packing, outcome.state);
         }
         let Outcome { stop, residual, rounding_floor, cost, .. } = outcome;
@@ -336,7 +371,7 @@ impl<const D: usize> Experiment<D> {
         };
         Ok(Rest {
             pressure,
-            energy: network.energy(),
+            energy: network.energy() + network.on_site_energy(),
             contact_count: network.contacts.len(),
             rattler_count: network.rattlers().count(),
             packing,

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 pub use domain::Domain;
 pub use mixture::{Component, Mixture};
 
-use crate::vector::{Vector, two_sum};
+use crate::vector::{Vector, extended_sum, two_sum};
 
 /// Disks (D = 2) or balls (D = 3) in a domain.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +23,7 @@ pub struct Packing<const D: usize> {
     radii: Vec<f64>,
     held: Vec<bool>,
     labels: Vec<u64>,
+    sites: Option<Vec<(Vector<D>, Vector<D>)>>,
 }
 
 /// Smallest radius \[length\]: the square of its rounding, 10⁻³² of its own, is still a normal number.
@@ -155,6 +156,7 @@ impl<const D: usize> Packing<D> {
             radii,
             held: vec![false; count],
             labels: (0..count as u64).collect(),
+            sites: None,
         })
     }
 
@@ -200,6 +202,20 @@ impl<const D: usize> Packing<D> {
         }
         self.held = held;
         Ok(self)
+    }
+
+    /// The same packing with every disk's site where the disk is now, see [`OnSite`](crate::contact::OnSite).
+    #[must_use]
+    pub fn with_sites_here(mut self) -> Self {
+        self.sites = Some(self.positions.iter().copied().zip(self.corrections.iter().copied()).collect());
+        self
+    }
+
+    /// The same packing without sites: the next relaxation that needs some begins with them where the disks are.
+    #[must_use]
+    pub fn without_sites(mut self) -> Self {
+        self.sites = None;
+        self
     }
 
     /// The same packing with another radius for one disk.
@@ -261,6 +277,17 @@ impl<const D: usize> Packing<D> {
         &self.labels
     }
 
+    /// The site of each disk as position and correction; none unless a law with sites has relaxed the packing.
+    pub fn sites(&self) -> Option<&[(Vector<D>, Vector<D>)]> {
+        self.sites.as_deref()
+    }
+
+    /// From the site of a disk (its centre, where there are no sites) to a point, without rounding.
+    pub(crate) fn way_from_site(&self, disk: usize, point: Vector<D>) -> [(f64, f64); D] {
+        let (site, rest) = self.sites.as_ref().map_or(self.centre(disk), |sites| sites[disk]);
+        std::array::from_fn(|d| extended_sum(two_sum(point[d], -site[d]), -rest[d]))
+    }
+
     /// From disk `second` to disk `first` along the nearest image.
     pub fn separation(&self, first: usize, second: usize) -> Vector<D> {
         self.domain.separation(self.centre(first), self.centre(second))
@@ -281,8 +308,9 @@ impl<const D: usize> Packing<D> {
         }
     }
 
-    /// The same disks in a periodic box scaled by `factor` in all directions, positions with it, radii kept.
+    /// The same disks in a periodic box scaled by `factor` in all directions, positions with it, radii kept, sites dropped.
     pub(crate) fn rescaled(mut self, factor: f64) -> Self {
+        self.sites = None;
         if let Domain::Periodic { corner, lengths } = &mut self.domain {
             for d in 0..D {
                 corner[d] *= factor;

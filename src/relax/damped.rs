@@ -129,7 +129,7 @@ impl DampedDynamics {
         let mut step_count = 0;
         // The one that made the motion.
         let mut evaluation_count = 1;
-        let mut first_energy = f64::INFINITY;
+        let (mut first_energy, mut first_scale) = (f64::INFINITY, f64::INFINITY);
         let mobile = motion.assembly.mobile_count();
         let stop = loop {
             if step_count % LOOK_EVERY == 0 {
@@ -144,9 +144,15 @@ impl DampedDynamics {
                     restart: false,
                 };
                 let energy = totals.energy + motion.kinetic_energy();
+                let limit = if L::ON_SITE {
+                    // Energies of either sign: a gain is judged by what is stored in contacts and at sites.
+                    first_energy + (ENERGY_GAIN - 1.0) * (first_scale + totals.on_site_energy.abs())
+                } else {
+                    ENERGY_GAIN * first_energy
+                };
                 if step_count == 0 {
-                    first_energy = energy;
-                } else if energy > ENERGY_GAIN * first_energy {
+                    (first_energy, first_scale) = (energy, totals.energy_scale());
+                } else if energy > limit {
                     break Stop::Unstable;
                 }
                 let net_forces = match self.net_force {
@@ -170,9 +176,13 @@ impl DampedDynamics {
                     TimeStep::OfStability(share) => share * motion.stable_step(),
                 };
             }
+            let list_count = motion.assembly.rebuild_count();
             motion.step(time_step)?;
             step_count += 1;
             evaluation_count += 1;
+            if motion.assembly.rebuild_count() > list_count && monitor.ran_away(&motion.assembly) {
+                break Stop::NoMinimum;
+            }
         };
         let net_forces = match self.net_force {
             NetForce::Elastic => &motion.assembly.forces[..mobile],

@@ -9,7 +9,7 @@
 //! the present stiffness matrix, taken anew every few steps, so no step has to be chosen for a pressure.
 //!
 //! What is guaranteed about the energy: FIRE lets it rise within a run, but every restart (v ← 0) happens at an energy
-//! not above that of the restart before, to rounding (10⁻¹³ of it). Where a restart would be higher, the disks go back
+//! not above that of the restart before, to rounding (10⁻¹³ of it; of contacts and sites added up where disks have sites). Where a restart would be higher, the disks go back
 //! to the last one and the time step is halved. The final energy is therefore never above the first.
 //!
 //! # Source
@@ -116,6 +116,7 @@ impl Run<'_> {
         let mut mixing = settings.mixing;
         let mut downhill = 0;
         let mut rest_energy = f64::INFINITY;
+        let mut rest_scale = f64::INFINITY;
         loop {
             let due = self.step_count.is_multiple_of(LOOK_EVERY);
             let totals = if due { Some(assembly.evaluate_totals()) } else { None };
@@ -138,7 +139,7 @@ impl Run<'_> {
                     return Ok((stop, self.cost()));
                 }
                 if self.step_count == 0 {
-                    rest_energy = totals.energy;
+                    (rest_energy, rest_scale) = (totals.energy, totals.energy_scale());
                     assembly.set_checkpoint();
                 }
                 if monitor.takes_new_anchors() {
@@ -153,20 +154,26 @@ impl Run<'_> {
                 time_step = time_step.min(largest_step);
             }
             if restart {
-                let energy = match totals {
-                    Some(totals) => totals.energy,
+                let totals = match totals {
+                    Some(totals) => totals,
                     None => {
                         self.evaluation_count += 1;
-                        assembly.evaluate_totals().energy
+                        assembly.evaluate_totals()
                     }
                 };
-                let higher = energy > rest_energy * (1.0 + ENERGY_ROUNDING);
+                let energy = totals.energy;
+                let higher = if L::ON_SITE {
+                    // Energies of either sign: rounding is relative to what was added up.
+                    energy - rest_energy > ENERGY_ROUNDING * (totals.energy_scale() + rest_scale)
+                } else {
+                    energy > rest_energy * (1.0 + ENERGY_ROUNDING)
+                };
                 if higher {
                     assembly.restore()?;
                     assembly.evaluate();
                     self.evaluation_count += 1;
                 } else {
-                    rest_energy = energy;
+                    (rest_energy, rest_scale) = (energy, totals.energy_scale());
                     assembly.set_checkpoint();
                 }
                 if trace_is_active(trace) {
@@ -207,7 +214,10 @@ impl Run<'_> {
             );
             self.step_count += 1;
             // |v| ≤ |v + dt F| after mixing, and no disk moves further than the whole vector does.
-            assembly.keep_listed(time_step * kicked.max(0.0).sqrt())?;
+            let new_list = assembly.keep_listed(time_step * kicked.max(0.0).sqrt())?;
+            if new_list && monitor.ran_away(assembly) {
+                return Ok((Stop::NoMinimum, self.cost()));
+            }
         }
     }
 

@@ -50,6 +50,10 @@ impl ForceLimit {
 /// 10⁻¹² is 3.5·10⁻⁸ for the Hertzian disks of the model, where a packing at p = 0.05 has contact forces of 0.05.
 pub const UNJAMMED_FORCE: f64 = 1e-12;
 
+/// Way of a disk from its site over the largest radius from which on it counts as run away \[1\]: a diameter, so it has left
+/// the cage of its neighbours. Up to there contacts could have held it; beyond, the push Γu only grows.
+pub const RUNAWAY: f64 = 2.0;
+
 /// Which limit a converged state met.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -77,6 +81,11 @@ pub enum Stop {
     NonFinite,
     /// A damped motion gained energy: its time step is too long.
     Unstable,
+    /// Pushed from their sites (Γ > 0), disks ran away: one is [`RUNAWAY`] from where it began. Near the sites the stiffness
+    /// matrix is indefinite or became so on the way, and there is no minimum. The state is the one they ran to; its residual
+    /// says nothing. (Forces alone do not tell a saddle from a minimum: disks that nothing pushes off a saddle stay there and
+    /// count as at rest. The number of negative eigenvalues tells, see `linear`.)
+    NoMinimum,
 }
 
 /// How far from equilibrium a state is.
@@ -178,7 +187,7 @@ pub trait Trace {
 pub struct Look {
     /// Steps taken so far.
     pub step_count: usize,
-    /// Elastic energy \[energy\].
+    /// Elastic energy, with that of the sites where the law has one: it may be negative then \[energy\].
     pub energy: f64,
     /// Kinetic energy \[energy\].
     pub kinetic_energy: f64,

@@ -4,7 +4,7 @@ use crate::contact::assembly::Assembly;
 use crate::contact::forces::Totals;
 use crate::contact::law::PairLaw;
 use crate::contact::network::{backbone, working_contacts};
-use crate::relax::{Criterion, ForceLimit, Look, Residual, Stop, Trace, UNJAMMED_FORCE};
+use crate::relax::{Criterion, ForceLimit, Look, RUNAWAY, Residual, Stop, Trace, UNJAMMED_FORCE};
 use crate::vector::{Vector, dot, larger};
 
 /// Evaluations between two looks at the residual. An evaluation with a look costs half as much again.
@@ -20,6 +20,8 @@ const PATIENCE: usize = 150;
 pub struct Monitor {
     limit: ForceLimit,
     unjammed_force: f64,
+    /// Way from a site that ends the relaxation; infinite unless the law pushes disks from theirs.
+    farthest: f64,
     backbone: Vec<bool>,
     look_count: usize,
     best: f64,
@@ -34,6 +36,9 @@ impl Monitor {
     pub fn new<const D: usize, L: PairLaw>(limit: ForceLimit, assembly: &Assembly<D, L>) -> Self {
         let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
         let unjammed_force = UNJAMMED_FORCE * assembly.law().force_scale(radius);
+        let pushed = L::ON_SITE && assembly.law().on_site_coupling() > 0.0;
+        let farthest =
+            if pushed { RUNAWAY * assembly.radii().iter().copied().fold(0.0, f64::max) } else { f64::INFINITY };
         Monitor {
             limit,
             // Who asks for less than what counts as no force gets it.
@@ -41,6 +46,7 @@ impl Monitor {
                 ForceLimit::Absolute(limit) => unjammed_force.min(limit),
                 ForceLimit::Relative(_) => unjammed_force,
             },
+            farthest,
             backbone: vec![true; assembly.len()],
             look_count: 0,
             best: f64::INFINITY,
@@ -65,6 +71,9 @@ impl Monitor {
         let mean = totals.mean_contact_force();
         self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
         trace.look(&Look { residual: self.last.relative(), ..report });
+        if self.ran_away(assembly) {
+            return Some(Stop::NoMinimum);
+        }
         if !(inner + outer + totals.energy).is_finite() {
             return Some(Stop::NonFinite);
         }
@@ -78,6 +87,12 @@ impl Monitor {
             return converged;
         }
         self.at_the_floor().then_some(Stop::RoundingFloor)
+    }
+
+    /// Whether a disk pushed from its site is too far from it. To be asked after every new list as well: between two looks a
+    /// disk may go a long way.
+    pub fn ran_away<const D: usize, L: PairLaw>(&self, assembly: &Assembly<D, L>) -> bool {
+        L::ON_SITE && assembly.longest_way_from_site() >= self.farthest
     }
 
     /// Determines the backbone and the residual on it (on all disks where there are forces but no backbone); whether it is
@@ -170,7 +185,7 @@ impl Monitor {
 /// max_i Σ_j [F'(δ_ij) 4 u w + 4 u F(δ_ij)] / ⟨F⟩          u = 2⁻⁵³
 /// ```
 ///
-/// w is the longest displacement from the anchors: an overlap is known to about 4 u of the relative displacement and a
+/// A law with sites adds |Γ| times the longest way from one. w is the longest displacement from the anchors: an overlap is known to about 4 u of the relative displacement and a
 /// force to about 4 u of itself. With one number a coordinate it would be about `5 F' ulp(L) / ⟨F⟩`, L the side of the box.
 pub fn rounding_floor<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> f64 {
     let held: Vec<bool> = (0..assembly.len()).map(|disk| disk >= assembly.mobile_count()).collect();
@@ -201,5 +216,7 @@ fn floor_of<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, members: &[bo
     assembly.row_bound(&mut row, noise);
     let most =
         row.iter().zip(members).filter(|&(_, &member)| member).fold(0.0, |most, (&value, _)| larger(value, most));
-    most * f64::EPSILON / mean
+    let sites =
+        if L::ON_SITE { assembly.law().on_site_coupling().abs() * assembly.longest_way_from_site() } else { 0.0 };
+    (most + sites) * f64::EPSILON / mean
 }

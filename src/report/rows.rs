@@ -148,6 +148,8 @@ fn inflation(report: &Report, samples: &[SampleReport], times: Times) -> Section
         settings(report, &sample.name).map(|sample| sample.relaxer.name().into())
     };
     let exponent = pressure_exponent(&report.scene.law);
+    let coupling = report.scene.inflation.on_site_coupling;
+    rows.add("on-site coupling, Γ [force/length]", |_| coupling.map(|value| significant(value, 5)));
     rows.add("relaxer", relaxer)
         .add("at rest by", |it| Some(criterion(&it.inflation.after.rest).into()))
         .add("residual / rounding floor before", |it| Some(residual(&it.inflation.before.rest)))
