@@ -145,6 +145,8 @@ mod book {
     mod observe_angular_profile {}
     #[doc = include_str!("../book/src/reference.md")]
     mod reference {}
+    #[doc = include_str!("../book/src/reference/angular_modes.md")]
+    mod reference_angular_modes {}
     #[cfg(feature = "fit")]
     #[doc = include_str!("../book/src/fit.md")]
     mod fit {}

@@ -18,6 +18,7 @@
 //! Lemaître et al. (2021), Phys. Rev. E 104, 024904, for the screened profile in two dimensions; Charan et al. (2023),
 //! Phys. Rev. E 107, 055005, in three.
 
+pub mod angular_modes;
 pub mod bessel;
 mod cylindrical;
 pub mod elastic;

@@ -1,0 +1,200 @@
+//! Angular modes of the annulus in two dimensions: what the medium does when the inner circle moves as cos nθ.
+//!
+//! A mode n = 0, 1, 2, … has two complex amplitudes, one along the radius and one along the circle,
+//!
+//! ```text
+//! u_r(r, θ) = Re[U(r) e^(inθ)]        u_θ(r, θ) = Re[V(r) e^(inθ)]
+//! ```
+//!
+//! given at the inner circle, zero at the held rim: U(a) = U_a, V(a) = V_a, U(R) = V(R) = 0. Their phases turn the
+//! pattern: `c cos nθ + s sin nθ` has the amplitude c − is, and [`ModeAmplitudes::in_phase`] makes the common pair
+//! `u_r ∝ cos nθ, u_θ ∝ sin nθ`. Between the circles, divided by the shear modulus μ,
+//!
+//! ```text
+//! Δu + (λ+μ)/μ ∇(∇·u) + Γ u = 0        Γ = [[Γ_e, −Γ_o], [Γ_o, Γ_e]]
+//! ```
+//!
+//! [`ElasticMode`](elastic::ElasticMode) has Γ = 0 in closed form; [`ScreenedMode`](screened::ScreenedMode) has any
+//! even and odd screening, the latter turning radial inflation (n = 0) into radial and transverse displacement. Both
+//! implement [`AngularSolution`]. Start from [`ElasticMode::new`](elastic::ElasticMode::new).
+//!
+//! # Poisson's ratio
+//!
+//! In two dimensions ν = λ/(λ+2μ), between −1 and 1. A slab in plane stress has the ν of its material; in plane strain,
+//! with ν₃ of the material, ν = ν₃/(1 − ν₃), so that ν₃ = 1/2 is ν = 1. What enters is ε = μ/(λ+2μ) = (1 − ν)/2.
+//!
+//! # Source
+//! Michell (1899), Proc. Lond. Math. Soc. 31, 100, for the elastic modes; Lemaître et al. (2021), Phys. Rev. E 104,
+//! 024904, for screening; Cohen, Schiller, Wang, Dijksman, Moshe (2023), arXiv:2310.09942, for the odd one.
+
+pub mod elastic;
+mod exponential_gap;
+mod frame;
+pub mod screened;
+mod system;
+
+pub use num_complex::Complex;
+use thiserror::Error;
+
+use crate::vector::two_product;
+
+/// The two amplitudes of a mode: of the displacement \[length\], or of its derivative along the radius \[1\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModeAmplitudes {
+    /// U, along the radius.
+    pub radial: Complex<f64>,
+    /// V, along the circle, counterclockwise.
+    pub transverse: Complex<f64>,
+}
+
+impl ModeAmplitudes {
+    /// `u_r = radial · cos nθ`, `u_θ = transverse · sin nθ`: mirror images of each other above and below θ = 0.
+    pub fn in_phase(radial: f64, transverse: f64) -> Self {
+        // Re[−i e^(inθ)] = sin nθ.
+        ModeAmplitudes { radial: Complex::new(radial, 0.0), transverse: Complex::new(0.0, -transverse) }
+    }
+
+    /// The radial and the transverse component at `angle` θ, `[Re(U e^(inθ)), Re(V e^(inθ))]`, for mode n = `mode`.
+    pub fn at_angle(&self, mode: u32, angle: f64) -> [f64; 2] {
+        let wave = phase_factor(mode, angle);
+        [(self.radial * wave).re, (self.transverse * wave).re]
+    }
+
+    /// The same pattern turned counterclockwise by `angle`: both amplitudes times `e^(−in·angle)`.
+    pub fn rotated(&self, mode: u32, angle: f64) -> Self {
+        let turn = phase_factor(mode, angle).conj();
+        ModeAmplitudes { radial: self.radial * turn, transverse: self.transverse * turn }
+    }
+
+    /// Both times a real factor.
+    fn times(&self, factor: f64) -> Self {
+        ModeAmplitudes { radial: self.radial * factor, transverse: self.transverse * factor }
+    }
+
+    /// U + iV and U − iV.
+    fn sum_and_difference(&self) -> [Complex<f64>; 2] {
+        let quarter = times_i(self.transverse);
+        [self.radial + quarter, self.radial - quarter]
+    }
+
+    fn from_sum_and_difference([sum, difference]: [Complex<f64>; 2]) -> Self {
+        ModeAmplitudes { radial: (sum + difference) * 0.5, transverse: -times_i((sum - difference) * 0.5) }
+    }
+
+    fn is_finite(&self) -> bool {
+        self.radial.is_finite() && self.transverse.is_finite()
+    }
+
+    fn undefined() -> Self {
+        let nan = Complex::new(f64::NAN, f64::NAN);
+        ModeAmplitudes { radial: nan, transverse: nan }
+    }
+}
+
+/// i times a number, without rounding.
+fn times_i(z: Complex<f64>) -> Complex<f64> {
+    Complex::new(-z.im, z.re)
+}
+
+/// `e^(inθ)`, the rounding of nθ put back.
+fn phase_factor(mode: u32, angle: f64) -> Complex<f64> {
+    let (high, low) = two_product(f64::from(mode), angle);
+    let (sine, cosine) = libm::sincos(high);
+    Complex::new(cosine - low * sine, sine + low * cosine)
+}
+
+/// The amplitudes at one radius.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ModeState {
+    /// U and V \[length\].
+    pub value: ModeAmplitudes,
+    /// U' and V' \[1\].
+    pub derivative: ModeAmplitudes,
+}
+
+impl ModeState {
+    fn undefined() -> Self {
+        ModeState { value: ModeAmplitudes::undefined(), derivative: ModeAmplitudes::undefined() }
+    }
+}
+
+/// One angular mode of a displacement field between the inner circle and the rim.
+pub trait AngularSolution {
+    /// n, the number of periods around the circle.
+    fn mode(&self) -> u32;
+
+    /// The amplitudes and their derivatives at distance `radius` from the centre \[length\]; NaN outside the annulus,
+    /// where nothing is defined.
+    fn at(&self, radius: f64) -> ModeState;
+
+    /// The displacement `[u_r, u_θ]` \[length\] at `radius` \[length\] and `angle`.
+    fn displacement(&self, radius: f64, angle: f64) -> [f64; 2] {
+        self.at(radius).value.at_angle(self.mode(), angle)
+    }
+}
+
+/// Why a mode could not be set up.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum AngularModeError {
+    /// Poisson's ratio of two dimensions is not between −1 and 1.
+    #[error("Poisson's ratio in two dimensions must lie between -1 and 1, it is {poisson_ratio}")]
+    PoissonRatioOutside {
+        /// The ratio given.
+        poisson_ratio: f64,
+    },
+    /// An amplitude at the inner circle is not a number.
+    #[error("the amplitudes at the inner radius must be finite, they are {radial} and {transverse}")]
+    AmplitudeNotFinite {
+        /// U_a given \[length\].
+        radial: Complex<f64>,
+        /// V_a given \[length\].
+        transverse: Complex<f64>,
+    },
+    /// A screening coefficient is not a number.
+    #[error("the screening must be finite, it is {even} (even) and {odd} (odd)")]
+    ScreeningNotFinite {
+        /// Γ_e given \[1/length²\].
+        even: f64,
+        /// Γ_o given \[1/length²\].
+        odd: f64,
+    },
+    /// n ln(R/a) + √|Γ| R is too large: the solution would need more nodes than are kept.
+    #[error("mode {mode} would need about {node_estimate:.0} nodes between the circles, more than {node_limit}")]
+    TooManyNodes {
+        /// n.
+        mode: u32,
+        /// n ln(R/a) + 4 ln(R/a) + √|Γ| (R − a).
+        node_estimate: f64,
+        /// The largest number allowed.
+        node_limit: usize,
+    },
+    /// The screening is a pole of this mode to rounding: the displacement has no finite value.
+    #[error("the screening is at a pole of mode {mode}: condition {condition:.1e}, no finite solution")]
+    AtPole {
+        /// n.
+        mode: u32,
+        /// How much larger the products in the determinant are than the determinant itself.
+        condition: f64,
+    },
+}
+
+/// ε = μ/(λ+2μ) = (1 − ν)/2.
+///
+/// # Errors
+/// A Poisson's ratio that is not between −1 and 1.
+fn compliance_ratio(poisson_ratio: f64) -> Result<f64, AngularModeError> {
+    if poisson_ratio > -1.0 && poisson_ratio < 1.0 {
+        Ok(0.5 * (1.0 - poisson_ratio))
+    } else {
+        Err(AngularModeError::PoissonRatioOutside { poisson_ratio })
+    }
+}
+
+fn finite_amplitudes(boundary: ModeAmplitudes) -> Result<(), AngularModeError> {
+    if boundary.is_finite() {
+        Ok(())
+    } else {
+        Err(AngularModeError::AmplitudeNotFinite { radial: boundary.radial, transverse: boundary.transverse })
+    }
+}
