@@ -145,6 +145,8 @@ mod book {
     mod observe_angular_profile {}
     #[doc = include_str!("../book/src/reference.md")]
     mod reference {}
+    #[doc = include_str!("../book/src/reference/lorentzian.md")]
+    mod reference_lorentzian {}
     #[cfg(feature = "fit")]
     #[doc = include_str!("../book/src/fit.md")]
     mod fit {}
