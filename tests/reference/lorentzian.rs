@@ -317,6 +317,12 @@ fn correlation_is_even_and_periodic() {
                     < claimed(exponent) + 8.0 * f64::EPSILON * steepness(crossover, exponent, angle)
             );
         }
+        // 2²⁰ turns as a number are 2²⁰ · 2.449…·10⁻¹⁶ short of 2²⁰ turns, which G on its cusp can tell from none.
+        let turns = f64::exp2(20.0);
+        let (short, value) = (turns * 2.4492935982947064e-16, medium.correlation(turns * 2.0 * PI));
+        let tolerance = claimed(exponent) + f64::EPSILON * short * steepness(crossover, exponent, short);
+        assert!((value - medium.correlation(short)).abs() < tolerance, "{value}");
+        assert!(exponent > 2.0 || value < 1.0 - 1e-6);
         assert_eq!(medium.correlation(0.0), 1.0);
         assert_eq!(medium.correlation(f64::MIN_POSITIVE * 1e-10), 1.0);
     }
@@ -433,6 +439,11 @@ fn the_cusp_takes_over_without_a_step() {
     let kink = continuum(2.0);
     assert!((kink.derivative(1e-200) + 1.0).abs() < claimed(2.0));
     assert!((kink.correlation(5e-11) - (-5e-11_f64).exp()).abs() < f64::EPSILON);
+    // s = 3, where two powers become a logarithm: (Σ cos fθ/f³)'' = ln(2 sin(θ/2)), so G' = (θ ln θ − θ)/ζ(3) + O(θ³).
+    let cubic = lorentzian(0.0, 3.0);
+    let found = cubic.derivative(1e-60) / 1e-60 * cubic.total();
+    // The slope at θ = 10⁻¹⁰ has an absolute error and is continued from there.
+    assert!((found - ((1e-60_f64).ln() - 1.0)).abs() < 4.0 * claimed(3.0) / 1e-10 * cubic.total(), "{found}");
     // s > 3: parabolic, G'(θ)/θ is constant.
     let smooth = lorentzian(6.0, 4.5);
     let ratio = smooth.derivative(1e-60) / 1e-60 / (smooth.derivative(1e-6) / 1e-6);
