@@ -147,6 +147,8 @@ mod book {
     mod reference {}
     #[doc = include_str!("../book/src/reference/angular_modes.md")]
     mod reference_angular_modes {}
+    #[doc = include_str!("../book/src/reference/lorentzian.md")]
+    mod reference_lorentzian {}
     #[cfg(feature = "fit")]
     #[doc = include_str!("../book/src/fit.md")]
     mod fit {}

@@ -14,6 +14,8 @@
 //! The screened solution is built on the one that leaves the rim with unit slope, [`RimSolution`](rim::RimSolution):
 //! that one is smooth in κ, while d_0 d/d(a) has a pole wherever the rim solution has a node at r = a.
 //!
+//! The angular spectrum has its own: a power law with a crossover, [`Lorentzian`](lorentzian::Lorentzian).
+//!
 //! # Source
 //! Lemaître et al. (2021), Phys. Rev. E 104, 024904, for the screened profile in two dimensions; Charan et al. (2023),
 //! Phys. Rev. E 107, 055005, in three.
@@ -22,6 +24,7 @@ pub mod angular_modes;
 pub mod bessel;
 mod cylindrical;
 pub mod elastic;
+pub mod lorentzian;
 pub mod poles;
 pub mod rim;
 mod rim_distance;

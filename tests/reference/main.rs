@@ -1,6 +1,7 @@
 //! The exact solutions against values of 25 digits, their limits, and the equation they solve.
 
 mod angular_modes;
+mod lorentzian;
 
 use std::f64::consts::PI;
 
