@@ -43,7 +43,7 @@ impl Screening {
 /// combination carried outward, the way it decays. Between nodes the series about the nearest one gives U, V and their
 /// derivatives. This is exact to rounding as the Bessel functions are, and keeps the digits that those lose where κr is
 /// small: four of them there become two, and the displacement is in their difference. With κR = 4 and n = 2 the four as
-/// they stand err by 4·10⁻¹² at R/a = 340 and by 4·10⁻⁷ at R/a = 10⁵.
+/// they stand err by 3·10⁻¹² at R/a = 340 and by 4·10⁻⁷ at R/a = 10⁵.
 ///
 /// # Units
 /// Radii and amplitudes in lengths.
