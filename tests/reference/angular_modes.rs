@@ -164,7 +164,7 @@ fn screened_modes_have_the_digits_their_condition_allows() {
     let cases = [(340.0, 0, 0.3), (340.0, 1, 0.3), (340.0, 2, -0.9), (60.0, 7, 0.6), (1e7, 2, 0.3)];
     // Even of either sign, far beyond the first poles, and next to none: no cancellation as Γ → 0.
     screened_modes_agree("even", &cases, &[(16.0, 0.0), (-16.0, 0.0), (1e-13, 0.0), (900.0, 0.0)]);
-    let wide = [(340.0, 0, 0.3), (340.0, 3, 0.6), (1e7, 1, -0.9)];
+    let wide = [(340.0, 0, 0.3), (340.0, 3, 0.6), (1e4, 1, -0.9)];
     screened_modes_agree("odd", &wide, &[(1e-10, 50.0), (900.0, -100.0), (-30.0, 5.0)]);
     // Far beyond the first poles.
     screened_modes_agree("waves", &[(40.0, 0, 0.3), (40.0, 2, 0.6)], &[(6400.0, 0.0), (-6400.0, 0.0)]);
