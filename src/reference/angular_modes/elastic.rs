@@ -128,8 +128,8 @@ impl ElasticMode {
         let both = |a: [Gap; 2], b: [Gap; 2]| soft * a[0].value() * a[1].value() + stiff * product_difference(a, b);
 
         let determinant = both([whole_p, whole_q], [whole_2, whole_2_q]);
-        let steep = ratio_power(inner, radius, self.mode + 1) / determinant;
-        let flat = ratio_power(inner, radius, self.mode - 1) / determinant;
+        let steep = ratio_power(inner, radius, n + 1.0) / determinant;
+        let flat = ratio_power(inner, radius, n - 1.0) / determinant;
         let share = (radius / outer).powi(2);
         // [E_2(τ) E_p(t) − E_p(τ) E_2(t)]/x² = E_2(η) E_p(t) − x^(2n) E_p(η) E_2(t) with η = ln(r/a) = τ − t.
         let [way_p, way_2] = [p, 2.0].map(|m| Gap::integral(m, way));
@@ -186,14 +186,22 @@ impl AngularSolution for ElasticMode {
 
 /// ln(larger/smaller) to rounding, next to 1 too.
 fn log_ratio(larger: f64, smaller: f64) -> f64 {
-    if smaller > 0.5 * larger { -libm::log1p(-(larger - smaller) / larger) } else { libm::log(larger / smaller) }
+    let ratio = larger / smaller;
+    if smaller > 0.5 * larger {
+        -libm::log1p(-(larger - smaller) / larger)
+    } else if ratio.is_finite() {
+        libm::log(ratio)
+    } else {
+        libm::log(larger) - libm::log(smaller)
+    }
 }
 
-/// (a/b)^m, what rounding took from a/b put back: it would count m times.
-fn ratio_power(a: f64, b: f64, m: u32) -> f64 {
+/// (a/b)^power for a ≤ b, what rounding took from a/b put back: it would count `power` times.
+fn ratio_power(a: f64, b: f64, power: f64) -> f64 {
     let ratio = a / b;
+    let value = libm::pow(ratio, power);
     let (product, rest) = two_product(ratio, b);
-    let lost = ((a - product) - rest) / b;
-    let power = f64::from(m);
-    libm::pow(ratio, power) * (1.0 + power * (lost / ratio))
+    let lost = ((a - product) - rest) / a;
+    // Not a number where the product would overflow (b > 2⁹⁹⁵), of no use where a/b is subnormal: radii beyond 10²⁹⁹.
+    if lost.abs() < f64::EPSILON { value * (1.0 + power * lost) } else { value }
 }

@@ -169,12 +169,26 @@ pub enum AngularModeError {
         /// The largest number allowed.
         node_limit: usize,
     },
+    /// √|Γ| R is so large that a wave is shorter than the spacing of numbers near R.
+    #[error("the screening {even} (even), {odd} (odd) is too large for an outer radius of {outer_radius}")]
+    ScreeningTooLarge {
+        /// Γ_e given \[1/length²\].
+        even: f64,
+        /// Γ_o given \[1/length²\].
+        odd: f64,
+        /// R \[length\].
+        outer_radius: f64,
+    },
     /// The screening is a pole of this mode to rounding: the displacement has no finite value.
-    #[error("the screening is at a pole of mode {mode}: condition {condition:.1e}, no finite solution")]
+    #[error("the screening {even} (even), {odd} (odd) is a pole of mode {mode} to rounding: condition {condition:.1e}")]
     AtPole {
         /// n.
         mode: u32,
-        /// How much larger the products in the determinant are than the determinant itself.
+        /// Γ_e given \[1/length²\].
+        even: f64,
+        /// Γ_o given \[1/length²\].
+        odd: f64,
+        /// What [`ScreenedMode::condition`](screened::ScreenedMode::condition) would be: no digit is left.
         condition: f64,
     },
 }

@@ -43,7 +43,7 @@ impl Screening {
 /// combination carried outward, the way it decays. Between nodes the series about the nearest one gives U, V and their
 /// derivatives. This is exact to rounding as the Bessel functions are, and keeps the digits that those lose where κr is
 /// small: four of them there become two, and the displacement is in their difference. With κR = 4 and n = 2 the four as
-/// they stand err by 4·10⁻¹² at R/a = 340 and by 4·10⁻⁷ at R/a = 10⁵.
+/// they stand err by 3·10⁻¹² at R/a = 340 and by 4·10⁻⁷ at R/a = 10⁵.
 ///
 /// # Units
 /// Radii and amplitudes in lengths.
@@ -100,7 +100,7 @@ impl ScreenedMode {
     ///
     /// # Errors
     /// A Poisson's ratio that is not between −1 and 1; an amplitude or a screening that is not finite; more than
-    /// [`NODE_LIMIT`] nodes needed; a screening that is a pole to rounding.
+    /// [`NODE_LIMIT`] nodes needed; √|Γ| R above 2⁴² (a thin annulus only); a screening that is a pole to rounding.
     pub fn new(
         annulus: Annulus,
         poisson_ratio: f64,
@@ -136,7 +136,7 @@ impl ScreenedMode {
         let condition = edge_condition * closeness(&system, &radii, &frames);
         // Every node rounds its frame by a few 2⁻⁵²: with less than this left the determinant may be zero.
         if condition.is_nan() || condition * 4.0 * f64::EPSILON * radii.len() as f64 >= 1.0 {
-            return Err(AngularModeError::AtPole { mode, condition });
+            return Err(AngularModeError::AtPole { mode, even, odd, condition });
         }
 
         // Outward: its state at every node.
@@ -221,6 +221,11 @@ fn node_radii(annulus: Annulus, system: &System, mode: u32) -> Result<Vec<f64>, 
     let node_estimate = (4.0 + system.mode) * libm::log(outer / inner) + system.wavenumber() * (outer - inner);
     if node_estimate.is_nan() || node_estimate > NODE_LIMIT as f64 {
         return Err(AngularModeError::TooManyNodes { mode, node_estimate, node_limit: NODE_LIMIT });
+    }
+    // Nodes are then at least 2¹⁰ roundings of R apart.
+    let System { even, odd, .. } = *system;
+    if system.wavenumber() * outer > f64::exp2(42.0) {
+        return Err(AngularModeError::ScreeningTooLarge { even, odd, outer_radius: outer });
     }
     let mut radii = vec![outer];
     let mut radius = outer;
