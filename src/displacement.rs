@@ -4,15 +4,17 @@
 //! d_i = r_i(after) − r_i(before)      d_r = d·r̂      d_θ = d·θ̂ (D = 2)      r̂ from the centre of the inflated disk
 //! ```
 //!
-//! Made from two [`Relaxed`] packings, so a state that never came to rest cannot reach a figure. Disks that are rattlers
+//! Made from two [`Relaxed`](crate::relax::Relaxed) packings, so a state that never came to rest cannot reach a figure. Disks that are rattlers
 //! before or after are left out of every observable. An unjammed packing has no backbone: all its disks are rattlers, and
 //! all of them count.
 
 use serde::{Deserialize, Serialize};
 
 use crate::inflation::{Inflated, Rest, displacement};
+#[cfg(feature = "linear")]
+use crate::linear::LinearResponse;
 use crate::packing::Packing;
-use crate::relax::{Criterion, Relaxed};
+use crate::relax::Criterion;
 use crate::vector::{Vector, dot, norm, scaled};
 
 /// One disk of a displacement field.
@@ -78,12 +80,33 @@ impl<const D: usize> DisplacementField<D> {
         inflated.deflated.as_ref().map(|deflated| Self::between(inflated, &inflated.before, deflated))
     }
 
+    /// A linear response as the field that an inflation by `increase` would leave, measured on the disks solved for.
+    ///
+    /// `packing` is the one the response was made from and `outer_radius` the R of its circle or box.
+    ///
+    /// # Panics
+    /// If the packing has another number of disks.
+    #[cfg(feature = "linear")]
+    pub fn of_linear_response(
+        response: &LinearResponse<D>,
+        packing: &Packing<D>,
+        increase: f64,
+        outer_radius: f64,
+    ) -> Self {
+        assert_eq!(packing.len(), response.displacements.len(), "a response belongs to the packing it was made from");
+        let displacement = |disk: usize| scaled(increase, response.displacements[disk]);
+        let disks = moved(packing, response.centre, &response.solved, displacement);
+        let inner_radius = packing.radii()[response.centre];
+        DisplacementField { disks, inner_radius, outer_radius, measured_on: MeasuredOn::Backbone }
+    }
+
     fn between(inflated: &Inflated<D>, before: &Rest<D>, after: &Rest<D>) -> Self {
         let unjammed = [before, after].iter().any(|rest| rest.criterion == Criterion::Unjammed);
         let measured_on = if unjammed { MeasuredOn::AllDisks } else { MeasuredOn::Backbone };
         let counted: Vec<bool> =
             before.backbone.iter().zip(&after.backbone).map(|(&a, &b)| unjammed || (a && b)).collect();
-        let disks = moved(&before.packing, &after.packing, inflated.centre, &counted);
+        let (first, second) = (before.packing.get(), after.packing.get());
+        let disks = moved(first, inflated.centre, &counted, |disk| displacement(first, second, disk));
         let (inner_radius, outer_radius) = (inflated.inner_radius, inflated.outer_radius);
         DisplacementField { disks, inner_radius, outer_radius, measured_on }
     }
@@ -95,18 +118,17 @@ impl<const D: usize> DisplacementField<D> {
 }
 
 fn moved<const D: usize>(
-    before: &Relaxed<Packing<D>>,
-    after: &Relaxed<Packing<D>>,
+    before: &Packing<D>,
     centre: usize,
     counted: &[bool],
+    displacement: impl Fn(usize) -> Vector<D>,
 ) -> Vec<Moved<D>> {
-    let (before, after) = (before.get(), after.get());
     (0..before.len())
         .filter(|&disk| disk != centre && !before.held()[disk])
         .map(|disk| {
             let position = before.separation(disk, centre);
             let distance = norm(position);
-            let displacement = displacement(before, after, disk);
+            let displacement = displacement(disk);
             let radial = dot(displacement, scaled(1.0 / distance, position));
             Moved { disk, position, distance, displacement, radial, counted: counted[disk] }
         })

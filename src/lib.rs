@@ -55,12 +55,15 @@
 //! | module | content | start from |
 //! |---|---|---|
 //! | [`vector`] | vectors of D = 2 or 3 components, error-free sums | [`Vector`](vector::Vector) |
+//! | `sparse` (feature `linear`) | one triangle of a symmetric matrix in compressed columns | `sparse::SymmetricMatrix` |
 //! | [`packing`] | centres, radii, domain, which disks are held | [`Packing`](packing::Packing) |
 //! | [`io`] | packings in files | [`read_packing`](io::read_packing) |
-//! | [`contact`] | laws, damping, neighbour list, hot loop, contact network | [`ContactNetwork`](contact::ContactNetwork) |
+//! | [`contact`] | laws, damping, sites, neighbour list, hot loop, contact network, Hessian | [`ContactNetwork`](contact::ContactNetwork) |
+//! | `linear` (feature `linear`) | factorisations, the response to an infinitesimal inflation | `linear::LinearResponse` |
 //! | [`relax`] | bringing a packing to rest | [`Relaxer`](relax::Relaxer), [`Fire`](relax::Fire) |
 //! | [`preparation`] | random points to a packing at a packing fraction or a pressure | [`prepare`](preparation::prepare) |
 //! | [`inflation`] | one disk grows, the rest relaxes; and back | [`inflate`](inflation::inflate) |
+//! | [`lattice`] | lattices whose continuum answer is known | [`Lattice`](lattice::Lattice) |
 //! | [`displacement`] | how far every disk moved | [`DisplacementField`](displacement::DisplacementField) |
 //! | [`observe`] | radial and angular profile | [`RadialProfile`](observe::RadialProfile) |
 //! | [`reference`](mod@reference) | exact solutions, elastic and screened | [`Annulus`](reference::Annulus) |
@@ -77,6 +80,7 @@
 //! | feature | adds | with |
 //! |---|---|---|
 //! | `fit` | fits of a measured profile | argmin, statrs |
+//! | `linear` | Hessian, factorisations, linear response | faer |
 //! | `parallel` | the samples of a scene side by side; never changes a bit of a result | rayon |
 //! | `plot` | figures and the HTML page of a report | plotters |
 //! | `cli` | the program `jamscope`, scenes from TOML | clap, toml, indicatif |
@@ -94,6 +98,9 @@ pub mod displacement;
 pub mod fit;
 pub mod inflation;
 pub mod io;
+pub mod lattice;
+#[cfg(feature = "linear")]
+pub mod linear;
 pub mod observe;
 pub mod packing;
 pub mod preparation;
@@ -102,6 +109,8 @@ pub mod relax;
 pub mod report;
 pub mod run;
 pub mod scene;
+#[cfg(feature = "linear")]
+pub mod sparse;
 pub mod vector;
 
 /// The README and the chapters of the book, so that `cargo test --doc` compiles and runs their snippets.
@@ -127,6 +136,11 @@ mod book {
     mod contact_forces {}
     #[doc = include_str!("../book/src/contact/network.md")]
     mod contact_network {}
+    #[doc = include_str!("../book/src/contact/on_site.md")]
+    mod contact_on_site {}
+    #[cfg(feature = "linear")]
+    #[doc = include_str!("../book/src/linear.md")]
+    mod linear {}
     #[doc = include_str!("../book/src/relax/fire.md")]
     mod relax_fire {}
     #[doc = include_str!("../book/src/relax/damped.md")]
@@ -137,6 +151,9 @@ mod book {
     mod preparation {}
     #[doc = include_str!("../book/src/inflation.md")]
     mod inflation {}
+    #[cfg(all(feature = "linear", feature = "fit"))]
+    #[doc = include_str!("../book/src/lattice.md")]
+    mod lattice {}
     #[doc = include_str!("../book/src/displacement.md")]
     mod displacement {}
     #[doc = include_str!("../book/src/observe/radial_profile.md")]

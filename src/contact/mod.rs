@@ -5,12 +5,16 @@
 pub mod assembly;
 pub mod damping;
 pub mod forces;
+#[cfg(feature = "linear")]
+pub mod hessian;
 pub mod law;
 pub mod neighbours;
 pub mod network;
 pub mod on_site;
 
 pub use assembly::Assembly;
+#[cfg(feature = "linear")]
+pub use hessian::{Hessian, Members, Prestress};
 pub use law::{Hertzian, Hookean, LawChoice, PairLaw, PowerLaw};
 pub use network::{Contact, ContactNetwork};
 pub use on_site::OnSite;

@@ -23,7 +23,7 @@ pub struct Circle<const D: usize> {
 
 /// Width of the held rim over the largest radius: a mobile disk at r_out touches held ones up to 2 away, and may be
 /// pushed outwards by up to another 2.
-const RIM_WIDTH: f64 = 4.0;
+pub(crate) const RIM_WIDTH: f64 = 4.0;
 
 impl<const D: usize> Circle<D> {
     /// Cuts the circle of this radius around a disk of a periodic packing.

@@ -1,0 +1,85 @@
+//! Linear algebra of packings at rest: sparse factorisations of the [`Hessian`](crate::contact::Hessian), and the answer
+//! to an infinitesimal inflation.
+//!
+//! Start from [`LinearResponse`], or from [`Analysis`] for a matrix of one's own. A definite matrix is factorised by
+//! Cholesky, an indefinite one as L D Lᵀ with the number of its negative eigenvalues; every solution is refined and comes
+//! with its backward error.
+
+pub mod factorisation;
+pub mod response;
+
+pub use factorisation::{Analysis, Factorisation, Solution};
+pub use response::LinearResponse;
+
+use crate::packing::PackingError;
+
+/// Why there is no solution.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LinearError {
+    /// The disks themselves are at fault.
+    #[error(transparent)]
+    Packing(#[from] PackingError),
+    /// Nothing to solve for: no disk is on the backbone.
+    #[error("no mobile disk of {disk_count} is on the backbone: an unjammed packing has no linear response")]
+    NoBackbone {
+        /// Number of disks.
+        disk_count: usize,
+    },
+    /// The disk to inflate touches no disk that could answer.
+    #[error("disk {disk} has no contact with the backbone: inflating it by an infinitesimal amount moves nothing")]
+    CentreTouchesNothing {
+        /// The disk.
+        disk: usize,
+    },
+    /// There is no such disk.
+    #[error("disk {disk} of {disk_count}: there is none")]
+    NoSuchDisk {
+        /// The index asked for.
+        disk: usize,
+        /// Number of disks.
+        disk_count: usize,
+    },
+    /// An entry is NaN or infinite.
+    #[error("the matrix has the entry {value} in row {row}, column {column}")]
+    NotFinite {
+        /// Row of the entry.
+        row: usize,
+        /// Column of the entry.
+        column: usize,
+        /// The entry.
+        value: f64,
+    },
+    /// Entries stand elsewhere than in the matrix analysed.
+    #[error("the matrix of {dimension} rows does not have the pattern that was analysed")]
+    PatternDiffers {
+        /// Its number of rows.
+        dimension: usize,
+    },
+    /// A Cholesky factor was asked for and there is none.
+    #[error("the matrix of {dimension} rows is not positive definite")]
+    NotPositiveDefinite {
+        /// Its number of rows.
+        dimension: usize,
+    },
+    /// Singular to rounding: some motion costs nothing.
+    #[error("the matrix is singular to rounding: its pivots span {pivot_ratio:e}, smallest over largest")]
+    Singular {
+        /// Smallest over largest size of a pivot; for a definite matrix the inverse condition number lies below it.
+        pivot_ratio: f64,
+    },
+    /// Refinement does not bring the backward error down to rounding.
+    #[error("the backward error of the solution stays at {backward_error:e} after {refinement_count} refinements")]
+    NotAccurate {
+        /// ‖b − A x‖ / (‖A‖ ‖x‖ + ‖b‖) reached.
+        backward_error: f64,
+        /// Refinements made.
+        refinement_count: usize,
+    },
+    /// No memory for the factors.
+    #[error("the factors of a matrix of {dimension} rows do not fit in memory")]
+    OutOfMemory {
+        /// Its number of rows.
+        dimension: usize,
+    },
+}
