@@ -171,6 +171,8 @@ mod book {
     mod fit {}
     #[doc = include_str!("../book/src/scene.md")]
     mod scene {}
+    #[doc = include_str!("../book/src/exact.md")]
+    mod exact {}
     #[doc = include_str!("../book/src/report.md")]
     mod report {}
     #[doc = include_str!("../book/src/validation.md")]

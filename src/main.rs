@@ -1,5 +1,7 @@
 //! The command line of jamscope: parses, calls the library, prints.
 
+#[path = "cli/exact/mod.rs"]
+mod exact;
 #[path = "cli/inspect.rs"]
 mod inspect;
 #[path = "cli/progress.rs"]
@@ -35,6 +37,8 @@ enum Command {
     Scene,
     /// Print energy, pressure, stress, contacts, coordination, rattlers and residual of a packing file.
     Inspect(InspectArguments),
+    /// Print an exact solution as a table, 17 significant digits.
+    Exact(exact::ExactArguments),
 }
 
 #[derive(Args, Default)]
@@ -107,6 +111,7 @@ fn main() -> ExitCode {
         Some(Command::Run(arguments)) => run_scene(&arguments),
         Some(Command::Scene) => print(&scene_file::commented_scene()),
         Some(Command::Inspect(arguments)) => inspect_packing(&arguments),
+        Some(Command::Exact(arguments)) => exact::print(&arguments).map(|()| ExitCode::SUCCESS),
     };
     result.unwrap_or_else(|error| {
         eprintln!("jamscope: {error}");

@@ -457,4 +457,17 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn panels_and_nodes_are_as_many_as_said() {
+        assert_eq!((node_count(1.5), node_count(4.0)), (16, 28));
+        for (crossover, panel_count) in [(0.0, 42), (1.0, 42), (1e6, 62)] {
+            let last = last_panel(1.5, f64::max(1.0, crossover));
+            let spectrum = |w| complex_spectrum(crossover, 1.5, w);
+            let contour = Contour::new(Kind::Sum { start: CONTOUR_START }, 1.5, FIRST_PANEL, last, spectrum);
+            assert_eq!(contour.direct.len() * LANES, panel_count * 16);
+            assert_eq!(contour.moments.len(), panel_count + 1);
+        }
+        assert_eq!(16 / LANES * size_of::<Lanes>() + size_of::<Moments>(), 736);
+    }
 }

@@ -1,0 +1,22 @@
+//! Where a solution is evaluated: a list, or so many evenly spaced places.
+
+use crate::Failure;
+
+/// The list if there is one, otherwise `count` places from `from` to `to`, both included and exact.
+pub fn places<'a>(
+    list: Option<&'a [f64]>,
+    count: u64,
+    from: f64,
+    to: f64,
+) -> Result<Box<dyn Iterator<Item = f64> + 'a>, Failure> {
+    if let Some(list) = list {
+        return Ok(Box::new(list.iter().copied()));
+    }
+    if count < 2 {
+        return Err(format!("--count {count}: at least two, the first and the last").into());
+    }
+    let last = count - 1;
+    // The far end is a number of its own, and rounding takes no place beyond it, where there is no solution.
+    let place = move |n: u64| (from + (to - from) * (n as f64 / last as f64)).min(to);
+    Ok(Box::new((0..count).map(move |n| if n == last { to } else { place(n) })))
+}
