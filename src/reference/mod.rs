@@ -18,14 +18,21 @@
 //! Lemaître et al. (2021), Phys. Rev. E 104, 024904, for the screened profile in two dimensions; Charan et al. (2023),
 //! Phys. Rev. E 107, 055005, in three.
 
+pub mod amplitude;
+pub mod antiscreened;
 pub mod bessel;
 mod cylindrical;
+mod decay;
 pub mod elastic;
+mod local_series;
 pub mod poles;
 pub mod rim;
 mod rim_distance;
 pub mod screened;
+mod sensitivity;
+mod small_wavenumber;
 mod spherical;
+mod wave;
 
 use serde::Serialize;
 use thiserror::Error;

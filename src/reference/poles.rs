@@ -23,7 +23,7 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use crate::reference::Annulus;
-use crate::reference::bessel::modulus_phase;
+use crate::reference::bessel::modulus_phase::modulus_phase;
 use crate::reference::rim_distance::RimDistance;
 
 /// Newton's steps needed are 3 to 6; if rounding makes the last ones hop, this ends it.

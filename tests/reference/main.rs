@@ -1,5 +1,17 @@
 //! The exact solutions against values of 25 digits, their limits, and the equation they solve.
 
+#[path = "../twins/precise_bessel.rs"]
+mod precise_bessel;
+#[path = "../twins/precise_profile.rs"]
+mod precise_profile;
+
+mod amplitude;
+mod antiscreened;
+mod bessel_functions;
+mod precise_poles;
+mod random_annuli;
+mod wavenumber_derivative;
+
 use std::f64::consts::PI;
 
 use jamscope::reference::elastic::Elastic;
