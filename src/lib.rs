@@ -145,6 +145,10 @@ mod book {
     mod observe_angular_profile {}
     #[doc = include_str!("../book/src/reference.md")]
     mod reference {}
+    #[doc = include_str!("../book/src/reference/bessel.md")]
+    mod reference_bessel {}
+    #[doc = include_str!("../book/src/reference/wavenumber_derivative.md")]
+    mod reference_wavenumber_derivative {}
     #[cfg(feature = "fit")]
     #[doc = include_str!("../book/src/fit.md")]
     mod fit {}

@@ -11,6 +11,10 @@
 //! medium whose plastic events screen the elastic field, [`Screened`](screened::Screened). Both implement
 //! [`RadialSolution`]. Start from [`Annulus::new`].
 //!
+//! With the other sign of κ² the medium lies on an elastic foundation, [`Antiscreened`](antiscreened::Antiscreened). All of them
+//! know their derivatives in r and in κ. How strongly a screened medium answers, as a function of κ, is its
+//! [`Amplitude`](amplitude::Amplitude), with [`poles`]; what they are all made of is [`bessel`].
+//!
 //! The screened solution is built on the one that leaves the rim with unit slope, [`RimSolution`](rim::RimSolution):
 //! that one is smooth in κ, while d_0 d/d(a) has a pole wherever the rim solution has a node at r = a.
 //!

@@ -34,8 +34,7 @@ pub const ELASTIC_BELOW: f64 = 1e-8;
 /// and for κR < 2 relative to themselves. Largest found for R/a from 1.001 to 10⁷ and κR from 10⁻⁸ to 10⁶: 9·10⁻¹⁶.
 ///
 /// # Cost
-/// Two dimensions: 0.6 to 0.8 µs to set up, 45 to 110 ns a radius, 200 ns with the derivative alone; three: 35 to 60 ns
-/// for either (measured at opt-level 2).
+/// That of [`Screened`](crate::reference::screened::Screened), which is a quotient of two values of this.
 #[derive(Debug, Clone)]
 pub struct RimSolution<const D: usize> {
     annulus: Annulus,

@@ -33,8 +33,9 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// 4.7·10⁻¹⁶ in three; over random annuli, R/a from 1.001 to 10⁷, κR from 10⁻⁸ to 10⁶: 6·10⁻¹⁶.
 ///
 /// # Cost
-/// 1000 radii: 45 to 110 µs in two dimensions, 30 to 60 µs in three, a derivative up to twice that; about 1 µs to set up
-/// (measured at opt-level 2, κR from 10⁻⁴ to 10⁵).
+/// 1000 radii: 22 to 43 µs in two dimensions (`cargo run --release --example exact_routes`, κR from 10⁻¹¹ to 10⁵). On two cores
+/// with a load of 7, hence three to six times slower (`cargo bench --bench reference`): 90 to 280 µs in two dimensions, 30 to 100 µs in
+/// three, up to 320 µs for the derivative; 1.5 to 7 µs and 0.2 to 0.4 µs to set up.
 ///
 /// # Example
 /// ```
@@ -114,7 +115,8 @@ impl<const D: usize> Screened<D> {
     /// twin in three); largest found: 5·10⁻¹⁶ of twice the condition.
     ///
     /// # Cost
-    /// See `cargo bench --bench reference -- derivative`.
+    /// Set up when first asked for, five times as dear as the profile itself; then two to five times a value, 0.2 to 0.7 µs on two
+    /// cores with a load of 7 (`cargo bench --bench reference -- derivative`).
     pub fn wavenumber_derivative(&self, radius: f64) -> f64 {
         if !self.annulus.contains(radius) {
             return f64::NAN;

@@ -30,7 +30,8 @@ impl Case {
 pub fn annuli() -> impl Strategy<Value = Annulus> {
     let gap = prop_oneof![-3.0..0.0f64, 0.0..7.0f64];
     gap.prop_map(|exponent| {
-        let ratio = if exponent < 0.0 { 1.001 + 10f64.powf(exponent) } else { 10f64.powf(exponent).max(1.001) };
+        let ratio =
+            if exponent < 0.0 { (1.0 + 10f64.powf(exponent)).max(1.001) } else { 10f64.powf(exponent).max(1.001) };
         Annulus::new(0.5, 0.5 * ratio).expect("a positive gap")
     })
 }

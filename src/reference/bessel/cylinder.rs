@@ -20,7 +20,7 @@
 //! NaN gives NaN.
 //!
 //! # Cost
-//! 10 to 120 ns, the more the larger x (`cargo bench --bench reference -- bessel`).
+//! 10 to 130 ns, the more the larger x, on two cores with a load of 7 (`cargo bench --bench reference -- bessel`).
 //!
 //! # Source
 //! Abramowitz & Stegun (1964), 9.1; DLMF §10.2. The approximations are those of Sun Microsystems' fdlibm (1993).

@@ -11,7 +11,7 @@
 //! `(P − 1) x²` and `φ x`, which are as smooth; below it from J_1 and Y_1 of the crate `libm`.
 //!
 //! # Source
-//! Abramowitz & Stegun (1964), 9.2.28 and 9.2.31; DLMF §10.18.
+//! Abramowitz & Stegun (1964), 9.2.28 and 9.2.29; DLMF §10.18.
 
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_2_PI};
 
@@ -92,7 +92,7 @@ pub struct ModulusPhase {
 /// 6·10⁻¹⁶ (in units of the modulus).
 ///
 /// # Cost
-/// 15 to 30 ns for x ≥ 2, 100 ns below (`cargo bench --bench reference -- bessel`).
+/// 40 to 60 ns for x ≥ 2, 120 ns below, on two cores with a load of 7 (`cargo bench --bench reference -- bessel`).
 pub fn modulus_phase(x: f64) -> ModulusPhase {
     if x >= EXPANDED_FROM {
         let shift = if x >= ASYMPTOTIC_FROM {

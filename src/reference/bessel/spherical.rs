@@ -20,7 +20,7 @@
 //! overflow for x < 10⁻¹⁵⁴.
 //!
 //! # Cost
-//! 10 to 40 ns (`cargo bench --bench reference -- bessel`).
+//! 7 to 40 ns on two cores with a load of 7 (`cargo bench --bench reference -- bessel`).
 //!
 //! # Source
 //! Abramowitz & Stegun (1964), 10.1 and 10.2; DLMF §10.49 (closed forms) and §10.53 (series).
