@@ -166,6 +166,10 @@ mod book {
     mod reference_angular_modes {}
     #[doc = include_str!("../book/src/reference/lorentzian.md")]
     mod reference_lorentzian {}
+    #[doc = include_str!("../book/src/reference/bessel.md")]
+    mod reference_bessel {}
+    #[doc = include_str!("../book/src/reference/wavenumber_derivative.md")]
+    mod reference_wavenumber_derivative {}
     #[cfg(feature = "fit")]
     #[doc = include_str!("../book/src/fit.md")]
     mod fit {}

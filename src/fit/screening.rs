@@ -103,8 +103,16 @@ impl<'a> Landscape<'a> {
             .map(|basin| self.polish(basin[0].0, basin[basin.len() - 1].0))
             .min_by(|a, b| a.chi_squared.total_cmp(&b.chi_squared))
             .filter(|best| {
-                best.chi_squared < grid[0].1 && best.wavenumber * self.annulus.outer_radius() > LEAST_ARGUMENT
+                let improves = best.chi_squared < grid[0].1 && grid[0].1 > self.rounding();
+                improves && best.wavenumber * self.annulus.outer_radius() > LEAST_ARGUMENT
             })
+    }
+
+    /// χ² of residuals that are rounding alone: where κ = 0 leaves no more, a lower χ² says nothing of κ.
+    fn rounding(&self) -> f64 {
+        // Of a ring: the profile's 3.2·10⁻¹⁵ twice (in the value and in the amplitude), and a few ulps of products.
+        const RESIDUAL: f64 = 1e-14;
+        RESIDUAL * RESIDUAL * self.rings.weighted(&self.rings.rescaled, &self.rings.rescaled)
     }
 
     /// The minimum between `low` and `high`: Brent, then one step of Gauss and Newton, kept if it goes down.

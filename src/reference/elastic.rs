@@ -61,6 +61,20 @@ impl<const D: usize> Elastic<D> {
     pub fn annulus(&self) -> Annulus {
         self.annulus
     }
+
+    /// d/d_0, at a radius in the annulus.
+    pub(crate) fn relative(&self, radius: f64) -> f64 {
+        let (inner, outer) = (self.annulus.inner_radius(), self.annulus.outer_radius());
+        (inner / radius).powi(D as i32 - 1) * (power_gap::<D>(outer, radius) / power_gap::<D>(outer, inner))
+    }
+
+    /// d'/d_0, at a radius in the annulus.
+    pub(crate) fn relative_derivative(&self, radius: f64) -> f64 {
+        let (inner, outer) = (self.annulus.inner_radius(), self.annulus.outer_radius());
+        // d ∝ R^D r^(1−D) − r, so d' ∝ −((D−1) (R/r)^D + 1): two terms of one sign.
+        -(inner / outer).powi(D as i32 - 1)
+            * (((D - 1) as f64 * (outer / radius).powi(D as i32) + 1.0) / power_gap::<D>(outer, inner))
+    }
 }
 
 impl<const D: usize> RadialSolution for Elastic<D> {
@@ -68,21 +82,14 @@ impl<const D: usize> RadialSolution for Elastic<D> {
         if !self.annulus.contains(radius) {
             return f64::NAN;
         }
-        let (inner, outer) = (self.annulus.inner_radius(), self.annulus.outer_radius());
-        self.amplitude
-            * (inner / radius).powi(D as i32 - 1)
-            * (power_gap::<D>(outer, radius) / power_gap::<D>(outer, inner))
+        self.amplitude * self.relative(radius)
     }
 
     fn derivative(&self, radius: f64) -> f64 {
         if !self.annulus.contains(radius) {
             return f64::NAN;
         }
-        let (inner, outer) = (self.annulus.inner_radius(), self.annulus.outer_radius());
-        // d ∝ R^D r^(1−D) − r, so d' ∝ −((D−1) (R/r)^D + 1): two terms of one sign.
-        -self.amplitude
-            * (inner / outer).powi(D as i32 - 1)
-            * (((D - 1) as f64 * (outer / radius).powi(D as i32) + 1.0) / power_gap::<D>(outer, inner))
+        self.amplitude * self.relative_derivative(radius)
     }
 }
 

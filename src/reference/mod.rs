@@ -11,6 +11,10 @@
 //! medium whose plastic events screen the elastic field, [`Screened`](screened::Screened). Both implement
 //! [`RadialSolution`]. Start from [`Annulus::new`].
 //!
+//! With the other sign of κ² the medium lies on an elastic foundation, [`Antiscreened`](antiscreened::Antiscreened). All of them
+//! know their derivatives in r and in κ. How strongly a screened medium answers, as a function of κ, is its
+//! [`Amplitude`](amplitude::Amplitude), with [`poles`]; what they are all made of is [`bessel`].
+//!
 //! The screened solution is built on the one that leaves the rim with unit slope, [`RimSolution`](rim::RimSolution):
 //! that one is smooth in κ, while d_0 d/d(a) has a pole wherever the rim solution has a node at r = a.
 //!
@@ -21,15 +25,22 @@
 //! Phys. Rev. E 107, 055005, in three.
 
 pub mod angular_modes;
+pub mod amplitude;
+pub mod antiscreened;
 pub mod bessel;
 mod cylindrical;
+mod decay;
 pub mod elastic;
 pub mod lorentzian;
+mod local_series;
 pub mod poles;
 pub mod rim;
 mod rim_distance;
 pub mod screened;
+mod sensitivity;
+mod small_wavenumber;
 mod spherical;
+mod wave;
 
 use serde::Serialize;
 use thiserror::Error;

@@ -29,6 +29,12 @@ impl RimDistance {
         (sine + rest * cosine, cosine - rest * sine)
     }
 
+    /// e^(−δ), relative accuracy.
+    pub(crate) fn decay(self) -> f64 {
+        let decayed = libm::exp(-self.high);
+        decayed - decayed * self.low
+    }
+
     /// `δ + shift − n π`, to 2⁻⁵² of n π.
     pub(crate) fn beyond(self, shift: f64, index: f64) -> f64 {
         (self.high - index * std::f64::consts::PI) + (self.low + shift)

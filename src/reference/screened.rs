@@ -1,8 +1,12 @@
 //! [`Screened`]: the medium whose elastic field is screened by plastic events.
 
+use std::sync::OnceLock;
+
 use crate::reference::elastic::Elastic;
+use crate::reference::local_series::Sign;
 use crate::reference::poles::{pole, pole_at};
 use crate::reference::rim::RimSolution;
+use crate::reference::sensitivity::{Profile, Sensitivity};
 use crate::reference::{Annulus, RadialSolution, ReferenceError};
 
 /// Radial displacement of a medium with dipole screening.
@@ -26,11 +30,12 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// Relative error, next to a node relative to the local envelope, below 3.2·10⁻¹⁵ (1 + κ_n/|κ − κ_n|), the factor being
 /// the condition of the problem in κ; d(a) = d_0 and d(R) = 0 exactly. Largest found over the rows of
 /// `fixtures/reference`, R/a from 60 to 2·10⁴, κR from 10⁻¹¹ to 10⁵: 3.1·10⁻¹⁶ of that factor in two dimensions,
-/// 4.7·10⁻¹⁶ in three.
+/// 4.7·10⁻¹⁶ in three; over random annuli, R/a from 1.001 to 10⁷, κR from 10⁻⁸ to 10⁶: 6·10⁻¹⁶.
 ///
 /// # Cost
-/// 1000 radii: 45 to 110 µs in two dimensions, 30 to 60 µs in three, a derivative up to twice that; about 1 µs to set up
-/// (measured at opt-level 2, κR from 10⁻⁴ to 10⁵).
+/// 1000 radii: 22 to 43 µs in two dimensions (`cargo run --release --example exact_routes`, κR from 10⁻¹¹ to 10⁵). On two cores
+/// with a load of 7, hence three to six times slower (`cargo bench --bench reference`): 90 to 280 µs in two dimensions, 30 to 100 µs in
+/// three, up to 320 µs for the derivative; 1.5 to 7 µs and 0.2 to 0.4 µs to set up.
 ///
 /// # Example
 /// ```
@@ -48,9 +53,12 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Screened<const D: usize> {
+    annulus: Annulus,
     amplitude: f64,
     wavenumber: f64,
     form: Form<D>,
+    /// Set up when first asked for.
+    sensitivity: OnceLock<Box<Sensitivity<D>>>,
 }
 
 #[derive(Debug, Clone)]
@@ -80,7 +88,7 @@ impl<const D: usize> Screened<D> {
             let inner_value = rim.value(annulus.inner_radius());
             Form::Waves { rim, inner_value }
         };
-        Ok(Screened { amplitude, wavenumber, form })
+        Ok(Screened { annulus, amplitude, wavenumber, form, sensitivity: OnceLock::new() })
     }
 
     /// Displacement d_0 of the inner edge \[length\].
@@ -92,21 +100,72 @@ impl<const D: usize> Screened<D> {
     pub fn wavenumber(&self) -> f64 {
         self.wavenumber
     }
+
+    /// ∂d/∂κ \[length²\] at `radius` \[length\], NaN outside the annulus: 0 at a, at R and at κ = 0.
+    ///
+    /// # Accuracy
+    /// Error below 2 · 3.2·10⁻¹⁵ (1 + κ_n/|κ − κ_n|), twice the condition of d since its poles are of second order, relative to
+    ///
+    /// - itself, for κR < 2 (so as κ → 0, where it is of order κ) and next to a, where it vanishes as r − a;
+    /// - `√((∂d/∂κ)² + (R − a)² d²)`, its amplitude as κ changes, within half of 1/κ of the rim, where it vanishes as R − r;
+    /// - the local amplitude of its oscillation in r elsewhere.
+    ///
+    /// Tested for R/a from 1.001 to 10⁷, κR from 10⁻⁸ to 10⁶
+    /// (`reference::wavenumber_derivative::screened_profiles_and_both_derivatives_have_their_digits_in_two_dimensions` and its
+    /// twin in three); largest found: 5·10⁻¹⁶ of twice the condition.
+    ///
+    /// # Cost
+    /// Set up when first asked for, five times as dear as the profile itself; then two to five times a value, 0.2 to 0.7 µs on two
+    /// cores with a load of 7 (`cargo bench --bench reference -- derivative`).
+    pub fn wavenumber_derivative(&self, radius: f64) -> f64 {
+        if !self.annulus.contains(radius) {
+            return f64::NAN;
+        }
+        if self.wavenumber == 0.0 {
+            return 0.0;
+        }
+        let sensitivity = self.sensitivity.get_or_init(|| {
+            Box::new(Sensitivity::new(&Profile {
+                sign: Sign::Screened,
+                annulus: self.annulus,
+                wavenumber: self.wavenumber,
+                ratio: |radius| self.relative(radius),
+                inner_slope: self.relative_derivative(self.annulus.inner_radius()),
+            }))
+        });
+        self.amplitude * sensitivity.at(radius, self.relative(radius))
+    }
+
+    /// d/d_0.
+    fn relative(&self, radius: f64) -> f64 {
+        match &self.form {
+            Form::Elastic(elastic) => elastic.relative(radius),
+            // The quotient is formed first: it is exactly 1 at r = a.
+            Form::Waves { rim, inner_value } => rim.value(radius) / inner_value,
+        }
+    }
+
+    /// d'/d_0.
+    fn relative_derivative(&self, radius: f64) -> f64 {
+        match &self.form {
+            Form::Elastic(elastic) => elastic.relative_derivative(radius),
+            Form::Waves { rim, inner_value } => rim.derivative(radius) / inner_value,
+        }
+    }
 }
 
 impl<const D: usize> RadialSolution for Screened<D> {
     fn value(&self, radius: f64) -> f64 {
-        match &self.form {
-            Form::Elastic(elastic) => elastic.value(radius),
-            // The quotient is formed first: it is exactly 1 at r = a.
-            Form::Waves { rim, inner_value } => self.amplitude * (rim.value(radius) / inner_value),
+        if !self.annulus.contains(radius) {
+            return f64::NAN;
         }
+        self.amplitude * self.relative(radius)
     }
 
     fn derivative(&self, radius: f64) -> f64 {
-        match &self.form {
-            Form::Elastic(elastic) => elastic.derivative(radius),
-            Form::Waves { rim, inner_value } => self.amplitude * (rim.derivative(radius) / inner_value),
+        if !self.annulus.contains(radius) {
+            return f64::NAN;
         }
+        self.amplitude * self.relative_derivative(radius)
     }
 }
