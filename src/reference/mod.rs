@@ -24,15 +24,15 @@
 //! Lemaître et al. (2021), Phys. Rev. E 104, 024904, for the screened profile in two dimensions; Charan et al. (2023),
 //! Phys. Rev. E 107, 055005, in three.
 
-pub mod angular_modes;
 pub mod amplitude;
+pub mod angular_modes;
 pub mod antiscreened;
 pub mod bessel;
 mod cylindrical;
 mod decay;
 pub mod elastic;
-pub mod lorentzian;
 mod local_series;
+pub mod lorentzian;
 pub mod poles;
 pub mod rim;
 mod rim_distance;
