@@ -4,9 +4,9 @@
 //! d_i = r_i(after) − r_i(before)      d_r = d·r̂      d_θ = d·θ̂ (D = 2)      r̂ from the centre of the inflated disk
 //! ```
 //!
-//! Made from two [`Relaxed`](crate::relax::Relaxed) packings, so a state that never came to rest cannot reach a figure. Disks that are rattlers
-//! before or after are left out of every observable. An unjammed packing has no backbone: all its disks are rattlers, and
-//! all of them count.
+//! Made from two [`Relaxed`](crate::relax::Relaxed) packings, so a state that never came to rest cannot reach a figure; or
+//! from a linear response, which says itself whether it is one at a minimum. Disks that are rattlers before or after are left
+//! out of every observable. An unjammed packing has no backbone: all its disks are rattlers, and all of them count.
 
 use serde::{Deserialize, Serialize};
 

@@ -283,9 +283,10 @@ impl Lattice {
     /// ```
     ///
     /// # Accuracy
-    /// 0.006 b for a triangular lattice of R/b from 40 to 80 (asserted). For the square lattice nothing is known of it.
-    pub fn effective_radius(&self, circle: &Circle<2>) -> f64 {
-        ((circle.mobile_count() + 1) as f64 * self.cell_area() / PI).sqrt() + WALL * self.spacing
+    /// 0.006 b, R from 40 to 80 (asserted). None for the square lattice, of which nothing is known.
+    pub fn effective_radius(&self, circle: &Circle<2>) -> Option<f64> {
+        let area = (circle.mobile_count() + 1) as f64 * self.cell_area();
+        (self.arrangement == Arrangement::Triangular).then(|| (area / PI).sqrt() + WALL * self.spacing)
     }
 
     /// The sites nearer to one of them than `reach`, as half spacings along a row, row, and distance.

@@ -157,7 +157,9 @@ fn what_is_no_lattice_is_refused() {
     let error = triangular(0.1).circle(0.5).expect_err("no mobile site");
     assert_eq!(error, LatticeError::OuterRadiusTooSmall { outer_radius: 0.5, spacing: 0.9 });
     assert!(triangular(0.1).periodic([0, 3]).is_err());
-    assert!(Lattice::square(0.5, 0.1).expect("valid").moduli(&Hookean::default()).is_none());
+    let square = Lattice::square(0.5, 0.1).expect("valid");
+    assert!(square.moduli(&Hookean::default()).is_none() && square.growth_amplitude(&Hookean::default()).is_none());
+    assert!(square.effective_radius(&square.circle(5.0).expect("a circle")).is_none());
 }
 
 /// Slope of ln y against ln x by least squares.
@@ -188,7 +190,8 @@ fn the_elastic_profile_is_met_to_first_order_with_the_nominal_rim_and_to_second_
             assert_eq!(response.negative_eigenvalue_count, 0);
             let profile = RadialProfile::of(&field(&circle, &response, 1.0, 0.5 * ratio), 1.0);
             nominal.push((ratio, deviation(&profile, amplitude, 0.5 * ratio)));
-            effective.push((ratio, deviation(&profile, amplitude, lattice.effective_radius(&circle))));
+            effective
+                .push((ratio, deviation(&profile, amplitude, lattice.effective_radius(&circle).expect("triangular"))));
         }
         let (first, second) = (-slope(&nominal), -slope(&effective));
         println!("{law:?} δ = {overlap}: orders {first:.3}, {second:.3}; {nominal:?} {effective:?}");
@@ -227,7 +230,7 @@ fn the_amplitude_of_the_response_is_that_of_the_force_dipole() {
             println!("{law:?} δ = {overlap}, R = {outer_radius}: B off by {off:e}");
             assert!(off.abs() < 0.1 * (lattice.spacing() / (0.3 * outer_radius)).powi(2), "B off by {off:e}");
             // And where it vanishes is what the effective radius says, as far as it claims to.
-            let vanishes = (amplitude / slope).sqrt() - lattice.effective_radius(&circle);
+            let vanishes = (amplitude / slope).sqrt() - lattice.effective_radius(&circle).expect("triangular");
             println!("    vanishes {:.4} b beyond the effective radius", vanishes / lattice.spacing());
             assert!(vanishes.abs() < 0.006 * lattice.spacing(), "{vanishes}");
         }
@@ -257,7 +260,7 @@ fn tied_disks_answer_as_the_antiscreened_medium() {
     assert!((i - 0.565_159_103_992_485).abs() < 1e-14 && (k - 0.601_907_230_197_235).abs() < 1e-14, "{i} {k}");
     let (lattice, law, outer_radius) = (triangular(0.05), Hertzian::default(), 60.0);
     let circle = lattice.circle(outer_radius).expect("a circle");
-    let effective = lattice.effective_radius(&circle);
+    let effective = lattice.effective_radius(&circle).expect("triangular");
     let amplitude = lattice.growth_amplitude(&law).expect("isotropic");
     for reduced in [1.0, 3.0, 8.0] {
         let wavenumber: f64 = reduced / effective;
@@ -294,7 +297,7 @@ mod fits {
     fn recovered<L: PairLaw>(law: L, ratio: f64, reduced: f64, effective: bool) -> (f64, f64, usize) {
         let lattice = triangular(0.05);
         let circle = lattice.circle(0.5 * ratio).expect("a circle");
-        let rim = lattice.effective_radius(&circle);
+        let rim = lattice.effective_radius(&circle).expect("triangular");
         let wavenumber = reduced / rim;
         let coupling = lattice.coupling(&law, wavenumber * wavenumber).expect("isotropic");
         let response = response(&circle, &OnSite { law, coupling });
@@ -344,7 +347,7 @@ mod fits {
 fn relaxers_find_the_screened_state_where_it_is_a_minimum_and_say_where_it_is_none() {
     let (lattice, law, outer_radius) = (triangular(0.05), Hertzian::default(), 20.0);
     let circle = lattice.circle(outer_radius).expect("a circle");
-    let rim = lattice.effective_radius(&circle);
+    let rim = lattice.effective_radius(&circle).expect("triangular");
     let increase = (-20f64).exp2();
     let fire = Fire { limit: ForceLimit::Relative(1e-12), step_limit: 100_000, ..Fire::default() };
     let grown = || -> Packing<2> {

@@ -368,6 +368,9 @@ fn on_a_lattice_nonlinear_minus_linear_falls_as_the_square_of_the_inflation() {
         &departures(&packing, &Hertzian::default(), &periodic, powers(7, 6)),
         4.5,
     );
+    // Tied to its sites the packing is held by them, and nothing has to be held for the solution.
+    let law = OnSite { law: Hertzian::default(), coupling: -5e3 };
+    falls_as_the_square("tied, periodic", &departures(&packing, &law, &periodic, powers(7, 6)), 4.5);
     let law = PowerLaw { energy_scale: 1.0, exponent: 3.0 };
     falls_as_the_square("power law, held rim", &departures(&packing, &law, &rim, powers(7, 6)), 4.5);
 }

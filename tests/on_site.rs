@@ -1,5 +1,6 @@
 //! The on-site term: closed forms of one disk, sites across new anchors, energies of either sign, and disks that run away.
 
+use jamscope::contact::damping::{ConstantDamping, DampingChoice};
 use jamscope::contact::{Assembly, ContactNetwork, Hertzian, Hookean, OnSite, PairLaw};
 use jamscope::displacement::DisplacementField;
 use jamscope::inflation::{Boundary, Inflation, InflationError, Stage, inflate};
@@ -54,8 +55,8 @@ fn stiffness() -> f64 {
 #[test]
 fn a_disk_pushed_from_its_site_rests_where_contacts_hold_it() {
     let growth = 0.01;
-    // As much again as the contacts hold, half of what they hold outwards, almost all of it.
-    for share in [-1.0, 0.5, 0.7] {
+    // A thousand times what the contacts hold and as much again, inwards; half of it and almost all of it, outwards.
+    for share in [-1e3, -1.0, 0.5, 0.7] {
         let coupling = share * stiffness();
         let law = OnSite { law: Hookean { stiffness: STIFFNESS }, coupling };
         let limit = 1e-12;
@@ -108,11 +109,15 @@ fn a_packing_without_enough_stiffness_runs_away_and_a_tied_one_does_not() {
         fire(1e-8).relax(random_points::<2>(100, &Mixture::default(), 1.0, 3).expect("possible"), &law, &mut ());
     let packing = packing.expect("apart").converged().expect("at rest").into_inner();
     let grown = || packing.clone().with_radius(0, packing.radii()[0] + 0.01).expect("positive");
-    // About a contact's stiffness, k' √(δ R), and ten times as much.
-    for coupling in [5e4, 5e5] {
+    // About the stiffness of a contact, k' √(δ R), ten times as much, and far too much.
+    for coupling in [5e4, 5e5, 1e9] {
         let law = OnSite { law, coupling };
         assert_eq!(fire(1e-8).relax(grown(), &law, &mut ()).expect("apart").stop, Stop::NoMinimum);
         assert_eq!(damped(1e-8).relax(grown(), &law, &mut ()).expect("apart").stop, Stop::NoMinimum);
+        // Without damping steps are longest, and disks go farthest between two looks.
+        let damping = DampingChoice::Constant(ConstantDamping { rate: 0.0 });
+        let free = DampedDynamics { damping, ..damped(1e-8) };
+        assert_eq!(free.relax(grown(), &law, &mut ()).expect("apart").stop, Stop::NoMinimum);
     }
     // Nothing is held: moving all disks together costs nothing, so every Γ > 0 makes a saddle. But the growth of a disk does
     // not push all disks together, and what nothing pushes stays on its saddle.
@@ -285,6 +290,29 @@ fn a_scene_names_the_coupling_and_refuses_what_is_not_a_number() {
     scene.inflation.on_site_coupling = Some(f64::INFINITY);
     let Err(SceneError::OutOfRange { field, .. }) = scene.check() else { panic!("not refused") };
     assert_eq!(field, "inflation.on_site_coupling");
+}
+
+#[test]
+fn a_run_reports_the_coupling_where_there_is_one() {
+    use jamscope::report::table::terminal_table;
+    use jamscope::run::{SampleOutcome, run};
+    use jamscope::scene::{Sample, Source};
+
+    let sample =
+        Sample { name: "dense".into(), seed: 1, source: Source::Pressure(2000.0), relaxer: Default::default() };
+    let mut scene = Scene { disk_count: 200, sample: vec![sample], ..Scene::default() };
+    let energies = [None, Some(-1e4)].map(|coupling| {
+        scene.inflation.on_site_coupling = coupling;
+        let report = run(&scene, &()).expect("a report");
+        assert_eq!(terminal_table(&report).contains("on-site coupling, Γ"), coupling.is_some());
+        let json = serde_json::to_string(&report).expect("plain data");
+        assert_eq!(json.contains("on_site_coupling"), coupling.is_some());
+        let SampleOutcome::Done(result) = &report.samples[0].result else { panic!("failed") };
+        // Prepared without sites, whatever the inflation has.
+        (result.packing.energy, result.inflation.after.energy)
+    });
+    assert_eq!(energies[0].0, energies[1].0);
+    assert!(energies[0].1 < energies[1].1, "tied disks give way less: {energies:?}");
 }
 
 #[test]

@@ -352,7 +352,7 @@ impl<const D: usize> Experiment<D> {
         trace: &mut impl Trace,
     ) -> Result<Rest<D>, InflationError> {
         let mut outcome = relaxer.relax(packing.clone(), law, trace)?;
-        // Sites keep the packing where it is: there the centre of mass is part of the answer.
+        // Contact forces add up to nothing, so sites are at rest only where the centre of mass has not moved: nothing to undo.
         if let (Experiment::Periodic { .. }, false) = (self, L::ON_SITE) {
             outcome.state = with_centre_of_mass_of(&packing, outcome.state);
         }

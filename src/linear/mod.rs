@@ -4,6 +4,26 @@
 //! Start from [`LinearResponse`], or from [`Analysis`] for a matrix of one's own. A definite matrix is factorised by
 //! Cholesky, an indefinite one as L D Lᵀ with the number of its negative eigenvalues; every solution is refined and comes
 //! with its backward error.
+//!
+//! ```
+//! use jamscope::contact::{Hertzian, Hessian, Members, Prestress};
+//! use jamscope::lattice::Lattice;
+//! use jamscope::linear::Analysis;
+//!
+//! let circle = Lattice::triangular(0.5, 0.05)?.circle(8.0)?;
+//! let hessian = Hessian::new(&circle.packing, &Hertzian::default(), Members::Backbone, Prestress::Included)?;
+//! // One analysis serves all matrices with entries in the same places.
+//! let mut analysis = Analysis::new(hessian.matrix())?;
+//! let mut factors = analysis.factorise(hessian.matrix())?;
+//! assert!(factors.is_cholesky() && factors.negative_eigenvalue_count() == 0);
+//! // Every disk pushed along x.
+//! let push = hessian.gather(&vec![[1.0, 0.0]; circle.packing.len()]);
+//! let mut moved = vec![0.0; push.len()];
+//! let told = factors.solve(&push, &mut moved)?;
+//! assert!(told.backward_error < 1e-15);
+//! assert!(hessian.scatter(&moved)[circle.centre] == [0.0, 0.0], "the centre is held");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod factorisation;
 pub mod response;
