@@ -88,6 +88,49 @@ impl SymmetricMatrix {
     }
 }
 
+/// Who is coupled to whom: both directions of every edge, neighbours of a vertex side by side.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Graph {
+    starts: Vec<usize>,
+    neighbours: Vec<u32>,
+}
+
+impl Graph {
+    /// The graph with these edges, each given once in either direction.
+    ///
+    /// # Panics
+    /// If an edge names a vertex from `vertex_count` on.
+    pub fn new(vertex_count: usize, edges: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
+        let mut starts = vec![0; vertex_count + 1];
+        for (a, b) in edges.clone() {
+            starts[a as usize + 1] += 1;
+            starts[b as usize + 1] += 1;
+        }
+        for vertex in 0..vertex_count {
+            starts[vertex + 1] += starts[vertex];
+        }
+        let mut next = starts.clone();
+        let mut neighbours = vec![0; starts[vertex_count]];
+        for (a, b) in edges {
+            for (from, to) in [(a, b), (b, a)] {
+                neighbours[next[from as usize]] = to;
+                next[from as usize] += 1;
+            }
+        }
+        Graph { starts, neighbours }
+    }
+
+    /// Number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
+    /// The vertices coupled to one.
+    pub fn neighbours(&self, vertex: u32) -> &[u32] {
+        &self.neighbours[self.starts[vertex as usize]..self.starts[vertex as usize + 1]]
+    }
+}
+
 /// Collects D × D blocks of a symmetric matrix; its buffers are kept from one matrix to the next.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct BlockPattern {
@@ -163,6 +206,13 @@ impl BlockPattern {
         matrix.values.clear();
         matrix.values.resize(count, 0.0);
         same
+    }
+
+    /// The blocks as vertices, those below the diagonal as edges.
+    pub(crate) fn graph(&self) -> Graph {
+        let block_count = self.starts.len().saturating_sub(1);
+        let below = |column: usize| self.rows[self.starts[column]..self.starts[column + 1]].iter();
+        Graph::new(block_count, (0..block_count).flat_map(|column| below(column).map(move |&row| (row, column as u32))))
     }
 
     /// Adds a block to the diagonal.

@@ -14,7 +14,7 @@ use crate::contact::forces::geometry;
 use crate::contact::law::PairLaw;
 use crate::contact::network::backbone;
 use crate::packing::{Packing, PackingError};
-use crate::sparse::{BlockPattern, SymmetricMatrix};
+use crate::sparse::{BlockPattern, Graph, SymmetricMatrix};
 use crate::vector::{Vector, scaled};
 
 /// Whether contact forces weaken the packing across the contacts, as they do.
@@ -193,6 +193,11 @@ impl<const D: usize> Hessian<D> {
     /// The matrix.
     pub fn matrix(&self) -> &SymmetricMatrix {
         &self.matrix
+    }
+
+    /// The disks with rows as vertices in the order of [`Hessian::disks`], their contacts as edges.
+    pub fn graph(&self) -> Graph {
+        self.pattern.graph()
     }
 
     /// The disk of each block of D rows, in the packing's own numbering.

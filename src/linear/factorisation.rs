@@ -16,6 +16,7 @@
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltError;
 use faer::linalg::cholesky::llt::factor::LltError;
+use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::{
     LdltRef, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
 };
@@ -84,12 +85,36 @@ impl Analysis {
     /// # Cost
     /// Half to nine tenths of a factorisation, from 1 000 to 89 000 disks in two dimensions (`cargo bench --bench linear`).
     pub fn new(matrix: &SymmetricMatrix) -> Result<Self, LinearError> {
+        Self::with(matrix, SymmetricOrdering::Amd)
+    }
+
+    /// As [`Analysis::new`], in an order of elimination given: the row to eliminate in each place. See
+    /// [`ordering`](crate::linear::ordering).
+    ///
+    /// # Errors
+    /// An order that does not name every row once; not enough memory.
+    pub fn in_order(matrix: &SymmetricMatrix, order: &[usize]) -> Result<Self, LinearError> {
+        let dimension = matrix.dimension();
+        let mut place = vec![usize::MAX; dimension];
+        for (index, &row) in order.iter().enumerate() {
+            match place.get_mut(row) {
+                Some(place) if *place == usize::MAX => *place = index,
+                _ => return Err(LinearError::NotAnOrder { dimension, place: index, row }),
+            }
+        }
+        if order.len() != dimension {
+            return Err(LinearError::NotAnOrder { dimension, place: order.len(), row: dimension });
+        }
+        Self::with(matrix, SymmetricOrdering::Custom(PermRef::new_checked(order, &place, dimension)))
+    }
+
+    fn with(matrix: &SymmetricMatrix, ordering: SymmetricOrdering<'_, usize>) -> Result<Self, LinearError> {
         let dimension = matrix.dimension();
         let out_of_memory = |_: FaerError| LinearError::OutOfMemory { dimension };
         let (starts, rows) = (matrix.starts.clone(), matrix.rows.clone());
         let pattern = SymbolicSparseColMatRef::new_checked(dimension, dimension, &starts, None, &rows);
-        let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, Default::default())
-            .map_err(out_of_memory)?;
+        let symbolic =
+            factorize_symbolic_cholesky(pattern, Side::Lower, ordering, Default::default()).map_err(out_of_memory)?;
         let scratch = symbolic
             .factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default())
             .or(symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default()))

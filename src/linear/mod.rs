@@ -25,7 +25,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod dissection;
 pub mod factorisation;
+pub mod ordering;
 pub mod response;
 
 pub use factorisation::{Analysis, Factorisation, Solution};
@@ -75,6 +77,16 @@ pub enum LinearError {
     PatternDiffers {
         /// Its number of rows.
         dimension: usize,
+    },
+    /// An order of elimination names a row twice, one that is not there, or not every row.
+    #[error("the order of elimination has row {row} in place {place}, which is no order of {dimension} rows")]
+    NotAnOrder {
+        /// Number of rows of the matrix.
+        dimension: usize,
+        /// The place at fault, from 0.
+        place: usize,
+        /// The row found there.
+        row: usize,
     },
     /// A Cholesky factor was asked for and there is none.
     #[error("the matrix of {dimension} rows is not positive definite")]

@@ -12,7 +12,7 @@
 use crate::contact::forces::geometry;
 use crate::contact::hessian::{Hessian, Members, Prestress};
 use crate::contact::{Assembly, PairLaw};
-use crate::linear::{Analysis, LinearError};
+use crate::linear::{Analysis, LinearError, ordering};
 use crate::packing::Packing;
 use crate::vector::{Vector, difference, scaled, sum};
 
@@ -78,7 +78,7 @@ impl<const D: usize> LinearResponse<D> {
         if push.iter().all(|&value| value == 0.0) {
             return Err(LinearError::CentreTouchesNothing { disk: centre });
         }
-        let mut analysis = Analysis::new(matrix)?;
+        let mut analysis = Analysis::in_order(matrix, &ordering::best(&hessian, packing)?)?;
         let mut factorisation = analysis.factorise(matrix)?;
         let mut unknowns = vec![0.0; push.len()];
         let solution = factorisation.solve(&push, &mut unknowns)?;

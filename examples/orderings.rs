@@ -1,0 +1,97 @@
+//! Minimum degree against nested dissection on jammed packings: values in a factor, and times as the least of three.
+//!
+//! ```sh
+//! cargo run --release --example orderings            # 5548 to 88768 disks, 2000 and 8000 balls
+//! ```
+
+use std::error::Error;
+use std::time::Instant;
+
+use jamscope::contact::{Hertzian, Hessian, Members, Prestress};
+use jamscope::io::read_packing;
+use jamscope::linear::Analysis;
+use jamscope::linear::ordering::{minimum_degree, nested_dissection};
+use jamscope::packing::{Domain, Mixture, Packing};
+use jamscope::preparation::{Preparation, Target, prepare};
+use jamscope::relax::{Fire, ForceLimit};
+
+/// Repeats of every measurement.
+const REPEATS: usize = 3;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    println!(
+        "| D | disks | order | values in a factor | order [ms] | analysis [ms] | L Lᵀ [ms] | solution, refined [ms] |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
+    let small = read_packing::<2>("fixtures/packings/hertz_N5548_p100.xyz")?;
+    for copies in [1, 2, 4] {
+        compare(&tiled(&small, copies)?)?;
+    }
+    for disk_count in [2000, 8000] {
+        let target = Target::PackingFraction(0.75);
+        let preparation = Preparation { disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
+        let fire = Fire { limit: ForceLimit::Relative(1e-6), ..Fire::default() };
+        compare(prepare::<3, _>(&preparation, &Hertzian::default(), &fire, &mut ())?.packing.get())?;
+    }
+    Ok(())
+}
+
+/// `copies` × `copies` boxes of a periodic packing as one.
+fn tiled(packing: &Packing<2>, copies: usize) -> Result<Packing<2>, Box<dyn Error>> {
+    let Domain::Periodic { corner, lengths } = *packing.domain() else {
+        return Err("the packing is not periodic".into());
+    };
+    let (mut positions, mut radii) = (Vec::new(), Vec::new());
+    for copy in 0..copies * copies {
+        let shift = [(copy / copies) as f64 * lengths[0], (copy % copies) as f64 * lengths[1]];
+        positions.extend(packing.positions().iter().map(|position| [position[0] + shift[0], position[1] + shift[1]]));
+        radii.extend_from_slice(packing.radii());
+    }
+    let lengths = lengths.map(|side| side * copies as f64);
+    Ok(Packing::new(Domain::Periodic { corner, lengths }, positions, radii)?)
+}
+
+fn compare<const D: usize>(packing: &Packing<D>) -> Result<(), Box<dyn Error>> {
+    // One disk held: nothing else keeps a periodic packing in place.
+    let held = (0..packing.len()).map(|disk| disk == 0).collect();
+    let packing = packing.clone().with_held(held)?;
+    let hessian = Hessian::new(&packing, &Hertzian::default(), Members::Backbone, Prestress::LeftOut)?;
+    let matrix = hessian.matrix();
+    let right = vec![1.0; matrix.dimension()];
+    let mut solution = right.clone();
+    for dissected in [false, true] {
+        let mut least = [f64::INFINITY; 4];
+        let mut value_count = 0;
+        for _ in 0..REPEATS {
+            let mut clock = Clock(Instant::now());
+            let order = if dissected { nested_dissection(&hessian, &packing) } else { minimum_degree(&hessian)? };
+            let ordered = clock.lap();
+            let mut analysis = Analysis::in_order(matrix, &order)?;
+            let analysed = clock.lap();
+            value_count = analysis.factor_count();
+            let mut factorisation = analysis.cholesky(matrix)?;
+            let factorised = clock.lap();
+            let _ = factorisation.solve(&right, &mut solution)?;
+            let laps = [ordered, analysed, factorised, clock.lap()];
+            least.iter_mut().zip(laps).for_each(|(least, lap)| *least = least.min(lap));
+        }
+        let name = if dissected { "nested dissection" } else { "minimum degree" };
+        let [ordered, analysed, factorised, solved] = least;
+        println!(
+            "| {D} | {} | {name} | {value_count} | {ordered:.1} | {analysed:.1} | {factorised:.1} | {solved:.1} |",
+            hessian.disks().len()
+        );
+    }
+    Ok(())
+}
+
+/// Milliseconds since the last lap.
+struct Clock(Instant);
+
+impl Clock {
+    fn lap(&mut self) -> f64 {
+        let seconds = self.0.elapsed().as_secs_f64();
+        self.0 = Instant::now();
+        1e3 * seconds
+    }
+}
