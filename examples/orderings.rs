@@ -1,10 +1,13 @@
 //! Minimum degree against nested dissection on jammed packings: values in a factor, and times as the least of three.
 //!
 //! ```sh
-//! cargo run --release --example orderings            # 5548 to 88768 disks, 2000 and 8000 balls
+//! cargo run --release --example orderings                      # 5548 to 88768 disks, 2000 and 8000 balls
+//! cargo run --release --example orderings -- --write FOLDER    # the matrices as well, for benches/peers/cholmod
 //! ```
 
 use std::error::Error;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use jamscope::contact::{Hertzian, Hessian, Members, Prestress};
@@ -14,24 +17,32 @@ use jamscope::linear::ordering::{minimum_degree, nested_dissection};
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{Fire, ForceLimit};
+use jamscope::sparse::SymmetricMatrix;
 
 /// Repeats of every measurement.
 const REPEATS: usize = 3;
 
 fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let folder = match arguments.as_slice() {
+        [] => None,
+        [option, folder] if option == "--write" => Some(PathBuf::from(folder)),
+        _ => return Err("usage: orderings [--write FOLDER]".into()),
+    };
+    let folder = folder.as_deref();
     println!(
         "| D | disks | order | values in a factor | order [ms] | analysis [ms] | L Lᵀ [ms] | solution, refined [ms] |"
     );
     println!("|---|---|---|---|---|---|---|---|");
     let small = read_packing::<2>("fixtures/packings/hertz_N5548_p100.xyz")?;
     for copies in [1, 2, 4] {
-        compare(&tiled(&small, copies)?)?;
+        compare(&tiled(&small, copies)?, folder)?;
     }
     for disk_count in [2000, 8000] {
         let target = Target::PackingFraction(0.75);
         let preparation = Preparation { disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
         let fire = Fire { limit: ForceLimit::Relative(1e-6), ..Fire::default() };
-        compare(prepare::<3, _>(&preparation, &Hertzian::default(), &fire, &mut ())?.packing.get())?;
+        compare(prepare::<3, _>(&preparation, &Hertzian::default(), &fire, &mut ())?.packing.get(), folder)?;
     }
     Ok(())
 }
@@ -51,12 +62,15 @@ fn tiled(packing: &Packing<2>, copies: usize) -> Result<Packing<2>, Box<dyn Erro
     Ok(Packing::new(Domain::Periodic { corner, lengths }, positions, radii)?)
 }
 
-fn compare<const D: usize>(packing: &Packing<D>) -> Result<(), Box<dyn Error>> {
+fn compare<const D: usize>(packing: &Packing<D>, folder: Option<&Path>) -> Result<(), Box<dyn Error>> {
     // One disk held: nothing else keeps a periodic packing in place.
     let held = (0..packing.len()).map(|disk| disk == 0).collect();
     let packing = packing.clone().with_held(held)?;
     let hessian = Hessian::new(&packing, &Hertzian::default(), Members::Backbone, Prestress::LeftOut)?;
     let matrix = hessian.matrix();
+    if let Some(folder) = folder {
+        write(matrix, &folder.join(format!("{D}d_{:06}.mtx", hessian.disks().len())))?;
+    }
     let right = vec![1.0; matrix.dimension()];
     let mut solution = right.clone();
     for dissected in [false, true] {
@@ -83,6 +97,21 @@ fn compare<const D: usize>(packing: &Packing<D>) -> Result<(), Box<dyn Error>> {
         );
     }
     Ok(())
+}
+
+/// A Matrix Market file of the lower triangle.
+fn write(matrix: &SymmetricMatrix, path: &Path) -> Result<(), Box<dyn Error>> {
+    let mut file = std::io::BufWriter::new(std::fs::File::create(path)?);
+    let dimension = matrix.dimension();
+    writeln!(
+        file,
+        "%%MatrixMarket matrix coordinate real symmetric\n{dimension} {dimension} {}",
+        matrix.stored_count()
+    )?;
+    for (row, column, value) in matrix.entries() {
+        writeln!(file, "{} {} {value:e}", row + 1, column + 1)?;
+    }
+    Ok(file.flush()?)
 }
 
 /// Milliseconds since the last lap.
