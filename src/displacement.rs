@@ -85,7 +85,7 @@ impl<const D: usize> DisplacementField<D> {
     /// `packing` is the one the response was made from and `outer_radius` the R of its circle or box.
     ///
     /// # Panics
-    /// If the packing has another number of disks.
+    /// If the packing has another number of disks, or the response is not one to the growth of a disk.
     #[cfg(feature = "linear")]
     pub fn of_linear_response(
         response: &LinearResponse<D>,
@@ -94,9 +94,10 @@ impl<const D: usize> DisplacementField<D> {
         outer_radius: f64,
     ) -> Self {
         assert_eq!(packing.len(), response.displacements.len(), "a response belongs to the packing it was made from");
+        let centre = response.growing.expect("a field has a disk that grows in its middle");
         let displacement = |disk: usize| scaled(increase, response.displacements[disk]);
-        let disks = moved(packing, response.centre, &response.solved, displacement);
-        let inner_radius = packing.radii()[response.centre];
+        let disks = moved(packing, centre, &response.solved, displacement);
+        let inner_radius = packing.radii()[centre];
         DisplacementField { disks, inner_radius, outer_radius, measured_on: MeasuredOn::Backbone }
     }
 

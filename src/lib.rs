@@ -65,6 +65,7 @@
 //! | [`inflation`] | one disk grows, the rest relaxes; and back | [`inflate`](inflation::inflate) |
 //! | [`lattice`] | lattices whose continuum answer is known | [`Lattice`](lattice::Lattice) |
 //! | [`displacement`] | how far every disk moved | [`DisplacementField`](displacement::DisplacementField) |
+//! | `plastic` (feature `linear`) | what of a response is not in the linear one, and from where on | `plastic::PlasticPart` |
 //! | [`observe`] | radial and angular profile | [`RadialProfile`](observe::RadialProfile) |
 //! | [`reference`](mod@reference) | exact solutions, elastic and screened | [`Annulus`](reference::Annulus) |
 //! | `fit` (feature `fit`) | a profile against both solutions, with errors and a decision | `fit::profile::fit_radial_profile` |
@@ -103,6 +104,8 @@ pub mod lattice;
 pub mod linear;
 pub mod observe;
 pub mod packing;
+#[cfg(feature = "linear")]
+pub mod plastic;
 pub mod preparation;
 pub mod reference;
 pub mod relax;

@@ -15,7 +15,7 @@ use crate::contact::law::PairLaw;
 use crate::contact::network::backbone;
 use crate::packing::{Packing, PackingError};
 use crate::sparse::{BlockPattern, Graph, SymmetricMatrix};
-use crate::vector::{Vector, scaled};
+use crate::vector::{Vector, dot, scaled};
 
 /// Whether contact forces weaken the packing across the contacts, as they do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -57,6 +57,9 @@ pub struct Hessian<const D: usize> {
     /// Block row of each disk in working order; `NONE` for those left out.
     blocks: Vec<u32>,
     disk_count: usize,
+    mobile_count: usize,
+    /// Held disks in working order, in the packing's own numbering.
+    held: Vec<u32>,
     links: Vec<Link<D>>,
     pattern: BlockPattern,
     matrix: SymmetricMatrix,
@@ -94,6 +97,8 @@ impl<const D: usize> Hessian<D> {
             disks: Vec::new(),
             blocks: Vec::new(),
             disk_count: assembly.len(),
+            mobile_count: assembly.mobile_count(),
+            held: assembly.order()[assembly.mobile_count()..].to_vec(),
             links: Vec::new(),
             pattern: BlockPattern::default(),
             matrix: SymmetricMatrix::default(),
@@ -209,6 +214,27 @@ impl<const D: usize> Hessian<D> {
     pub(crate) fn row_of(&self, working: u32) -> Option<usize> {
         let block = self.blocks[working as usize];
         (block != NONE).then(|| D * block as usize)
+    }
+
+    /// Forces on the unknowns when held disks are moved by `imposed`: B u_held for each contact with one \[force\].
+    ///
+    /// # Shape
+    /// One displacement a disk, in the packing's own numbering; those of disks that are not held are not looked at.
+    ///
+    /// # Panics
+    /// If the field has fewer entries.
+    pub fn forces_of_held(&self, imposed: &[Vector<D>]) -> Vec<f64> {
+        let mut forces = vec![0.0; self.matrix.dimension()];
+        for link in &self.links {
+            for (disk, other) in [link.ends, (link.ends.1, link.ends.0)] {
+                let (Some(row), true) = (self.row_of(disk), other as usize >= self.mobile_count) else { continue };
+                let moved = imposed[self.held[other as usize - self.mobile_count] as usize];
+                for (d, line) in link.block.iter().enumerate() {
+                    forces[row + d] += dot(*line, moved);
+                }
+            }
+        }
+        forces
     }
 
     /// A field over the packing as a vector of unknowns.

@@ -25,11 +25,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod contact_changes;
 mod dissection;
 pub mod factorisation;
 pub mod ordering;
 pub mod response;
 
+pub use contact_changes::ContactChange;
 pub use factorisation::{Analysis, Factorisation, Solution};
 pub use response::LinearResponse;
 
@@ -61,6 +63,26 @@ pub enum LinearError {
         disk: usize,
         /// Number of disks.
         disk_count: usize,
+    },
+    /// A load that is not a number.
+    #[error("the load on disk {disk} is not a finite vector")]
+    LoadNotFinite {
+        /// The disk.
+        disk: usize,
+    },
+    /// Loads and disks differ in number.
+    #[error("{found} forces for {disk_count} disks")]
+    LoadNotOneADisk {
+        /// Number of forces.
+        found: usize,
+        /// Number of disks.
+        disk_count: usize,
+    },
+    /// Only held disks can be moved at will.
+    #[error("disk {disk} is not held: its displacement is part of the answer")]
+    NotHeld {
+        /// The disk.
+        disk: usize,
     },
     /// An entry is NaN or infinite.
     #[error("the matrix has the entry {value} in row {row}, column {column}")]

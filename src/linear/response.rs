@@ -1,7 +1,9 @@
-//! [`LinearResponse`]: how a packing answers the growth of one disk by an infinitesimal amount.
+//! [`LinearResponse`]: how a packing answers an infinitesimal load: one disk growing, forces, or held disks moved.
 //!
 //! ```text
-//! K u = Σ_(contacts of the centre) [F' + F ∂ln c/∂R_0] n        u: displacement per d_0
+//! growth          K u = Σ_(contacts of the centre) [F' + F ∂ln c/∂R_0] n        u: displacement per d_0
+//! forces          K u = f
+//! displacements   K u = −K_(held) u_held
 //! ```
 //!
 //! Growing the centre disk by d_0 adds d_0 to the overlap of each of its contacts, and changes the coefficient c of the law
@@ -11,17 +13,17 @@
 
 use crate::contact::forces::geometry;
 use crate::contact::hessian::{Hessian, Members, Prestress};
-use crate::contact::{Assembly, PairLaw};
+use crate::contact::{Assembly, ContactNetwork, PairLaw};
 use crate::linear::{Analysis, LinearError, ordering};
 use crate::packing::Packing;
 use crate::vector::{Vector, difference, scaled, sum};
 
-/// Displacements per d_0 of all disks of a packing, one disk growing.
+/// Displacements of all disks of a packing per unit of what was done to it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearResponse<const D: usize> {
-    /// Index of the growing disk.
-    pub centre: usize,
-    /// Displacement of each disk per d_0, 0 for held disks and those off the backbone \[1\].
+    /// Index of the disk that grows; none where the load is another.
+    pub growing: Option<usize>,
+    /// Displacement of each disk, 0 for those off the backbone: per d_0 \[1\] of a disk that grows, else \[length\].
     pub displacements: Vec<Vector<D>>,
     /// Whether each disk has been solved for.
     pub solved: Vec<bool>,
@@ -53,53 +55,142 @@ impl<const D: usize> LinearResponse<D> {
         law: &L,
         prestress: Prestress,
     ) -> Result<Self, LinearError> {
-        let disk_count = packing.len();
-        if centre >= disk_count {
-            return Err(LinearError::NoSuchDisk { disk: centre, disk_count });
+        exists(packing, centre)?;
+        let response = solve(packing, Some(centre), law, prestress, |assembly, hessian| {
+            let push = push_of(assembly, hessian, centre);
+            let touched = push.iter().any(|&value| value != 0.0);
+            if touched { Ok(push) } else { Err(LinearError::CentreTouchesNothing { disk: centre }) }
+        })?;
+        Ok(LinearResponse { growing: Some(centre), ..response })
+    }
+
+    /// The response to a force on each disk \[force\]. Forces on held disks and on those off the backbone do nothing.
+    ///
+    /// Where nothing is held and no site holds the packing, a force on the packing as a whole has no answer: its mean over the
+    /// disks of the backbone is taken away, and the centre of mass stays where it is.
+    ///
+    /// # Shape
+    /// One force a disk.
+    ///
+    /// # Errors
+    /// A force that is not finite, or not one a disk; else as [`LinearResponse::of_inflation`].
+    pub fn of_forces<L: PairLaw>(
+        packing: &Packing<D>,
+        forces: &[Vector<D>],
+        law: &L,
+        prestress: Prestress,
+    ) -> Result<Self, LinearError> {
+        if forces.len() != packing.len() {
+            return Err(LinearError::LoadNotOneADisk { found: forces.len(), disk_count: packing.len() });
         }
-        let floating = !packing.held().contains(&true) && law.on_site_coupling() == 0.0;
-        // Nothing holds the packing as a whole: the centre does, and the shift is taken out again below. The forces of the
-        // growth add up to nothing, so holding it costs none.
-        let pinned;
-        let packing = if floating {
-            let held = (0..disk_count).map(|disk| disk == centre).collect();
-            pinned = packing.clone().with_held(held)?;
-            &pinned
-        } else {
-            packing
-        };
-        let assembly = Assembly::new(packing, *law)?;
-        let hessian = Hessian::of(&assembly, Members::Backbone, prestress);
-        let matrix = hessian.matrix();
-        if matrix.dimension() == 0 {
-            return Err(LinearError::NoBackbone { disk_count });
+        if let Some(disk) = forces.iter().position(|force| force.iter().any(|value| !value.is_finite())) {
+            return Err(LinearError::LoadNotFinite { disk });
         }
-        let push = push_of(&assembly, &hessian, centre);
-        if push.iter().all(|&value| value == 0.0) {
-            return Err(LinearError::CentreTouchesNothing { disk: centre });
-        }
-        let mut analysis = Analysis::in_order(matrix, &ordering::best(&hessian, packing)?)?;
-        let mut factorisation = analysis.factorise(matrix)?;
-        let mut unknowns = vec![0.0; push.len()];
-        let solution = factorisation.solve(&push, &mut unknowns)?;
-        let mut displacements = hessian.scatter(&unknowns);
-        if floating {
-            let total = displacements.iter().fold([0.0; D], |total, &u| sum(total, u));
-            let mean = scaled(1.0 / disk_count as f64, total);
-            displacements.iter_mut().for_each(|u| *u = difference(*u, mean));
-        }
-        let mut solved = vec![false; disk_count];
-        hessian.disks().iter().for_each(|&disk| solved[disk as usize] = true);
-        Ok(LinearResponse {
-            centre,
-            displacements,
-            solved,
-            unknown_count: push.len(),
-            negative_eigenvalue_count: factorisation.negative_eigenvalue_count(),
-            backward_error: solution.backward_error,
-            pivot_ratio: factorisation.pivot_ratio(),
+        let floating = floats(packing, law);
+        solve(packing, None, law, prestress, |assembly, hessian| {
+            let mut forces = forces.to_vec();
+            if floating {
+                // The disk pinned in place of the packing answers for its own force through the sum of all.
+                let backbone = Hessian::new(packing, assembly.law(), Members::Backbone, prestress)?;
+                let total = backbone.disks().iter().fold([0.0; D], |total, &disk| sum(total, forces[disk as usize]));
+                let mean = scaled(1.0 / backbone.disks().len() as f64, total);
+                forces.iter_mut().for_each(|force| *force = difference(*force, mean));
+            }
+            Ok(hessian.gather(&forces))
         })
     }
+
+    /// The response to held disks moved by these \[length\]; held disks not named stay.
+    ///
+    /// # Errors
+    /// A disk that is not there or not held, a displacement that is not finite; else as [`LinearResponse::of_inflation`].
+    pub fn of_displacements<L: PairLaw>(
+        packing: &Packing<D>,
+        moved: &[(usize, Vector<D>)],
+        law: &L,
+        prestress: Prestress,
+    ) -> Result<Self, LinearError> {
+        let mut imposed = vec![[0.0; D]; packing.len()];
+        for &(disk, displacement) in moved {
+            exists(packing, disk)?;
+            if !packing.held()[disk] {
+                return Err(LinearError::NotHeld { disk });
+            }
+            if displacement.iter().any(|value| !value.is_finite()) {
+                return Err(LinearError::LoadNotFinite { disk });
+            }
+            imposed[disk] = displacement;
+        }
+        let mut response = solve(packing, None, law, prestress, |_, hessian| Ok(hessian.forces_of_held(&imposed)))?;
+        for &(disk, displacement) in moved {
+            response.displacements[disk] = displacement;
+        }
+        Ok(response)
+    }
+}
+
+fn exists<const D: usize>(packing: &Packing<D>, disk: usize) -> Result<(), LinearError> {
+    let disk_count = packing.len();
+    if disk < disk_count { Ok(()) } else { Err(LinearError::NoSuchDisk { disk, disk_count }) }
+}
+
+/// Whether nothing holds the packing as a whole.
+fn floats<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> bool {
+    !packing.held().contains(&true) && law.on_site_coupling() == 0.0
+}
+
+/// Solves for the load. Where the packing floats a disk is pinned, `pin` or one of the backbone, and the mean taken out.
+fn solve<const D: usize, L: PairLaw>(
+    packing: &Packing<D>,
+    pin: Option<usize>,
+    law: &L,
+    prestress: Prestress,
+    load: impl Fn(&Assembly<D, L>, &Hessian<D>) -> Result<Vec<f64>, LinearError>,
+) -> Result<LinearResponse<D>, LinearError> {
+    let disk_count = packing.len();
+    let floating = floats(packing, law);
+    // Nothing holds the packing as a whole: a disk does, and the shift is taken out again below. The forces of the load add
+    // up to nothing, so holding it costs none.
+    let pinned;
+    let packing = if floating {
+        let pin = match pin {
+            Some(pin) => Some(pin),
+            None => ContactNetwork::new(packing, law)?.backbone.iter().position(|&member| member),
+        };
+        let held = (0..disk_count).map(|disk| Some(disk) == pin).collect();
+        pinned = packing.clone().with_held(held)?;
+        &pinned
+    } else {
+        packing
+    };
+    let assembly = Assembly::new(packing, *law)?;
+    let hessian = Hessian::of(&assembly, Members::Backbone, prestress);
+    let matrix = hessian.matrix();
+    if matrix.dimension() == 0 {
+        return Err(LinearError::NoBackbone { disk_count });
+    }
+    let push = load(&assembly, &hessian)?;
+    let mut analysis = Analysis::in_order(matrix, &ordering::best(&hessian, packing)?)?;
+    let mut factorisation = analysis.factorise(matrix)?;
+    let mut unknowns = vec![0.0; push.len()];
+    let solution = factorisation.solve(&push, &mut unknowns)?;
+    let mut displacements = hessian.scatter(&unknowns);
+    let mut solved = vec![false; disk_count];
+    hessian.disks().iter().for_each(|&disk| solved[disk as usize] = true);
+    if floating {
+        let total = displacements.iter().fold([0.0; D], |total, &u| sum(total, u));
+        let mean = scaled(1.0 / disk_count as f64, total);
+        displacements.iter_mut().for_each(|u| *u = difference(*u, mean));
+    }
+    Ok(LinearResponse {
+        growing: None,
+        displacements,
+        solved,
+        unknown_count: push.len(),
+        negative_eigenvalue_count: factorisation.negative_eigenvalue_count(),
+        backward_error: solution.backward_error,
+        pivot_ratio: factorisation.pivot_ratio(),
+    })
 }
 
 /// Forces per d_0 on the unknowns when the disk `centre` grows.

@@ -1,0 +1,95 @@
+//! How contacts and the pressure change in a linear response.
+//!
+//! ```text
+//! dr_ij = n·(u_i − u_j)        dδ_ij = −dr_ij + [i or j grows]        dF_ij = F' dδ_ij + F ∂ln c/∂R_0 [i or j grows]
+//! d(p D V) = Σ (dF_ij r_ij + F_ij dr_ij)
+//! ```
+//!
+//! Contacts with rattlers are left out: their forces vanish in any load.
+
+use crate::contact::{ContactNetwork, PairLaw};
+use crate::linear::LinearResponse;
+use crate::packing::{Packing, PackingError};
+use crate::vector::{difference, dot, norm};
+
+/// One contact in a linear response, per unit of the load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactChange {
+    /// First disk.
+    pub first: u32,
+    /// Second disk.
+    pub second: u32,
+    /// Overlap δ before \[length\].
+    pub overlap: f64,
+    /// Change of the overlap, dδ.
+    pub overlap_change: f64,
+    /// Change of the contact force, dF.
+    pub force_change: f64,
+    /// Change of F r, what the contact adds to the virial.
+    pub virial_change: f64,
+}
+
+impl ContactChange {
+    /// The load at which the overlap would vanish if it went on changing like this; none if it does not shrink.
+    pub fn opens_at(&self) -> Option<f64> {
+        (self.overlap_change < 0.0).then(|| -self.overlap / self.overlap_change)
+    }
+}
+
+impl<const D: usize> LinearResponse<D> {
+    /// The changes of all contacts, in ascending order of (first, second).
+    ///
+    /// `packing` and `law` are those the response was made from.
+    ///
+    /// # Errors
+    /// As [`ContactNetwork::new`].
+    ///
+    /// # Panics
+    /// If the packing has another number of disks.
+    pub fn contact_changes<L: PairLaw>(
+        &self,
+        packing: &Packing<D>,
+        law: &L,
+    ) -> Result<Vec<ContactChange>, PackingError> {
+        assert_eq!(packing.len(), self.displacements.len(), "a response belongs to the packing it was made from");
+        let network = ContactNetwork::new(packing, law)?;
+        let (radii, held) = (packing.radii(), packing.held());
+        // A disk pinned for the solution has none of its own; the one that grows is known to be there.
+        let there =
+            |disk: usize| self.solved[disk] || held[disk] || self.growing == Some(disk) || network.backbone[disk];
+        let changes = network.contacts.iter().filter_map(|contact| {
+            let (i, j) = (contact.first as usize, contact.second as usize);
+            if !(there(i) && there(j)) {
+                return None;
+            }
+            let distance = norm(contact.separation);
+            let moved = difference(self.displacements[i], self.displacements[j]);
+            let distance_change = dot(moved, contact.separation) / distance;
+            let (growth, coefficient_growth) = match self.growing {
+                Some(disk) if disk == i => (1.0, law.coefficient_growth(radii[i], radii[j])),
+                Some(disk) if disk == j => (1.0, law.coefficient_growth(radii[j], radii[i])),
+                _ => (0.0, 0.0),
+            };
+            let overlap_change = growth - distance_change;
+            let force_change =
+                law.stiffness(contact.force, contact.overlap) * overlap_change + contact.force * coefficient_growth;
+            Some(ContactChange {
+                first: contact.first,
+                second: contact.second,
+                overlap: contact.overlap,
+                overlap_change,
+                force_change,
+                virial_change: force_change * distance + contact.force * distance_change,
+            })
+        });
+        Ok(changes.collect())
+    }
+}
+
+/// Change of the pressure over a volume, contacts for which `rim` holds at one end counted half, as in
+/// [`ContactNetwork::cluster_pressure`].
+pub fn pressure_change<const D: usize>(changes: &[ContactChange], volume: f64, rim: impl Fn(usize) -> bool) -> f64 {
+    let half = |change: &ContactChange| rim(change.first as usize) || rim(change.second as usize);
+    let virial: f64 = changes.iter().map(|change| if half(change) { 0.5 } else { 1.0 } * change.virial_change).sum();
+    virial / (D as f64 * volume)
+}
