@@ -92,6 +92,10 @@ pub struct Observables {
     /// Radial displacement against angle in rings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angular_profiles: Option<AngularProfileSettings>,
+    /// What of the response is not in the linear one.
+    #[cfg(feature = "linear")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plastic_part: Option<PlasticPartSettings>,
     /// The packing before and after the inflation, with its displacement field, as files; the map of r d_r.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub displacement_field: Option<DisplacementFieldSettings>,
@@ -104,6 +108,8 @@ impl Default for Observables {
             #[cfg(feature = "fit")]
             profile_fit: Some(ProfileFitSettings::default()),
             angular_profiles: Some(AngularProfileSettings::default()),
+            #[cfg(feature = "linear")]
+            plastic_part: Some(PlasticPartSettings::default()),
             displacement_field: Some(DisplacementFieldSettings::default()),
         }
     }
@@ -140,6 +146,23 @@ impl Default for AngularProfileSettings {
     /// Source: the study, fig. 1.
     fn default() -> Self {
         AngularProfileSettings { relative_radii: vec![0.15, 0.5, 0.85] }
+    }
+}
+
+/// The plastic part.
+#[cfg(feature = "linear")]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PlasticPartSettings {
+    /// Width of a ring of its radial profile \[length\].
+    pub ring_width: f64,
+}
+
+#[cfg(feature = "linear")]
+impl Default for PlasticPartSettings {
+    /// As the radial profile has it.
+    fn default() -> Self {
+        PlasticPartSettings { ring_width: RadialProfileSettings::default().ring_width }
     }
 }
 
@@ -285,6 +308,10 @@ impl Observables {
         #[cfg(feature = "fit")]
         if self.profile_fit.is_some() && self.radial_profile.is_none() {
             return Err(SceneError::ObservableMissing { observable: "profile_fit", needed: "radial_profile" });
+        }
+        #[cfg(feature = "linear")]
+        if let Some(plastic) = &self.plastic_part {
+            positive("observables.plastic_part.ring_width", plastic.ring_width)?;
         }
         if let Some(profiles) = &self.angular_profiles {
             for &radius in &profiles.relative_radii {

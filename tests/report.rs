@@ -93,6 +93,8 @@ fn the_files_are_those_asked_for() {
         #[cfg(feature = "fit")]
         profile_fit: None,
         angular_profiles: None,
+        #[cfg(feature = "linear")]
+        plastic_part: None,
         displacement_field: None,
     };
     let all = Observables::default();
@@ -173,6 +175,22 @@ fn csv(files: &BTreeMap<String, Vec<u8>>, name: &str) -> (Vec<String>, Vec<Vec<f
     let number = |text: &&str| text.parse().unwrap_or_else(|_| panic!("{name}: {text} is not a number"));
     let numbers = rows[2..].iter().map(|row| row.iter().map(number).collect()).collect();
     (rows[0].iter().map(|&name| name.into()).collect(), numbers)
+}
+
+#[cfg(feature = "linear")]
+#[test]
+fn the_plastic_part_is_in_the_report_where_there_is_a_linear_response() {
+    use jamscope::run::PlasticResult;
+    let files = written(report());
+    assert!(matches!(result("loose").plastic_part, Some(PlasticResult::Refused(_))), "unjammed");
+    assert!(!files.contains_key("loose.plastic_profile.csv"));
+    let Some(PlasticResult::Measured(plastic)) = &result("dense").plastic_part else { panic!("jammed") };
+    assert_eq!(plastic.negative_eigenvalue_count, 0);
+    assert!(plastic.share > 0.0 && plastic.participation_ratio > 0.0 && plastic.participation_ratio <= 1.0);
+    let (names, rows) = csv(&files, "dense.plastic_profile.csv");
+    assert_eq!(names[2], "plastic_radial_displacement");
+    let means: Vec<f64> = plastic.radial_profile.rings.iter().map(|ring| ring.mean).collect();
+    assert_eq!(rows.iter().map(|row| row[2]).collect::<Vec<_>>(), means);
 }
 
 #[test]
@@ -320,6 +338,8 @@ fn the_table_fits_a_terminal_and_has_every_sample() {
     }
     #[cfg(feature = "fit")]
     assert!(table.contains("κ/κ_1"), "{table}");
+    #[cfg(feature = "linear")]
+    assert!(table.contains("at a minimum") && table.contains("plastic share"), "{table}");
     #[cfg(feature = "fit")]
     {
         use jamscope::run::FitResult;

@@ -95,3 +95,22 @@ pub fn angular_profiles(profiles: &[AngularProfile]) -> String {
     }
     table.text()
 }
+
+/// The radial profile of a plastic part.
+///
+/// # Shape
+/// One row a ring.
+#[cfg(feature = "linear")]
+pub fn plastic_profile(profile: &RadialProfile) -> String {
+    let mut table = Table::new(&[
+        ("radius", "length"),
+        ("disk_count", "1"),
+        ("plastic_radial_displacement", "length"),
+        ("spread", "length"),
+        ("standard_error", "length"),
+    ]);
+    for ring in &profile.rings {
+        table.rows.push(vec![ring.radius, ring.disk_count as f64, ring.mean, ring.spread, ring.standard_error]);
+    }
+    table.text()
+}

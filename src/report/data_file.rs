@@ -10,6 +10,8 @@ pub(crate) enum DataFile {
     Deflated,
     RadialProfile,
     AngularProfiles,
+    #[cfg(feature = "linear")]
+    PlasticProfile,
 }
 
 impl DataFile {
@@ -21,9 +23,19 @@ impl DataFile {
             DataFile::Deflated => field && result.cycle_field.is_some(),
             DataFile::RadialProfile => result.radial_profile.is_some(),
             DataFile::AngularProfiles => result.angular_profiles.is_some(),
+            #[cfg(feature = "linear")]
+            DataFile::PlasticProfile => matches!(result.plastic_part, Some(crate::run::PlasticResult::Measured(_))),
         };
-        use DataFile::*;
-        [Packing, Displacement, Deflated, RadialProfile, AngularProfiles].into_iter().filter(wanted).collect()
+        let all = [
+            DataFile::Packing,
+            DataFile::Displacement,
+            DataFile::Deflated,
+            DataFile::RadialProfile,
+            DataFile::AngularProfiles,
+            #[cfg(feature = "linear")]
+            DataFile::PlasticProfile,
+        ];
+        all.into_iter().filter(wanted).collect()
     }
 
     /// Its name for this sample.
@@ -34,6 +46,8 @@ impl DataFile {
             DataFile::Deflated => "deflated.xyz",
             DataFile::RadialProfile => "radial_profile.csv",
             DataFile::AngularProfiles => "angular_profiles.csv",
+            #[cfg(feature = "linear")]
+            DataFile::PlasticProfile => "plastic_profile.csv",
         };
         format!("{sample}.{ending}")
     }

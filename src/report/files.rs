@@ -83,6 +83,12 @@ impl Files<'_> {
                         self.text(&path, &csv::angular_profiles(profiles))?;
                     }
                 }
+                #[cfg(feature = "linear")]
+                DataFile::PlasticProfile => {
+                    if let Some(crate::run::PlasticResult::Measured(plastic)) = &result.plastic_part {
+                        self.text(&path, &csv::plastic_profile(&plastic.radial_profile))?;
+                    }
+                }
             }
         }
         Ok(())

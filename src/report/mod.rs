@@ -14,6 +14,7 @@
 //! | `NAME.deflated.xyz` | the same after the deflation: what is left of the displacement |
 //! | `NAME.radial_profile.csv` | mean radial displacement, ring by ring, and the fitted solutions |
 //! | `NAME.angular_profiles.csv` | radial displacement against angle |
+//! | `NAME.plastic_profile.csv` | radial part of what is not in the linear response |
 //! | `report.html` | all of it on one page (feature `plot`) |
 
 pub mod csv;

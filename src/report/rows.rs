@@ -100,6 +100,8 @@ pub(crate) fn sections(report: &Report, samples: &[SampleReport], times: Times) 
         inflation(report, samples, times),
         #[cfg(feature = "fit")]
         fit(samples),
+        #[cfg(feature = "linear")]
+        plastic(samples),
     ];
     all.into_iter().filter(|section| !section.rows.is_empty()).collect()
 }
@@ -235,6 +237,31 @@ fn fit(samples: &[SampleReport]) -> Section {
     })
     .add("chance of such a gain if κ = 0", |it| screened(it).map(|fit| significant(fit.chance_of_elastic, 2)));
     rows.section("Fit of the radial profile")
+}
+
+#[cfg(feature = "linear")]
+fn plastic(samples: &[SampleReport]) -> Section {
+    use crate::run::{PlasticResult, PlasticSummary};
+
+    fn measured(it: &SampleResult) -> Option<&PlasticSummary> {
+        match it.plastic_part.as_ref()? {
+            PlasticResult::Measured(plastic) => Some(plastic),
+            PlasticResult::Refused(_) => None,
+        }
+    }
+    let mut rows = Rows { samples, rows: Vec::new() };
+    rows.add("linear response", |it| match it.plastic_part.as_ref()? {
+        PlasticResult::Measured(plastic) => Some(match plastic.negative_eigenvalue_count {
+            0 => "at a minimum".into(),
+            negative => format!("at a saddle, {negative} down"),
+        }),
+        PlasticResult::Refused(_) => Some("none".into()),
+    })
+    .add("linear: contact opens at d_0 [length]", |it| measured(it)?.first_opening.map(|at| significant(at, 3)))
+    .add("linear: Δp [force/length]", |it| Some(significant(measured(it)?.linear_pressure_change, 4)))
+    .add("plastic share, |d − d_0 u|/|d|", |it| measured(it).map(|plastic| significant(plastic.share, 3)))
+    .add("plastic participation ratio", |it| measured(it).map(|plastic| significant(plastic.participation_ratio, 3)));
+    rows.section("Plastic part")
 }
 
 /// What describes a profile, in a word.

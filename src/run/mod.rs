@@ -1,5 +1,7 @@
 //! [`run`]: from a [`Scene`] to a [`Report`], one line a stage. The only file that knows all stages.
 
+#[cfg(feature = "linear")]
+mod plastic_summary;
 mod report_data;
 
 use std::path::{Path, PathBuf};
@@ -23,6 +25,8 @@ pub use report_data::FitResult;
 pub use report_data::{
     InflationSummary, PackingSummary, Report, RestSummary, SampleOutcome, SampleReport, SampleResult, StateSummary,
 };
+#[cfg(feature = "linear")]
+pub use report_data::{PlasticResult, PlasticSummary};
 
 /// Why a run, or one sample of it, came to nothing.
 #[derive(Debug, thiserror::Error)]
@@ -176,6 +180,10 @@ fn run_with<L: PairLaw>(
                 Err(error) => FitResult::Refused(error.to_string()),
             }
         });
+    #[cfg(feature = "linear")]
+    let plastic_part = observables
+        .plastic_part
+        .map(|settings| plastic_summary::of(&inflated, &scene.inflation, law, settings.ring_width).into());
     Ok(SampleResult {
         packing,
         inflation: summary(&inflated, law),
@@ -184,6 +192,8 @@ fn run_with<L: PairLaw>(
         #[cfg(feature = "fit")]
         profile_fit,
         angular_profiles,
+        #[cfg(feature = "linear")]
+        plastic_part,
         cycle_field: DisplacementField::of_cycle(&inflated),
         field,
         inflated,

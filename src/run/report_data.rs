@@ -65,6 +65,10 @@ pub struct SampleResult {
     /// Radial displacement against angle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub angular_profiles: Option<Vec<AngularProfile>>,
+    /// What of the response is not in the linear one.
+    #[cfg(feature = "linear")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plastic_part: Option<PlasticResult>,
     /// The displacement field.
     #[serde(skip)]
     pub field: DisplacementField<2>,
@@ -95,6 +99,40 @@ impl From<Result<ProfileFit, FitError>> for FitResult {
     fn from(result: Result<ProfileFit, FitError>) -> Self {
         result.map_or_else(|error| FitResult::Refused(error.to_string()), FitResult::Fitted)
     }
+}
+
+/// The plastic part, or why there is none.
+#[cfg(feature = "linear")]
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PlasticResult {
+    /// The plastic part in numbers.
+    Measured(PlasticSummary),
+    /// Why there is none: no linear response.
+    Refused(String),
+}
+
+/// The plastic part in numbers: what of the response is not in the linear one.
+#[cfg(feature = "linear")]
+#[derive(Debug, Clone, Serialize)]
+pub struct PlasticSummary {
+    /// √(Σ |d − d_0 u|²) over the disks that count \[length\].
+    pub norm: f64,
+    /// The same over that of the response \[1\].
+    pub share: f64,
+    /// Participation ratio, 1 where all disks take part alike \[1\].
+    pub participation_ratio: f64,
+    /// Mean radial part in rings.
+    pub radial_profile: RadialProfile,
+    /// d_0 at which the linear response would open its first contact; absent if it opens none \[length\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub first_opening: Option<f64>,
+    /// Δp of the linear response \[force / length\].
+    pub linear_pressure_change: f64,
+    /// Negative eigenvalues of the Hessian before: 0 proves a minimum.
+    pub negative_eigenvalue_count: usize,
+    /// Backward error of the linear response \[1\].
+    pub backward_error: f64,
 }
 
 /// A packing in numbers.

@@ -1,0 +1,62 @@
+//! The plastic part of a sample in numbers.
+
+use crate::contact::{OnSite, PairLaw, Prestress};
+use crate::inflation::{Boundary, Inflated, Inflation};
+use crate::linear::contact_changes::pressure_change;
+use crate::linear::{LinearError, LinearResponse};
+use crate::observe::RadialProfile;
+use crate::packing::ball_volume;
+use crate::plastic::PlasticPart;
+use crate::run::{PlasticResult, PlasticSummary};
+
+/// Against the linear response of the state before, with the sites of the scene if it has any.
+pub(super) fn of<L: PairLaw>(
+    inflated: &Inflated<2>,
+    inflation: &Inflation,
+    law: &L,
+    ring_width: f64,
+) -> Result<PlasticSummary, LinearError> {
+    match inflation.on_site_coupling {
+        Some(coupling) => with_law(inflated, inflation.boundary, &OnSite { law: *law, coupling }, ring_width),
+        None => with_law(inflated, inflation.boundary, law, ring_width),
+    }
+}
+
+fn with_law<L: PairLaw>(
+    inflated: &Inflated<2>,
+    boundary: Boundary,
+    law: &L,
+    ring_width: f64,
+) -> Result<PlasticSummary, LinearError> {
+    let (before, centre) = (inflated.before.packing.get(), inflated.centre);
+    let response = LinearResponse::of_inflation(before, centre, law, Prestress::Included)?;
+    let plastic = PlasticPart::of(inflated, &response);
+    let changes = response.contact_changes(before, law)?;
+    let increase = inflated.after.packing.get().radii()[centre] - inflated.inner_radius;
+    // Openings of an inflation; a deflation opens contacts at the other sign.
+    let openings = changes.iter().filter_map(|change| change.opens_at().filter(|_| increase > 0.0));
+    let per_increase = match boundary {
+        Boundary::HeldRim { .. } => {
+            pressure_change::<2>(&changes, ball_volume::<2>(inflated.outer_radius), |disk| disk > centre)
+        }
+        Boundary::Periodic => {
+            pressure_change::<2>(&changes, before.domain().volume().unwrap_or(f64::INFINITY), |_| false)
+        }
+    };
+    Ok(PlasticSummary {
+        norm: plastic.norm,
+        share: plastic.share,
+        participation_ratio: plastic.participation_ratio,
+        radial_profile: RadialProfile::of(&plastic.field, ring_width),
+        first_opening: openings.reduce(f64::min),
+        linear_pressure_change: increase * per_increase,
+        negative_eigenvalue_count: response.negative_eigenvalue_count,
+        backward_error: response.backward_error,
+    })
+}
+
+impl From<Result<PlasticSummary, LinearError>> for PlasticResult {
+    fn from(result: Result<PlasticSummary, LinearError>) -> Self {
+        result.map_or_else(|error| PlasticResult::Refused(error.to_string()), PlasticResult::Measured)
+    }
+}
