@@ -28,8 +28,8 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// Radii and displacement in lengths, κ in 1/length.
 ///
 /// # Source
-/// Selvadurai (1979), Elastic Analysis of Soil–Foundation Interaction, for the foundation; Abramowitz & Stegun (1964), 9.6
-/// and 10.2, for the functions.
+/// The equation: springs of stiffness Γ per area pull with −Γd, so that balance of a radial field, curl-free, reads
+/// (λ+2μ) ∇(∇·u) − Γu = 0. Its solutions: Abramowitz & Stegun (1964), 9.6.1 (with ν = 1) and 10.2.1 (with n = 1).
 ///
 /// # Accuracy
 /// Relative error below 3.2·10⁻¹⁵ (1.9·10⁻¹⁵ the largest found) of d and d', for R/a from 1.001 to 10⁷ and κR from 10⁻⁸ to
