@@ -33,7 +33,7 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// 4.7·10⁻¹⁶ in three; over random annuli, R/a from 1.001 to 10⁷, κR from 10⁻⁸ to 10⁶: 6·10⁻¹⁶.
 ///
 /// # Cost
-/// 1000 radii, κR from 10⁻⁴ to 10⁵: 28 to 55 µs in two dimensions, 18 to 21 µs in three (`cargo bench --bench reference -- profile`,
+/// 1000 radii, κR from 10⁻⁴ to 10⁵: 28 to 56 µs in two dimensions, 18 to 21 µs in three (`cargo bench --bench reference -- profile`,
 /// least of six runs on two shared cores); the derivative 41 to 72 µs and 21 to 25 µs (`-- derivative`); 0.5 to 1.3 µs and 0.06 µs to
 /// set up (`-- setup`, both least of four).
 ///
