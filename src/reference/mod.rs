@@ -21,8 +21,20 @@
 //! The angular spectrum has its own: a power law with a crossover, [`Lorentzian`](lorentzian::Lorentzian).
 //!
 //! # Source
-//! Lemaître et al. (2021), Phys. Rev. E 104, 024904, for the screened profile in two dimensions; Charan et al. (2023),
-//! Phys. Rev. E 107, 055005, in three.
+//! Ranges and errors stand at each type, and side by side in the book (`book/src/reference.md`, *What is exact*).
+//!
+//! | solution | source |
+//! |---|---|
+//! | [`Elastic`](elastic::Elastic), annulus and shell | Love (1927), §98 and §100 |
+//! | [`Screened`](screened::Screened) | Lemaître et al. (2021), Phys. Rev. E 104, 024904; in three dimensions Charan et al. (2023), Phys. Rev. E 107, 055005 |
+//! | [`Antiscreened`](antiscreened::Antiscreened) | derived there; Abramowitz & Stegun (1964), 9.6.1 and 10.2.1 |
+//! | [`poles`] | derived there; Watson, A Treatise on the Theory of Bessel Functions, §13.74 |
+//! | [`Amplitude`](amplitude::Amplitude) | derived there; Hadamard's theorem |
+//! | [`ElasticMode`](angular_modes::elastic::ElasticMode) | Michell (1899), Proc. Lond. Math. Soc. 31, 100 |
+//! | [`ScreenedMode`](angular_modes::screened::ScreenedMode) | Lemaître et al. (2021); odd screening Cohen et al. (2023), arXiv:2310.09942 |
+//! | [`bessel`] | Abramowitz & Stegun (1964), 9.1, 9.2, 9.6, 9.7, 10.1, 10.2 |
+//! | [`Lorentzian`](lorentzian::Lorentzian) | Fu, Jin, Pan, Procaccia, supplement; DLMF 2.10.2 |
+//! | [`Lattice`](crate::lattice::Lattice), for long waves | derived there |
 
 pub mod amplitude;
 pub mod angular_modes;

@@ -39,7 +39,7 @@ const STEP_LIMIT: usize = 40;
 /// multi-precision (`reference::precise_poles::poles_lie_between_numbers_of_opposite_sign`): 2.4·10⁻¹⁶.
 ///
 /// # Cost
-/// 0.3 to 2 µs, n from 1 to 1000, on two cores with a load of 7 (`cargo bench --bench reference -- pole`).
+/// 0.1 to 0.4 µs, n from 1 to 1000 (`cargo bench --bench reference -- pole/`, least of six runs on two shared cores).
 ///
 /// # Example
 /// ```

@@ -33,9 +33,9 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// 4.7·10⁻¹⁶ in three; over random annuli, R/a from 1.001 to 10⁷, κR from 10⁻⁸ to 10⁶: 6·10⁻¹⁶.
 ///
 /// # Cost
-/// 1000 radii: 22 to 43 µs in two dimensions (`cargo run --release --example exact_routes`, κR from 10⁻¹¹ to 10⁵). On two cores
-/// with a load of 7, hence three to six times slower (`cargo bench --bench reference`): 90 to 280 µs in two dimensions, 30 to 100 µs in
-/// three, up to 320 µs for the derivative; 1.5 to 7 µs and 0.2 to 0.4 µs to set up.
+/// 1000 radii, κR from 10⁻⁴ to 10⁵: 28 to 56 µs in two dimensions, 18 to 21 µs in three (`cargo bench --bench reference -- profile`,
+/// least of six runs on two shared cores); the derivative 41 to 72 µs and 21 to 25 µs (`-- derivative`); 0.5 to 1.3 µs and 0.06 µs to
+/// set up (`-- setup`, both least of four).
 ///
 /// # Example
 /// ```
@@ -115,8 +115,8 @@ impl<const D: usize> Screened<D> {
     /// twin in three); largest found: 5·10⁻¹⁶ of twice the condition.
     ///
     /// # Cost
-    /// Set up when first asked for, five times as dear as the profile itself; then two to five times a value, 0.2 to 0.7 µs on two
-    /// cores with a load of 7 (`cargo bench --bench reference -- derivative`).
+    /// Set up when first asked for, 2 to 5 µs in two dimensions (`cargo bench --bench reference -- setup`); then two to six times a
+    /// value, 0.07 to 0.15 µs (`-- derivative`; least of four runs on two shared cores).
     pub fn wavenumber_derivative(&self, radius: f64) -> f64 {
         if !self.annulus.contains(radius) {
             return f64::NAN;

@@ -81,6 +81,39 @@ fn poles_and_residues_sum_to_the_amplitude() {
     amplitude_is_the_sum_over_its_poles::<3>();
 }
 
+/// ln|A| = −Σ ln|1 − κ²/κ_n²|. The factors beyond the thousandth have κ_n w between nπ and nπ + π/2, w = R − a, so with
+/// q = (κw/π)² they add between Σ q/(n + 1/2)² > q/(N + 3/2) and Σ q/n²/(1 − q/N²) < (q/N)/(1 − q/N²): a bracket of width
+/// 1.5 q/N² or so. Rounding: a thousand terms, below 1 but for the first few, 1000·2⁻⁵³, and a few 2⁻⁵³ over the distance to a pole, of
+/// 1/10 or more: 10⁻¹² is more than both.
+fn amplitude_is_the_product_over_its_poles<const D: usize>() {
+    const COUNT: usize = 1000;
+    for annulus in [annulus(0.5, 0.55), annulus(0.5, 42.0), annulus(0.5, 1e5)] {
+        let amplitude = Amplitude::<D>::new(annulus);
+        let width = annulus.outer_radius() - annulus.inner_radius();
+        let poles: Vec<f64> = (1..=COUNT).map(|n| pole::<D>(annulus, n)).collect();
+        for (wavenumber, count) in [
+            (0.1 * poles[0], 0),
+            (0.8 * poles[0], 0),
+            (0.5 * (poles[0] + poles[1]), 1),
+            (0.5 * (poles[1] + poles[2]), 2),
+        ] {
+            let exact = amplitude.at(wavenumber).expect("no pole");
+            assert_eq!(exact > 0.0, count % 2 == 0);
+            let factors: f64 = poles.iter().map(|pole| (1.0 - (wavenumber / pole).powi(2)).abs().ln()).sum();
+            let (scale, terms) = ((wavenumber * width / std::f64::consts::PI).powi(2), COUNT as f64);
+            let (low, high) = (scale / (terms + 1.5), scale / terms / (1.0 - scale / terms.powi(2)));
+            let rest = exact.abs().ln() + factors;
+            assert!(low - 1e-12 <= rest && rest <= high + 1e-12, "{rest}, not {low} to {high}, {annulus:?}, D = {D}");
+        }
+    }
+}
+
+#[test]
+fn amplitude_is_the_product_of_a_factor_a_pole() {
+    amplitude_is_the_product_over_its_poles::<2>();
+    amplitude_is_the_product_over_its_poles::<3>();
+}
+
 #[test]
 fn amplitude_at_a_pole_is_refused_by_number() {
     let annulus = annulus(0.5, 42.0);

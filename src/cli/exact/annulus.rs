@@ -1,5 +1,7 @@
 //! Arguments of all solutions between an inflated disk and a rim.
 
+use std::fmt::Display;
+
 use clap::Args;
 use jamscope::reference::{Annulus, ReferenceError};
 
@@ -10,6 +12,19 @@ pub struct AnnulusArguments {
     /// Dimension of space.
     #[arg(long, value_name = "D", default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
     pub dimension: u8,
+    #[command(flatten)]
+    circles: CirclesArguments,
+}
+
+impl AnnulusArguments {
+    pub fn annulus(&self) -> Result<Annulus, Failure> {
+        self.circles.annulus()
+    }
+}
+
+/// Both radii, where the dimension is not a matter of choice.
+#[derive(Args)]
+pub struct CirclesArguments {
     /// Radius a of the inflated disk [length].
     #[arg(long, value_name = "LENGTH", default_value_t = 0.5, allow_negative_numbers = true)]
     pub inner: f64,
@@ -18,7 +33,7 @@ pub struct AnnulusArguments {
     pub outer: f64,
 }
 
-impl AnnulusArguments {
+impl CirclesArguments {
     pub fn annulus(&self) -> Result<Annulus, Failure> {
         Annulus::new(self.inner, self.outer).map_err(named)
     }
@@ -34,5 +49,10 @@ pub fn named(error: ReferenceError) -> Failure {
         ReferenceError::AtPole { wavenumber, .. } => ("wavenumber", wavenumber),
         _ => return error.into(),
     };
+    refused(argument, value, error)
+}
+
+/// An argument, the value it was given, and what is wrong with it.
+pub fn refused(argument: &str, value: impl Display, error: impl Display) -> Failure {
     format!("--{argument} {value}: {error}").into()
 }

@@ -2,11 +2,15 @@
 //!
 //! A kind of solution is a file here with its arguments and `table`, and a line in [`Solution`] and in [`Solution::table`].
 
+mod amplitude;
 mod annulus;
+mod bessel;
 mod grid;
 mod lorentzian;
+mod mode;
 mod poles;
 mod profile;
+mod radii;
 mod table;
 
 use clap::{Args, Subcommand};
@@ -24,10 +28,16 @@ pub struct ExactArguments {
 
 #[derive(Subcommand)]
 enum Solution {
-    /// Radial displacement between the inflated disk and the rim, elastic or screened, with its derivative.
+    /// Radial displacement between the inflated disk and the rim, elastic or screened, with its derivatives.
     Profile(profile::ProfileArguments),
-    /// Wavenumbers at which the screened solution has poles.
+    /// Wavenumbers at which the screened solution has poles, with the residues of its amplitude.
     Poles(poles::PolesArguments),
+    /// Amplitude of the screened solution over that of the elastic one, as a function of the wavenumber.
+    Amplitude(amplitude::AmplitudeArguments),
+    /// Angular mode in two dimensions, elastic or screened, even and odd.
+    Mode(mode::ModeArguments),
+    /// Bessel functions of orders zero and one.
+    Bessel(bessel::BesselArguments),
     /// Correlation function, spectrum or threshold angles of the generalised Lorentzian.
     Lorentzian(lorentzian::LorentzianArguments),
 }
@@ -37,6 +47,9 @@ impl Solution {
         match self {
             Solution::Profile(arguments) => arguments.table(),
             Solution::Poles(arguments) => arguments.table(),
+            Solution::Amplitude(arguments) => arguments.table(),
+            Solution::Mode(arguments) => arguments.table(),
+            Solution::Bessel(arguments) => arguments.table(),
             Solution::Lorentzian(arguments) => arguments.table(),
         }
     }

@@ -1,6 +1,8 @@
-//! `jamscope exact poles`: the wavenumbers at which the screened solution has no finite value.
+//! `jamscope exact poles`: the wavenumbers at which the screened solution has no finite value, and its residues there.
 
 use clap::Args;
+use jamscope::reference::Annulus;
+use jamscope::reference::amplitude::Amplitude;
 use jamscope::reference::poles::pole;
 
 use super::annulus::AnnulusArguments;
@@ -22,15 +24,28 @@ impl PolesArguments {
             return Err("--count 0: at least one pole".into());
         }
         let annulus = self.annulus.annulus()?;
-        let of = if self.annulus.dimension == 3 { pole::<3> } else { pole::<2> };
-        Ok(Table {
-            solution: "poles",
-            columns: vec![("pole", "1"), ("wavenumber", "1/length"), ("rim_argument", "1")],
-            rows: Box::new((1..=self.count).map(move |index| {
-                let wavenumber = of(annulus, index as usize);
-                let reduced = wavenumber * annulus.outer_radius();
-                vec![Cell::Count(index.into()), Cell::Number(wavenumber), Cell::Number(reduced)]
-            })),
+        Ok(match self.annulus.dimension {
+            3 => self.of_dimension::<3>(annulus),
+            _ => self.of_dimension::<2>(annulus),
         })
+    }
+
+    fn of_dimension<const D: usize>(&self, annulus: Annulus) -> Table<'_> {
+        let amplitude = Amplitude::<D>::new(annulus);
+        Table {
+            solution: "poles",
+            columns: vec![
+                ("pole", "1"),
+                ("wavenumber", "1/length"),
+                ("rim_argument", "1"),
+                ("amplitude_residue", "1/length"),
+            ],
+            rows: Box::new((1..=self.count).map(move |index| {
+                let wavenumber = pole::<D>(annulus, index as usize);
+                let (reduced, residue) = (wavenumber * annulus.outer_radius(), amplitude.residue(index as usize));
+                let numbers = [wavenumber, reduced, residue].map(Cell::Number);
+                [vec![Cell::Count(index.into())], numbers.to_vec()].concat()
+            })),
+        }
     }
 }

@@ -43,8 +43,8 @@ use crate::vector::two_product;
 /// screening, as tested to n = 5000.
 ///
 /// # Cost
-/// One radius, value and derivative: 0.3 µs for n = 1 to 0.7 µs for n = 100, 6 ns for n = 0 (`cargo bench --bench
-/// reference_modes`).
+/// One radius, value and derivative: 0.2 µs for n = 1 to 0.5 µs for n = 100, 6 ns for n = 0 (`cargo bench --bench
+/// reference_modes`, least of four runs on two shared cores).
 ///
 /// # Example
 /// ```

@@ -59,8 +59,8 @@ impl Screening {
 /// no r^(−n+1)) in a nearly incompressible medium, ν → 1, lose up to Γ R² times as much.
 ///
 /// # Cost
-/// 1.5 to 2.1 µs a node to set up, 45 µs for R/a = 340, κR = 5 and n ≤ 2; a radius 0.17 to 0.4 µs, value and derivative
-/// (`cargo bench --bench reference_modes`).
+/// 1.0 to 1.3 µs a node to set up, 30 to 32 µs for R/a = 340, κR = 5 and n ≤ 2; a radius 0.12 to 0.19 µs, value and derivative
+/// (`cargo bench --bench reference_modes`, least of four runs on two shared cores).
 ///
 /// # Example
 /// ```

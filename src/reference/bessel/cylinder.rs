@@ -20,7 +20,8 @@
 //! NaN gives NaN.
 //!
 //! # Cost
-//! 10 to 130 ns, the more the larger x, on two cores with a load of 7 (`cargo bench --bench reference -- bessel`).
+//! 3 to 31 ns, the more the larger x (`cargo bench --bench reference -- bessel`, least of four runs on two shared
+//! cores).
 //!
 //! # Source
 //! Abramowitz & Stegun (1964), 9.1; DLMF §10.2. The approximations are those of Sun Microsystems' fdlibm (1993).

@@ -23,7 +23,8 @@
 //! K_n(0) = ∞, K_n(x) is NaN for x < 0. K_1(x) = 1/x overflows for x < 5.6·10⁻³⁰⁹. NaN gives NaN.
 //!
 //! # Cost
-//! 7 to 100 ns on two cores with a load of 7 (`cargo bench --bench reference -- bessel`).
+//! 5 to 20 ns (`cargo bench --bench reference -- bessel`, least of four runs on two shared
+//! cores).
 //!
 //! # Source
 //! Abramowitz & Stegun (1964), 9.6 and 9.7; DLMF §10.25. The polynomials: `fixtures/reference/make_modified_tables.py`.

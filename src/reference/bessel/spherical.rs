@@ -20,7 +20,8 @@
 //! overflow for x < 10⁻¹⁵⁴.
 //!
 //! # Cost
-//! 7 to 40 ns on two cores with a load of 7 (`cargo bench --bench reference -- bessel`).
+//! 2 to 11 ns for order one (`cargo bench --bench reference -- bessel`, least of four runs on two shared
+//! cores).
 //!
 //! # Source
 //! Abramowitz & Stegun (1964), 10.1 and 10.2; DLMF §10.49 (closed forms) and §10.53 (series).

@@ -76,8 +76,9 @@ const TURN: (f64, f64) = (2.0 * PI, 2.449_293_598_294_706_4e-16);
 /// error allowed for G; found 2.1·10⁻¹⁵.
 ///
 /// # Cost
-/// The same for every θ and f†. G takes 0.7 µs at s = 1.5, 1.3 µs at 4, 6 to 10 µs at 30; G' 1.3 to 1.9 times that; setting up 0.1 to
-/// 0.2 ms at s = 1.5, 0.2 to 0.3 ms at 4, 1 to 2 ms at 30 (measured at opt-level 2). Memory: 0.7 kB a panel at s = 1.5, 42
+/// The same for every θ and f†. G takes 0.4 µs at s = 1.5, 0.7 µs at 4, 3 to 5 µs at 30; G' 1.8 to 2.1 times that; setting up 0.12 to
+/// 0.16 ms at s = 1.5, 0.16 to 0.24 ms at 4, 0.9 to 1.4 ms at 30 (`cargo bench --bench lorentzian`, f† = 5 and 10⁶, least of four runs
+/// on two shared cores). Memory: 0.7 kB a panel at s = 1.5, 42
 /// panels of 16 nodes for f† ≤ 1, 62 at f† = 10⁶; 28 nodes at s = 4.
 ///
 /// # Example
