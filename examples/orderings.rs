@@ -1,4 +1,5 @@
-//! Minimum degree against nested dissection on jammed packings: values in a factor, and times as the least of three.
+//! Minimum degree against nested dissection on jammed packings: values in a factor, and times as the least of three; and
+//! conjugate gradients with an incomplete factor once.
 //!
 //! ```sh
 //! cargo run --release --example orderings                      # 5548 to 88768 disks, 2000 and 8000 balls
@@ -13,6 +14,7 @@ use std::time::Instant;
 use jamscope::contact::{Hertzian, Hessian, Members, Prestress};
 use jamscope::io::read_packing;
 use jamscope::linear::Analysis;
+use jamscope::linear::iterative::{IncompleteFactor, IterationLimits, conjugate_gradients};
 use jamscope::linear::ordering::{minimum_degree, nested_dissection};
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
@@ -96,6 +98,18 @@ fn compare<const D: usize>(packing: &Packing<D>, folder: Option<&Path>) -> Resul
             hessian.disks().len()
         );
     }
+    let mut clock = Clock(Instant::now());
+    let incomplete = IncompleteFactor::new(matrix)?;
+    let prepared = clock.lap();
+    solution.fill(0.0);
+    let found = conjugate_gradients(matrix, &incomplete, &right, &mut solution, &IterationLimits::default())?;
+    println!(
+        "| {D} | {} | conjugate gradients, {} iterations | {} | - | - | {prepared:.1} | {:.1} |",
+        hessian.disks().len(),
+        found.iteration_count,
+        matrix.stored_count(),
+        clock.lap()
+    );
     Ok(())
 }
 

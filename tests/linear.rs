@@ -13,6 +13,7 @@ use jamscope::displacement::{DisplacementField, MeasuredOn};
 use jamscope::inflation::{Boundary, Centre, Circle, Inflation, inflate};
 use jamscope::io::read_packing;
 use jamscope::lattice::Lattice;
+use jamscope::linear::iterative::{IncompleteFactor, IterationLimits, conjugate_gradients};
 use jamscope::linear::ordering::{minimum_degree, nested_dissection};
 use jamscope::linear::{Analysis, LinearError, LinearResponse};
 use jamscope::packing::{Domain, Mixture, Packing};
@@ -476,4 +477,59 @@ fn what_is_no_order_is_refused() {
     assert_eq!(refused(&order), LinearError::NotAnOrder { dimension, place: 7, row: dimension });
     order[7] = twice;
     assert!(Analysis::in_order(matrix, &order).is_ok());
+}
+
+#[test]
+fn conjugate_gradients_come_to_the_solution_of_the_factor() {
+    let packing = read_packing::<2>("fixtures/packings/hertz_N1000_p100.xyz").expect("readable");
+    let held = (0..packing.len()).map(|disk| disk == 0).collect();
+    let packing = packing.with_held(held).expect("one flag a disk");
+    for prestress in [Prestress::LeftOut, Prestress::Included] {
+        let hessian = Hessian::new(&packing, &Hertzian::default(), Members::Backbone, prestress).expect("apart");
+        let matrix = hessian.matrix();
+        let right: Vec<f64> = (0..matrix.dimension()).map(|row| (row as f64).sin()).collect();
+        let mut analysis = Analysis::new(matrix).expect("memory");
+        let mut factorisation = analysis.cholesky(matrix).expect("definite");
+        let ratio = factorisation.pivot_ratio();
+        let mut expected = vec![f64::NAN; right.len()];
+        let _ = factorisation.solve(&right, &mut expected).expect("accurate");
+        let incomplete = IncompleteFactor::new(matrix).expect("a positive diagonal");
+        let mut found = vec![0.0; right.len()];
+        let solution = conjugate_gradients(matrix, &incomplete, &right, &mut found, &IterationLimits::default());
+        let solution = solution.expect("definite");
+        println!("{prestress:?}: {solution:?}, shift {:e}", incomplete.shift());
+        // Far fewer than the unknowns, of which there are 1900.
+        assert!(solution.backward_error <= 16.0 * f64::EPSILON && solution.iteration_count < 1000, "{solution:?}");
+        let size = expected.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let worst = expected.iter().zip(&found).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        // Backward errors of 10⁻¹⁵ over the inverse condition number, which lies below the ratio of pivots.
+        assert!(worst <= 1e-15 / ratio * 1e3 * size, "{worst:e} of {size:e}, pivots {ratio:e}");
+        // Started at the solution nothing is left to do; one iteration is too few.
+        let again = conjugate_gradients(matrix, &incomplete, &right, &mut found, &IterationLimits::default());
+        assert!(again.expect("definite").iteration_count <= solution.iteration_count / 2);
+        let one = IterationLimits { iteration_count: 1, ..IterationLimits::default() };
+        let used_up = conjugate_gradients(matrix, &incomplete, &right, &mut vec![0.0; right.len()], &one);
+        assert!(matches!(used_up, Err(LinearError::IterationsUsedUp { iteration_count: 1, .. })), "{used_up:?}");
+    }
+}
+
+#[test]
+fn conjugate_gradients_refuse_a_saddle() {
+    let (lattice, law) = (Lattice::triangular(0.5, 0.05).expect("touching"), Hertzian::default());
+    let circle = lattice.circle(12.0).expect("a circle");
+    let coupling = lattice.coupling(&law, (5.0f64 / 12.0).powi(2)).expect("isotropic");
+    let hessian = Hessian::new(&circle.packing, &OnSite { law, coupling }, Members::Backbone, Prestress::Included);
+    let hessian = hessian.expect("apart");
+    let matrix = hessian.matrix();
+    let dimension = matrix.dimension();
+    let refused = LinearError::NotPositiveDefinite { dimension };
+    let right: Vec<f64> = (0..dimension).map(|row| (0.1 * row as f64).sin()).collect();
+    match IncompleteFactor::new(matrix) {
+        Ok(factor) => {
+            let mut solution = vec![0.0; dimension];
+            let outcome = conjugate_gradients(matrix, &factor, &right, &mut solution, &IterationLimits::default());
+            assert_eq!(outcome, Err(refused));
+        }
+        Err(error) => assert_eq!(error, refused),
+    }
 }

@@ -28,6 +28,7 @@
 pub mod contact_changes;
 mod dissection;
 pub mod factorisation;
+pub mod iterative;
 pub mod ordering;
 pub mod response;
 
@@ -129,6 +130,14 @@ pub enum LinearError {
         backward_error: f64,
         /// Refinements made.
         refinement_count: usize,
+    },
+    /// Conjugate gradients did not come to an end.
+    #[error("the backward error is {backward_error:e} after {iteration_count} iterations, all that were allowed")]
+    IterationsUsedUp {
+        /// Iterations made.
+        iteration_count: usize,
+        /// ‖b − A x‖ / (‖A‖ ‖x‖ + ‖b‖) reached.
+        backward_error: f64,
     },
     /// No memory for the factors.
     #[error("the factors of a matrix of {dimension} rows do not fit in memory")]
