@@ -59,14 +59,15 @@
 //! | [`packing`] | centres, radii, domain, which disks are held | [`Packing`](packing::Packing) |
 //! | [`io`] | packings in files | [`read_packing`](io::read_packing) |
 //! | [`contact`] | laws, damping, sites, neighbour list, hot loop, contact network, Hessian | [`ContactNetwork`](contact::ContactNetwork) |
-//! | `linear` (feature `linear`) | factorisations, the response to an infinitesimal inflation | `linear::LinearResponse` |
+//! | `linear` (feature `linear`) | factorisations, the response to an infinitesimal inflation, elastic moduli, modes | `linear::LinearResponse`, `linear::ElasticModuli` |
 //! | [`relax`] | bringing a packing to rest | [`Relaxer`](relax::Relaxer), [`Fire`](relax::Fire) |
+//! | [`certificate`] | what is known of a state at rest | [`Certificate`](certificate::Certificate) |
 //! | [`preparation`] | random points to a packing at a packing fraction or a pressure | [`prepare`](preparation::prepare) |
 //! | [`inflation`] | one disk grows, the rest relaxes; and back | [`inflate`](inflation::inflate) |
 //! | [`lattice`] | lattices whose continuum answer is known | [`Lattice`](lattice::Lattice) |
 //! | [`displacement`] | how far every disk moved | [`DisplacementField`](displacement::DisplacementField) |
 //! | `plastic` (feature `linear`) | what of a response is not in the linear one, and from where on | `plastic::PlasticPart` |
-//! | [`observe`] | radial and angular profile | [`RadialProfile`](observe::RadialProfile) |
+//! | [`observe`] | radial and angular profile, contact forces | [`RadialProfile`](observe::RadialProfile) |
 //! | [`reference`](mod@reference) | exact solutions, elastic and screened | [`Annulus`](reference::Annulus) |
 //! | `fit` (feature `fit`) | a profile against both solutions, with errors and a decision | `fit::profile::fit_radial_profile` |
 //! | [`scene`] | everything a run needs, as plain data | [`Scene`](scene::Scene) |
@@ -93,6 +94,7 @@
 //! The book (`book/src`) has a chapter a module: the question, the equation, how it is computed, how it is checked, and
 //! where it ends. Its snippets are compiled and run by `cargo test --doc`.
 
+pub mod certificate;
 pub mod contact;
 pub mod displacement;
 #[cfg(feature = "fit")]
@@ -144,6 +146,14 @@ mod book {
     #[cfg(feature = "linear")]
     #[doc = include_str!("../book/src/linear.md")]
     mod linear {}
+    #[cfg(feature = "linear")]
+    #[doc = include_str!("../book/src/linear/moduli.md")]
+    mod linear_moduli {}
+    #[cfg(feature = "linear")]
+    #[doc = include_str!("../book/src/linear/modes.md")]
+    mod linear_modes {}
+    #[doc = include_str!("../book/src/certificate.md")]
+    mod certificate {}
     #[doc = include_str!("../book/src/relax/fire.md")]
     mod relax_fire {}
     #[doc = include_str!("../book/src/relax/damped.md")]

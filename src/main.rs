@@ -1,9 +1,14 @@
 //! The command line of jamscope: parses, calls the library, prints.
 
+#[cfg(feature = "linear")]
+#[path = "cli/elasticity.rs"]
+mod elasticity;
 #[path = "cli/exact/mod.rs"]
 mod exact;
 #[path = "cli/inspect.rs"]
 mod inspect;
+#[path = "cli/law_of_file.rs"]
+mod law_of_file;
 #[path = "cli/progress.rs"]
 mod progress;
 #[path = "cli/scene_file.rs"]
@@ -12,8 +17,7 @@ mod scene_file;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
-use jamscope::contact::{Hertzian, Hookean, LawChoice, PowerLaw};
+use clap::{Args, Parser, Subcommand};
 use jamscope::relax::RelaxerChoice;
 use jamscope::report;
 use jamscope::run::{SampleOutcome, run};
@@ -35,7 +39,7 @@ enum Command {
     Run(RunArguments),
     /// Print a scene with all defaults and a comment on every field.
     Scene,
-    /// Print energy, pressure, stress, contacts, coordination, rattlers and residual of a packing file.
+    /// Print what is known of a packing file: certificate, energy, stress, contacts, forces, elastic moduli, modes.
     Inspect(InspectArguments),
     /// Print an exact solution as a table, 17 significant digits.
     Exact(exact::ExactArguments),
@@ -63,44 +67,23 @@ struct RunArguments {
 struct InspectArguments {
     /// Packing file: extended XYZ, LAMMPS data or dump.
     packing: PathBuf,
-    /// The contact law.
-    #[arg(long, value_enum, default_value_t = LawName::Hertzian)]
-    law: LawName,
-    /// k' of the Hertzian and Hookean law, energy scale of the power law; without it 2e5, and 1 for the power law.
+    /// The contact law, `hertzian`, `hookean` or `power:ALPHA`, where the file does not say; without either Hertzian.
+    #[arg(long, value_name = "LAW", value_parser = law_of_file::parse)]
+    law: Option<law_of_file::LawName>,
+    /// k' of the Hertzian and Hookean law, energy scale of the power law, where the file does not say; without either 2e5, and 1
+    /// for the power law.
     #[arg(long, value_name = "K")]
     stiffness: Option<f64>,
-    /// Exponent of the power law.
-    #[arg(long, value_name = "ALPHA", default_value_t = 2.0)]
-    exponent: f64,
     /// Dimension of the packing.
     #[arg(long, value_name = "D", default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
     dimension: u8,
     /// Print JSON, every number at full precision.
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum LawName {
-    Hertzian,
-    Hookean,
-    PowerLaw,
-}
-
-impl InspectArguments {
-    fn law(&self) -> LawChoice {
-        match self.law {
-            LawName::Hertzian => {
-                LawChoice::Hertzian(self.stiffness.map_or_else(Hertzian::default, |stiffness| Hertzian { stiffness }))
-            }
-            LawName::Hookean => {
-                LawChoice::Hookean(self.stiffness.map_or_else(Hookean::default, |stiffness| Hookean { stiffness }))
-            }
-            LawName::PowerLaw => {
-                LawChoice::PowerLaw(PowerLaw { energy_scale: self.stiffness.unwrap_or(1.0), exponent: self.exponent })
-            }
-        }
-    }
+    /// The lowest vibrational modes, so many of them.
+    #[cfg(feature = "linear")]
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    modes: usize,
 }
 
 type Failure = Box<dyn std::error::Error>;
@@ -180,7 +163,12 @@ fn set_threads(threads: Option<usize>) -> Result<(), Failure> {
 }
 
 fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
-    let inspection = inspect::inspect(&arguments.packing, arguments.law(), usize::from(arguments.dimension))?;
+    let law = law_of_file::law_of(&arguments.packing, arguments.law, arguments.stiffness)?;
+    #[cfg(feature = "linear")]
+    let mode_count = arguments.modes;
+    #[cfg(not(feature = "linear"))]
+    let mode_count = 0;
+    let inspection = inspect::inspect(&arguments.packing, law, usize::from(arguments.dimension), mode_count)?;
     if arguments.json {
         print(&format!("{}\n", serde_json::to_string_pretty(&inspection)?))
     } else {

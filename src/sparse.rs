@@ -75,6 +75,15 @@ impl SymmetricMatrix {
         }
     }
 
+    /// A + shift · 1, entries where they stand.
+    #[must_use]
+    pub fn shifted(&self, shift: f64) -> Self {
+        let mut shifted = self.clone();
+        // The first entry of a column is that of the diagonal.
+        self.starts.iter().take(self.dimension()).for_each(|&start| shifted.values[start] += shift);
+        shifted
+    }
+
     /// Largest sum of absolute values in a row, ‖A‖_∞: a bound on the size of every eigenvalue. NaN if an entry is.
     pub fn norm(&self) -> f64 {
         let mut sums = vec![0.0; self.dimension()];

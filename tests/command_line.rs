@@ -146,3 +146,133 @@ fn bad_packings_are_refused_by_file_line_and_value() {
         assert!(said.contains("packing.xyz") && said.contains(part), "no {part:?} in {said}");
     }
 }
+
+/// `jamscope inspect --json` with these arguments.
+fn inspected(arguments: &[&str]) -> Value {
+    let output = jamscope(&[&["inspect", "--json"], arguments].concat());
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+#[test]
+fn inspect_certifies_and_gives_forces_moduli_and_modes() {
+    let path = fixture("packings/hertz_N1000_p100.xyz");
+    let found = inspected(&[text(&path)]);
+    // What the file says: the law and its stiffness.
+    assert_eq!(found["law"]["hertzian"]["stiffness"].as_f64(), Some(2e5));
+    let certificate = &found["certificate"];
+    assert_eq!(certificate["contacts"]["support"], "box_under_pressure");
+    assert_eq!(certificate["contacts"]["contact_count"], found["backbone_contact_count"]);
+    assert!(certificate["relative_residual"].as_f64().expect("a number") < 1e-10);
+    assert!(certificate.get("criterion").is_none(), "nobody relaxed it here");
+    let forces = &found["forces"];
+    assert_eq!(forces["contact_count"], found["backbone_contact_count"]);
+    assert_eq!(forces["mean"], found["mean_contact_force"]);
+    let sum: f64 = forces["density"].as_array().expect("bins").iter().map(|bin| bin.as_f64().expect("a number")).sum();
+    // Some forty bins of whole numbers over the count.
+    assert!((sum * forces["bin_width"].as_f64().expect("a number") - 1.0).abs() < 1e-13);
+    let plain = String::from_utf8(jamscope(&["inspect", text(&path)]).stdout).expect("Unicode");
+    for line in
+        ["contacts - isostatic", "bucklers", "rounding floor", "virial", "percentiles", "Hertzian, stiffness 200000"]
+    {
+        assert!(plain.contains(line), "no {line:?} in {plain}");
+    }
+    if cfg!(feature = "linear") {
+        let found = inspected(&[text(&path), "--modes", "3"]);
+        assert_eq!(certificate["stability"]["counted"]["negative_eigenvalue_count"].as_u64(), Some(0));
+        let relaxed = &found["moduli"]["found"]["relaxed"];
+        let number = |name: &str| relaxed[name].as_f64().expect("a number");
+        assert!(0.0 < number("shear_smallest") && number("shear_largest") < number("bulk"));
+        assert_eq!(relaxed["constants"].as_object().expect("by name").len(), 6);
+        let modes = found["modes"]["found"]["lowest"].as_array().expect("modes").clone();
+        assert_eq!((modes.len(), found["modes"]["found"]["translation_count"].as_u64()), (3, Some(2)));
+        assert!(modes.iter().all(|mode| mode["residual"].as_f64().expect("a number") < 1e-13));
+        assert!(plain.contains("bulk modulus") && plain.contains("negative eigenvalues") && plain.contains("C_xyxy"));
+    }
+}
+
+#[test]
+fn the_law_is_that_of_the_file_then_of_the_command_line_then_of_the_model() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("packing.xyz");
+    let good = std::fs::read_to_string(fixture("packings/hertz_N1000_p100.xyz")).expect("a fixture");
+    let write = |law: &str| {
+        let said = good.replacen("law=hertz stiffness=200000.0", law, 1);
+        assert!(law.contains("hertz stiff") || said != good, "the header of the fixture is another");
+        std::fs::write(&path, said).expect("a temporary file");
+    };
+    let law = |arguments: &[&str]| inspected(&[&[text(&path)], arguments].concat())["law"].clone();
+    write("law=hookean stiffness=3.0");
+    assert_eq!(law(&[])["hookean"]["stiffness"].as_f64(), Some(3.0));
+    assert_eq!(law(&["--law", "hookean", "--stiffness", "3"])["hookean"]["stiffness"].as_f64(), Some(3.0));
+    write("law=hookean");
+    assert_eq!(law(&["--stiffness", "7"])["hookean"]["stiffness"].as_f64(), Some(7.0));
+    assert_eq!(law(&[])["hookean"]["stiffness"].as_f64(), Some(2e5));
+    write("law=\"power-law contacts\" stiffness=2.0 exponent=2.5");
+    assert_eq!(law(&[])["power_law"]["exponent"].as_f64(), Some(2.5));
+    assert_eq!(law(&[])["power_law"]["energy_scale"].as_f64(), Some(2.0));
+    write("law=other stiffness=9.0");
+    assert_eq!(law(&["--law", "power:3"])["power_law"]["exponent"].as_f64(), Some(3.0));
+    assert_eq!(law(&["--law", "power:3"])["power_law"]["energy_scale"].as_f64(), Some(1.0));
+    write("note=none");
+    assert_eq!(law(&[])["hertzian"]["stiffness"].as_f64(), Some(2e5));
+    assert_eq!(law(&["--law", "hookean"])["hookean"]["stiffness"].as_f64(), Some(2e5));
+
+    for (said, arguments, parts) in [
+        ("law=hertz stiffness=200000.0", vec!["--law", "hookean"], vec!["law", "hertzian", "hookean"]),
+        ("law=hookean stiffness=3.0", vec!["--stiffness", "4"], vec!["stiffness", "3", "4"]),
+        ("law=power stiffness=3.0", vec![], vec!["power", "exponent"]),
+        ("law=other", vec![], vec!["other", "--law"]),
+        ("law=hookean stiffness=three", vec![], vec!["stiffness", "three"]),
+        ("law=hookean stiffness=-3", vec![], vec!["stiffness", "-3"]),
+    ] {
+        write(said);
+        let complaint = complaint(&[&["inspect", text(&path)], arguments.as_slice()].concat());
+        for part in parts {
+            assert!(complaint.contains(part), "{said}: no {part:?} in {complaint}");
+        }
+    }
+    let wrong = jamscope(&["inspect", text(&path), "--law", "power:much"]);
+    assert!(!wrong.status.success() && String::from_utf8_lossy(&wrong.stderr).contains("much"));
+}
+
+#[test]
+fn a_run_certifies_its_states_and_writes_packings_that_inspect_takes_as_they_are() {
+    let (folder, path) = scene(
+        "disk_count = 300\n[law.hookean]\nstiffness = 5e4\n[[sample]]\nname = \"x\"\nsource = { pressure = 2000.0 }",
+    );
+    let out = folder.path().join("out");
+    let output = jamscope(&["run", text(&path), "--out", text(&out)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let table = String::from_utf8(output.stdout).expect("Unicode");
+    assert!(table.contains("Certificate") && table.contains("contacts − isostatic, after"), "{table}");
+    let report: Value =
+        serde_json::from_slice(&std::fs::read(out.join("report.json")).expect("a report")).expect("JSON");
+    let done = &report["samples"][0]["done"];
+    let states = [
+        (&done["packing"], "box_under_pressure"),
+        (&done["inflation"]["before"], "held_disks"),
+        (&done["inflation"]["after"], "held_disks"),
+    ];
+    for (state, support) in states {
+        let certificate = &state["certificate"];
+        assert_eq!(certificate["criterion"], "relative_force");
+        assert_eq!(certificate["contacts"]["support"], support);
+        // 1e-8 is the limit of the scene; the relaxer's own look had displacements from other anchors.
+        assert!(certificate["relative_residual"].as_f64().expect("a number") < 1.01e-8);
+        if cfg!(feature = "linear") {
+            assert_eq!(certificate["stability"]["counted"]["negative_eigenvalue_count"].as_u64(), Some(0), "{support}");
+        }
+    }
+    let files = std::fs::read_dir(&out).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let packing = files.into_iter().find(|path| text(path).ends_with("packing.xyz")).expect("a packing");
+    let header = std::fs::read_to_string(&packing).expect("a file");
+    let header = header.lines().nth(1).expect("a comment line");
+    for key in ["stiffness=50000.0", "relative_residual=", "rounding_floor=", "bucklers=", "excess_contacts="] {
+        assert!(header.contains(key), "no {key} in {header}");
+    }
+    let found = inspected(&[text(&packing)]);
+    assert_eq!(found["law"]["hookean"]["stiffness"].as_f64(), Some(5e4));
+    assert_eq!(found["certificate"]["contacts"], done["packing"]["certificate"]["contacts"]);
+    assert_eq!(found["certificate"]["relative_residual"], done["packing"]["certificate"]["relative_residual"]);
+}

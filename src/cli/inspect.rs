@@ -2,16 +2,24 @@
 
 use std::path::Path;
 
+use jamscope::certificate::Certificate;
+#[cfg(feature = "linear")]
+use jamscope::certificate::Stability;
 use jamscope::contact::{ContactNetwork, LawChoice, PairLaw};
 use jamscope::io::read_packing;
+use jamscope::observe::ForceDistribution;
+use jamscope::observe::force_distribution::PERCENTILES;
 use jamscope::packing::{Domain, Packing};
-use jamscope::relax::rounding_floor;
-use jamscope::vector::norm;
 use serde::Serialize;
+
+#[cfg(feature = "linear")]
+use crate::elasticity::{Elasticity, Vibrations};
 
 /// What `inspect` says of a packing.
 #[derive(Debug, Serialize)]
 pub struct Inspection {
+    /// The contact law it was looked at with.
+    law: LawChoice,
     /// Dimension of space.
     dimension: usize,
     /// Number of disks.
@@ -48,44 +56,65 @@ pub struct Inspection {
     largest_contact_force: f64,
     /// Largest net force on any mobile disk.
     largest_net_force: f64,
-    /// Largest net force on a mobile disk of the backbone over the mean contact force of the backbone.
-    relative_residual: f64,
-    /// What rounding alone makes of it.
-    rounding_floor: f64,
     /// Mean overlap of the contacts.
     mean_overlap: f64,
     /// Largest overlap.
     largest_overlap: f64,
+    /// What is known of the state.
+    certificate: Certificate,
+    /// Contact forces of the backbone; absent without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    forces: Option<ForceDistribution>,
+    /// Elastic moduli, or why there are none.
+    #[cfg(feature = "linear")]
+    moduli: Elasticity,
+    /// The lowest vibrational modes, or why there are none; absent where none were asked for.
+    #[cfg(feature = "linear")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    modes: Option<Vibrations>,
 }
 
 /// Reads a packing of either dimension and looks at it under a law.
-pub fn inspect(path: &Path, law: LawChoice, dimension: usize) -> Result<Inspection, Box<dyn std::error::Error>> {
+pub fn inspect(
+    path: &Path,
+    law: LawChoice,
+    dimension: usize,
+    mode_count: usize,
+) -> Result<Inspection, Box<dyn std::error::Error>> {
     law.check()?;
-    if dimension == 3 { with_law(&read_packing::<3>(path)?, law) } else { with_law(&read_packing::<2>(path)?, law) }
-        .map_err(|error| format!("{}: {error}", path.display()).into())
+    let inspection = if dimension == 3 {
+        with_law(&read_packing::<3>(path)?, law, mode_count)
+    } else {
+        with_law(&read_packing::<2>(path)?, law, mode_count)
+    };
+    inspection.map_err(|error| format!("{}: {error}", path.display()).into())
 }
 
-fn with_law<const D: usize>(packing: &Packing<D>, law: LawChoice) -> Result<Inspection, Box<dyn std::error::Error>> {
-    match law {
-        LawChoice::Hertzian(law) => of(packing, &law),
-        LawChoice::Hookean(law) => of(packing, &law),
-        LawChoice::PowerLaw(law) => of(packing, &law),
+fn with_law<const D: usize>(
+    packing: &Packing<D>,
+    choice: LawChoice,
+    mode_count: usize,
+) -> Result<Inspection, Box<dyn std::error::Error>> {
+    match choice {
+        LawChoice::Hertzian(law) => of(packing, &law, choice, mode_count),
+        LawChoice::Hookean(law) => of(packing, &law, choice, mode_count),
+        LawChoice::PowerLaw(law) => of(packing, &law, choice, mode_count),
     }
 }
 
-fn of<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> Result<Inspection, Box<dyn std::error::Error>> {
+#[cfg_attr(not(feature = "linear"), allow(unused_variables, reason = "modes are of the feature `linear`"))]
+fn of<const D: usize, L: PairLaw>(
+    packing: &Packing<D>,
+    law: &L,
+    choice: LawChoice,
+    mode_count: usize,
+) -> Result<Inspection, Box<dyn std::error::Error>> {
     let network = ContactNetwork::new(packing, law)?;
-    let assembly = jamscope::contact::Assembly::new(packing, *law)?;
     let volume = packing.domain().volume();
     let contacts = &network.contacts;
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, jamscope::vector::larger);
-    let mean_contact_force = network.mean_contact_force();
-    let on_backbone = largest(
-        &mut (0..packing.len())
-            .filter(|&disk| network.backbone[disk] && !packing.held()[disk])
-            .map(|disk| norm(network.forces()[disk])),
-    );
     Ok(Inspection {
+        law: choice,
         dimension: D,
         disk_count: packing.len(),
         held_count: packing.held().iter().filter(|&&held| held).count(),
@@ -102,20 +131,70 @@ fn of<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> Result<Inspe
         rattler_count: network.rattlers().count(),
         coordination: network.coordination(),
         isostatic_coordination: 2 * D,
-        mean_contact_force,
+        mean_contact_force: network.mean_contact_force(),
         largest_contact_force: largest(&mut contacts.iter().map(|contact| contact.force)),
         largest_net_force: network.largest_net_force(),
-        relative_residual: if mean_contact_force > 0.0 { on_backbone / mean_contact_force } else { 0.0 },
-        rounding_floor: rounding_floor(&assembly),
         mean_overlap: contacts.iter().map(|contact| contact.overlap).sum::<f64>() / contacts.len().max(1) as f64,
         largest_overlap: largest(&mut contacts.iter().map(|contact| contact.overlap)),
+        certificate: Certificate::of(packing, law, None)?,
+        forces: ForceDistribution::of(&network),
+        #[cfg(feature = "linear")]
+        moduli: Elasticity::of(packing, law),
+        #[cfg(feature = "linear")]
+        modes: (mode_count > 0).then(|| Vibrations::of(packing, law, mode_count)),
     })
+}
+
+/// The lines of a certificate.
+fn write_certificate(f: &mut std::fmt::Formatter<'_>, certificate: &Certificate) -> std::fmt::Result {
+    writeln!(
+        f,
+        "{:<28} {:e} (rounding floor {:e}) [1]",
+        "relative residual", certificate.relative_residual, certificate.rounding_floor
+    )?;
+    if let Some(contacts) = certificate.contacts {
+        writeln!(
+            f,
+            "{:<28} {:+} ({} on {} disks, isostatic {})",
+            "contacts - isostatic",
+            contacts.excess,
+            contacts.contact_count,
+            contacts.disk_count,
+            contacts.isostatic_count
+        )?;
+        writeln!(f, "{:<28} {}", "bucklers", certificate.buckler_count)?;
+    }
+    #[cfg(feature = "linear")]
+    match &certificate.stability {
+        Stability::Counted { negative_eigenvalue_count, pivot_ratio } => {
+            writeln!(f, "{:<28} {negative_eigenvalue_count} (pivots span {pivot_ratio:e})", "negative eigenvalues")?
+        }
+        Stability::Singular { pivot_ratio } => {
+            writeln!(f, "{:<28} singular (pivots span {pivot_ratio:e})", "negative eigenvalues")?;
+        }
+        Stability::Unknown(reason) => writeln!(f, "{:<28} unknown: {reason}", "negative eigenvalues")?,
+        Stability::NoBackbone => {}
+    }
+    if let Some(virial) = certificate.virial {
+        writeln!(
+            f,
+            "{:<28} {} (-dE/d ln L off by {:e}) [energy]",
+            "virial, sum F r", virial.from_forces, virial.relative_difference
+        )?;
+    }
+    Ok(())
 }
 
 impl std::fmt::Display for Inspection {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let disks = if self.dimension == 2 { "disks" } else { "balls" };
         writeln!(f, "{disks:<28} {}", self.disk_count)?;
+        let law = match self.law {
+            LawChoice::Hertzian(law) => format!("Hertzian, stiffness {}", law.stiffness),
+            LawChoice::Hookean(law) => format!("Hookean, stiffness {}", law.stiffness),
+            LawChoice::PowerLaw(law) => format!("power law, scale {}, exponent {}", law.energy_scale, law.exponent),
+        };
+        writeln!(f, "{:<28} {law}", "law")?;
         if self.held_count > 0 {
             writeln!(f, "{:<28} {}", "held", self.held_count)?;
         }
@@ -148,10 +227,24 @@ impl std::fmt::Display for Inspection {
         )?;
         writeln!(f, "{:<28} mean {}, largest {} [length]", "overlap", self.mean_overlap, self.largest_overlap)?;
         writeln!(f, "{:<28} {:e} [force]", "largest net force", self.largest_net_force)?;
-        writeln!(
-            f,
-            "{:<28} {:e} (rounding floor {:e}) [1]",
-            "relative residual", self.relative_residual, self.rounding_floor
-        )
+        write_certificate(f, &self.certificate)?;
+        if let Some(forces) = &self.forces {
+            let over = |value: f64| format!("{value:.4}");
+            writeln!(f, "{:<28} {} to {} [1]", "force / mean, range", over(forces.smallest), over(forces.largest))?;
+            let percentiles: Vec<String> = PERCENTILES
+                .iter()
+                .zip(forces.percentiles)
+                .map(|(at, value)| format!("{at} %: {}", over(value)))
+                .collect();
+            writeln!(f, "{:<28} {} [1]", "force / mean, percentiles", percentiles.join("  "))?;
+        }
+        #[cfg(feature = "linear")]
+        {
+            self.moduli.write(f, per_length)?;
+            if let Some(modes) = &self.modes {
+                modes.write(f)?;
+            }
+        }
+        Ok(())
     }
 }

@@ -75,6 +75,27 @@ struct Link<const D: usize> {
     block: [Vector<D>; D],
 }
 
+/// B = F' n nᵀ − (F/r) (1 − n nᵀ) of one contact, the second part only with the prestress.
+pub(crate) fn contact_block<const D: usize>(
+    stiffness: f64,
+    force: f64,
+    apart: Vector<D>,
+    distance: f64,
+    prestress: Prestress,
+) -> [Vector<D>; D] {
+    let across = match prestress {
+        Prestress::Included => -force / distance,
+        Prestress::LeftOut => 0.0,
+    };
+    let normal = scaled(1.0 / distance, apart);
+    std::array::from_fn(|a| {
+        std::array::from_fn(|b| {
+            let both = normal[a] * normal[b];
+            stiffness * both + across * (f64::from(u8::from(a == b)) - both)
+        })
+    })
+}
+
 impl<const D: usize> Hessian<D> {
     /// The second derivatives at a packing.
     ///
@@ -154,17 +175,7 @@ impl<const D: usize> Hessian<D> {
             }
             let force = law.force(pairs.coefficient[pair], overlap);
             let stiffness = if overlap.is_nan() { overlap } else { law.stiffness(force, overlap) };
-            let across = match prestress {
-                Prestress::Included => -force / distance,
-                Prestress::LeftOut => 0.0,
-            };
-            let normal = scaled(1.0 / distance, apart);
-            let block = std::array::from_fn(|a| {
-                std::array::from_fn(|b| {
-                    let both = normal[a] * normal[b];
-                    stiffness * both + across * (f64::from(u8::from(a == b)) - both)
-                })
-            });
+            let block = contact_block(stiffness, force, apart, distance, prestress);
             Some(Link { ends: (pairs.first[pair], pairs.second[pair]), block })
         }));
     }

@@ -50,6 +50,11 @@ impl CommentLine {
         self.pairs.iter().find(|(name, _)| name.eq_ignore_ascii_case(key)).map(|(_, value)| value.as_str())
     }
 
+    /// All pairs, in their order.
+    pub fn into_pairs(self) -> Vec<(String, String)> {
+        self.pairs
+    }
+
     /// The keys there are, for messages.
     pub fn keys(&self) -> String {
         let keys: Vec<&str> = self.pairs.iter().map(|(key, _)| key.as_str()).collect();

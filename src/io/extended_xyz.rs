@@ -40,10 +40,7 @@ const WIDTH_LIMIT: usize = 65_535;
 pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Packing<D>, ReadError> {
     let frames = frames(source)?;
     let (line, count) = frames[source.frame(frame, frames.len())?];
-    let comment = CommentLine::parse(source.lines[line]).map_err(|problem| match problem {
-        Problem::Unclosed { key, value } => source.bad(line, &key, &value, "a quote or bracket that is closed"),
-        Problem::Repeated { key } => source.repeated(line, "key", &key, line),
-    })?;
+    let comment = comment_of(source, line)?;
     if let Some(value) = comment.value("dimension")
         && value.parse::<usize>().is_ok_and(|dimension| dimension != D)
     {
@@ -78,6 +75,20 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
         }
     }
     Ok(packing)
+}
+
+/// The pairs of the comment line of one frame.
+pub(super) fn properties(source: &Source, frame: Frame) -> Result<Vec<(String, String)>, ReadError> {
+    let frames = frames(source)?;
+    let (line, _) = frames[source.frame(frame, frames.len())?];
+    comment_of(source, line).map(CommentLine::into_pairs)
+}
+
+fn comment_of(source: &Source, line: usize) -> Result<CommentLine, ReadError> {
+    CommentLine::parse(source.lines[line]).map_err(|problem| match problem {
+        Problem::Unclosed { key, value } => source.bad(line, &key, &value, "a quote or bracket that is closed"),
+        Problem::Repeated { key } => source.repeated(line, "key", &key, line),
+    })
 }
 
 /// Line of the comment and number of disks of every frame.

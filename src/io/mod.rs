@@ -76,7 +76,34 @@ pub fn read_packing<const D: usize>(path: impl AsRef<Path>) -> Result<Packing<D>
 /// As [`read_packing`], and [`ReadError::NoSuchFrame`].
 pub fn read_frame<const D: usize>(path: impl AsRef<Path>, frame: Frame) -> Result<Packing<D>, ReadError> {
     const { assert!(D == 2 || D == 3, "packings have two or three dimensions") };
-    let path = path.as_ref();
+    with_source(path.as_ref(), |source, format| match format {
+        Format::ExtendedXyz => extended_xyz::parse(source, frame),
+        Format::LammpsData => lammps_data::parse(source, frame),
+        Format::LammpsDump => lammps_dump::parse(source, frame),
+    })
+}
+
+/// The key-value pairs that go with the packing [`read_packing`] would read: those of the comment line of extended XYZ, in
+/// its order; other formats have none.
+///
+/// # Errors
+/// [`ReadError`] as of [`read_packing`], for the comment line alone.
+///
+/// # Example
+/// ```
+/// let properties = jamscope::io::read_properties("fixtures/packings/hooke_N1000_p100.xyz")?;
+/// assert!(properties.contains(&("law".into(), "hooke".into())));
+/// # Ok::<(), jamscope::io::ReadError>(())
+/// ```
+pub fn read_properties(path: impl AsRef<Path>) -> Result<Vec<(String, String)>, ReadError> {
+    with_source(path.as_ref(), |source, format| match format {
+        Format::ExtendedXyz => extended_xyz::properties(source, Frame::Last),
+        Format::LammpsData | Format::LammpsDump => Ok(Vec::new()),
+    })
+}
+
+/// Hands over a file with its format.
+fn with_source<T>(path: &Path, read: impl FnOnce(&Source, Format) -> Result<T, ReadError>) -> Result<T, ReadError> {
     let bytes = std::fs::read(path).map_err(|source| ReadError::Io { path: path.into(), source })?;
     let text = std::str::from_utf8(&bytes).map_err(|error| ReadError::NotText {
         path: path.into(),
@@ -92,11 +119,7 @@ pub fn read_frame<const D: usize>(path: impl AsRef<Path>, frame: Frame) -> Resul
     if !text.ends_with('\n') {
         return Err(ReadError::LineCut { path: path.into(), line: source.lines.len() });
     }
-    match format {
-        Format::ExtendedXyz => extended_xyz::parse(&source, frame),
-        Format::LammpsData => lammps_data::parse(&source, frame),
-        Format::LammpsDump => lammps_dump::parse(&source, frame),
-    }
+    read(&source, format)
 }
 
 /// The format of a file by its first lines; `first` is the first that is not blank.

@@ -36,7 +36,7 @@ impl IncompleteFactor {
     /// A diagonal entry that is not positive, so that the matrix is not positive definite.
     pub fn new(matrix: &SymmetricMatrix) -> Result<Self, LinearError> {
         let dimension = matrix.dimension();
-        if (0..dimension).any(|row| !(matrix.values()[matrix.column_starts()[row]] > 0.0)) {
+        if (0..dimension).any(|row| not_positive(matrix.values()[matrix.column_starts()[row]])) {
             return Err(LinearError::NotPositiveDefinite { dimension });
         }
         let mut factor = IncompleteFactor {
@@ -70,7 +70,7 @@ impl IncompleteFactor {
         for column in 0..dimension {
             let (start, end) = (self.starts[column], self.starts[column + 1]);
             let pivot = self.values[start];
-            if !(pivot > 0.0) {
+            if not_positive(pivot) {
                 return false;
             }
             let root = pivot.sqrt();
@@ -166,7 +166,7 @@ pub fn conjugate_gradients(
     let mut backward_error = true_residual(matrix, norm, right_side, solution, &mut residual);
     let mut iteration_count = 0;
     // From here the recurrence starts anew after every look: what drifted is taken up as a residual of its own.
-    while !(backward_error <= limits.backward_error) {
+    while backward_error.is_nan() || backward_error > limits.backward_error {
         let mut conditioned = residual.clone();
         factor.solve(&mut conditioned);
         let mut direction = conditioned.clone();
@@ -179,7 +179,7 @@ pub fn conjugate_gradients(
             }
             matrix.multiply(&direction, &mut product);
             let curvature = product_of(&direction, &product);
-            if !(curvature > 0.0) {
+            if not_positive(curvature) {
                 // 0 for a direction that has vanished, at the rounding floor.
                 let vanished = direction.iter().all(|&value| value == 0.0);
                 if vanished {
@@ -211,7 +211,7 @@ pub fn conjugate_gradients(
         let before = backward_error;
         backward_error = true_residual(matrix, norm, right_side, solution, &mut residual);
         // At the rounding floor new starts bring nothing.
-        if !(backward_error < 0.9 * before) && backward_error <= 16.0 * f64::EPSILON {
+        if backward_error >= 0.9 * before && backward_error <= 16.0 * f64::EPSILON {
             break;
         }
     }
@@ -234,6 +234,11 @@ fn true_residual(
 
 fn largest(column: &[f64]) -> f64 {
     column.iter().fold(0.0, |most, value| larger(value.abs(), most))
+}
+
+/// NaN is not positive either.
+fn not_positive(value: f64) -> bool {
+    value.is_nan() || value <= 0.0
 }
 
 fn product_of(a: &[f64], b: &[f64]) -> f64 {

@@ -1,8 +1,8 @@
-//! Linear algebra of packings at rest: sparse factorisations of the [`Hessian`](crate::contact::Hessian), and the answer
-//! to an infinitesimal inflation.
+//! Linear algebra of packings at rest: sparse factorisations of the [`Hessian`](crate::contact::Hessian), the answer
+//! to an infinitesimal inflation or strain, and vibrational modes.
 //!
-//! Start from [`LinearResponse`], or from [`Analysis`] for a matrix of one's own. A definite matrix is factorised by
-//! Cholesky, an indefinite one as L D Lᵀ with the number of its negative eigenvalues; every solution is refined and comes
+//! Start from [`LinearResponse`], [`ElasticModuli`] or [`VibrationalModes`], or from [`Analysis`] for a matrix of one's own.
+//! A definite matrix is factorised by Cholesky, an indefinite one as L D Lᵀ with the number of its negative eigenvalues; every solution is refined and comes
 //! with its backward error.
 //!
 //! ```
@@ -29,14 +29,33 @@ pub mod contact_changes;
 mod dissection;
 pub mod factorisation;
 pub mod iterative;
+mod lanczos;
+pub mod modes;
+pub mod moduli;
 pub mod ordering;
 pub mod response;
 
 pub use contact_changes::ContactChange;
 pub use factorisation::{Analysis, Factorisation, Solution};
+pub use modes::VibrationalModes;
+pub use moduli::ElasticModuli;
 pub use response::LinearResponse;
 
-use crate::packing::PackingError;
+use crate::contact::ContactNetwork;
+use crate::packing::{Packing, PackingError};
+
+/// The packing with the first disk of its backbone held, where nothing holds it: no rigid motion is left, and since
+/// internal forces add up to nothing, holding one disk costs none. None without a backbone.
+///
+/// K with the rows of one disk taken out has as many negative eigenvalues as K: every displacement is one that leaves the
+/// disk where it is plus a translation, and a translation costs nothing.
+pub(crate) fn pinned<const D: usize>(
+    packing: &Packing<D>,
+    network: &ContactNetwork<D>,
+) -> Result<Option<Packing<D>>, PackingError> {
+    let Some(first) = network.backbone.iter().position(|&member| member) else { return Ok(None) };
+    packing.clone().with_held((0..packing.len()).map(|disk| disk == first).collect()).map(Some)
+}
 
 /// Why there is no solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -138,6 +157,35 @@ pub enum LinearError {
         iteration_count: usize,
         /// ‖b − A x‖ / (‖A‖ ‖x‖ + ‖b‖) reached.
         backward_error: f64,
+    },
+    /// Held disks do not follow the strain of a box.
+    #[error("{held_count} disks are held: elastic moduli are those of a periodic packing that nothing holds")]
+    HeldDisks {
+        /// Number of held disks.
+        held_count: usize,
+    },
+    /// There is no box to strain.
+    #[error("the packing lies in the open plane: elastic moduli are those of a periodic packing")]
+    NotPeriodic,
+    /// Sites do not follow the strain of a box.
+    #[error("sites hold or push the disks with Γ = {coupling}: the energy is not one of the strain alone")]
+    OnSites {
+        /// Γ of the law.
+        coupling: f64,
+    },
+    /// Not all modes asked for were found.
+    #[error(
+        "{found} of {asked} modes were found to {tolerance:e} of the norm after {factorisation_count} factorisations"
+    )]
+    ModesNotFound {
+        /// Number found.
+        found: usize,
+        /// Number asked for.
+        asked: usize,
+        /// Residual over norm they should have.
+        tolerance: f64,
+        /// Factorisations made.
+        factorisation_count: usize,
     },
     /// No memory for the factors.
     #[error("the factors of a matrix of {dimension} rows do not fit in memory")]

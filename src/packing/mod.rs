@@ -325,6 +325,25 @@ impl<const D: usize> Packing<D> {
         self
     }
 
+    /// The same disks, box and centres longer by a share `strain` in all directions, radii kept, sites dropped; and the strain of
+    /// each axis, which differs from the one asked for by the rounding of the sides.
+    pub(crate) fn stretched(&self, strain: f64) -> (Self, Vector<D>) {
+        let mut stretched = self.clone().without_sites();
+        let (mut strains, mut corner) = ([strain; D], [0.0; D]);
+        if let Domain::Periodic { corner: start, lengths } = &mut stretched.domain {
+            corner = *start;
+            for d in 0..D {
+                let length = lengths[d] * (1.0 + strain);
+                (strains[d], lengths[d]) = ((length - lengths[d]) / lengths[d], length);
+            }
+        }
+        for disk in 0..self.len() {
+            let (high, low) = self.centre(disk);
+            stretched.displace(disk, std::array::from_fn(|d| strains[d] * ((high[d] - corner[d]) + low[d])));
+        }
+        (stretched, strains)
+    }
+
     /// Volume of all disks over the volume of the box; `None` in the open plane.
     ///
     /// ```text

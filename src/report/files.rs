@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use crate::certificate::Certificate;
+use crate::contact::LawChoice;
 use crate::displacement::DisplacementField;
 use crate::io::{Column, write_atomically, write_packing};
 use crate::packing::Packing;
@@ -57,20 +59,28 @@ impl Files<'_> {
 
     fn sample(&mut self, report: &Report, sample: &SampleReport, result: &SampleResult) -> Result<(), ReportError> {
         let name = sample.name.as_str();
-        let origin = |state, pressure| Origin { report, sample, state, pressure };
+        let origin = |state, pressure, certificate| Origin { report, sample, state, pressure, certificate };
         for file in DataFile::of(report, result) {
             let path = file.name(name);
             match file {
                 DataFile::Packing => {
-                    self.packing(&path, &result.prepared, &[], &origin("prepared", result.packing.pressure))?;
+                    self.packing(
+                        &path,
+                        &result.prepared,
+                        &[],
+                        &origin("prepared", result.packing.pressure, &result.packing.certificate),
+                    )?;
                 }
                 DataFile::Displacement => {
-                    let after = &result.inflated.after;
-                    self.field(&path, after.packing.get(), &result.field, &origin("inflated", after.pressure))?;
+                    let (after, certificate) = (&result.inflated.after, &result.inflation.after.certificate);
+                    let origin = origin("inflated", after.pressure, certificate);
+                    self.field(&path, after.packing.get(), &result.field, &origin)?;
                 }
                 DataFile::Deflated => {
-                    if let (Some(field), Some(rest)) = (&result.cycle_field, &result.inflated.deflated) {
-                        self.field(&path, rest.packing.get(), field, &origin("deflated", rest.pressure))?;
+                    let rest = result.inflated.deflated.as_ref().zip(result.inflation.deflated.as_ref());
+                    if let (Some(field), Some((rest, summary))) = (&result.cycle_field, rest) {
+                        let origin = origin("deflated", rest.pressure, &summary.certificate);
+                        self.field(&path, rest.packing.get(), field, &origin)?;
                     }
                 }
                 DataFile::RadialProfile => {
@@ -104,7 +114,8 @@ impl Files<'_> {
         let path = self.folder.join(name);
         let (law, seed, pressure) =
             (law(&origin.report.scene.law), origin.sample.seed.to_string(), format!("{:?}", origin.pressure));
-        let properties = [
+        let numbers = [numbers_of(&origin.report.scene.law), numbers_known(origin.certificate)].concat();
+        let mut properties = vec![
             ("jamscope_version", origin.report.jamscope_version),
             ("sample", origin.sample.name.as_str()),
             ("state", origin.state),
@@ -112,6 +123,7 @@ impl Files<'_> {
             ("seed", seed.as_str()),
             ("pressure", pressure.as_str()),
         ];
+        properties.extend(numbers.iter().map(|(key, value)| (*key, value.as_str())));
         write_packing(&path, packing, columns, &properties)?;
         self.written.push(path);
         Ok(())
@@ -144,6 +156,31 @@ impl Files<'_> {
     }
 }
 
+/// The numbers of a law, as `jamscope inspect` reads them again.
+fn numbers_of(law: &LawChoice) -> Vec<(&'static str, String)> {
+    match law {
+        LawChoice::Hertzian(law) => vec![("stiffness", format!("{:?}", law.stiffness))],
+        LawChoice::Hookean(law) => vec![("stiffness", format!("{:?}", law.stiffness))],
+        LawChoice::PowerLaw(law) => {
+            vec![("stiffness", format!("{:?}", law.energy_scale)), ("exponent", format!("{:?}", law.exponent))]
+        }
+    }
+}
+
+/// What a certificate says in single numbers.
+fn numbers_known(certificate: &Certificate) -> Vec<(&'static str, String)> {
+    let mut known = vec![
+        ("relative_residual", format!("{:?}", certificate.relative_residual)),
+        ("rounding_floor", format!("{:?}", certificate.rounding_floor)),
+        ("rattlers", certificate.rattler_count.to_string()),
+        ("bucklers", certificate.buckler_count.to_string()),
+    ];
+    known.extend(certificate.contacts.map(|contacts| ("excess_contacts", contacts.excess.to_string())));
+    #[cfg(feature = "linear")]
+    known.extend(certificate.stability.negative_eigenvalue_count().map(|n| ("negative_eigenvalues", n.to_string())));
+    known
+}
+
 /// Where a packing comes from, for the comment line of its file.
 struct Origin<'a> {
     report: &'a Report,
@@ -151,6 +188,7 @@ struct Origin<'a> {
     state: &'a str,
     /// Pressure of the box, or of the circle once it is cut \[force / length\].
     pressure: f64,
+    certificate: &'a Certificate,
 }
 
 /// Wall times of one sample \[s\].

@@ -1,5 +1,8 @@
 //! What a reader wants to know of each sample, row by row; the terminal table and the page lay the same rows out.
 
+use crate::certificate::Certificate;
+#[cfg(feature = "linear")]
+use crate::certificate::Stability;
 use crate::contact::LawChoice;
 use crate::inflation::Boundary;
 use crate::relax::Criterion;
@@ -98,6 +101,7 @@ pub(crate) fn sections(report: &Report, samples: &[SampleReport], times: Times) 
         packing(report, samples),
         preparation(report, samples, times),
         inflation(report, samples, times),
+        certificate(samples),
         #[cfg(feature = "fit")]
         fit(samples),
         #[cfg(feature = "linear")]
@@ -185,6 +189,43 @@ fn inflation(report: &Report, samples: &[SampleReport], times: Times) -> Section
         penetration_depth(it).map(|depth| significant(depth, 4))
     });
     rows.section("Inflation")
+}
+
+fn certificate(samples: &[SampleReport]) -> Section {
+    let mut rows = Rows { samples, rows: Vec::new() };
+    let excess = |certificate: &Certificate| certificate.contacts.map(|contacts| format!("{:+}", contacts.excess));
+    let virial = |certificate: &Certificate| Some(significant(certificate.virial?.relative_difference.abs(), 1));
+    let packing = |it: &SampleResult| it.packing.certificate.clone();
+    let (before, after) = (
+        |it: &SampleResult| it.inflation.before.certificate.clone(),
+        |it: &SampleResult| it.inflation.after.certificate.clone(),
+    );
+    rows.add("contacts − isostatic, box", |it| excess(&packing(it)))
+        .add("contacts − isostatic, before", |it| excess(&before(it)))
+        .add("contacts − isostatic, after", |it| excess(&after(it)));
+    #[cfg(feature = "linear")]
+    rows.add("negative eigenvalues, box", |it| negative(&packing(it)))
+        .add("negative eigenvalues, before", |it| negative(&before(it)))
+        .add("negative eigenvalues, after", |it| negative(&after(it)));
+    rows.add("bucklers box, before, after", |it| {
+        packing(it).contacts?;
+        let counts = [packing(it), before(it), after(it)].map(|certificate| count(certificate.buckler_count));
+        Some(counts.join(", "))
+    })
+    .add("Σ Fr against −dE/d ln L, box, rel.", |it| virial(&packing(it)))
+    .add("Σ Fr against −dE/d ln L, after, rel.", |it| virial(&after(it)));
+    rows.section("Certificate")
+}
+
+/// Number of negative eigenvalues of the Hessian, or why there is none.
+#[cfg(feature = "linear")]
+fn negative(certificate: &Certificate) -> Option<String> {
+    match &certificate.stability {
+        Stability::Counted { negative_eigenvalue_count, .. } => Some(count(*negative_eigenvalue_count)),
+        Stability::Singular { .. } => Some("singular".into()),
+        Stability::Unknown(_) => Some("unknown".into()),
+        Stability::NoBackbone => None,
+    }
 }
 
 #[cfg(feature = "fit")]

@@ -6,7 +6,8 @@ mod report_data;
 
 use std::path::{Path, PathBuf};
 
-use crate::contact::{ContactNetwork, LawChoice, PairLaw};
+use crate::certificate::Certificate;
+use crate::contact::{ContactNetwork, LawChoice, OnSite, PairLaw};
 use crate::displacement::DisplacementField;
 #[cfg(feature = "fit")]
 use crate::fit::profile::fit_radial_profile;
@@ -186,7 +187,7 @@ fn run_with<L: PairLaw>(
         .map(|settings| plastic_summary::of(&inflated, &scene.inflation, law, settings.ring_width).into());
     Ok(SampleResult {
         packing,
-        inflation: summary(&inflated, law),
+        inflation: summary(&inflated, law, scene.inflation.on_site_coupling)?,
         measured_on: field.measured_on,
         radial_profile,
         #[cfg(feature = "fit")]
@@ -279,36 +280,51 @@ fn packing_summary<L: PairLaw>(packing: &Packing<2>, law: &L, rest: RestSummary)
         coordination: network.coordination(),
         relaxation_count: 1,
         rest,
+        certificate: Certificate::of(packing, law, Some(rest.criterion))?,
     })
 }
 
-fn summary<L: PairLaw>(inflated: &Inflated<2>, law: &L) -> InflationSummary {
-    let state = |rest: &Rest<2>| StateSummary {
-        pressure: rest.pressure,
-        energy: rest.energy,
-        contact_count: rest.contact_count,
-        rattler_count: rest.rattler_count,
-        rest: RestSummary {
-            criterion: rest.criterion,
-            relative_residual: rest.residual.relative(),
-            largest_net_force: rest.residual.largest_net_force,
-            rounding_floor: rest.rounding_floor,
-            cost: rest.cost,
-        },
+fn summary<L: PairLaw>(
+    inflated: &Inflated<2>,
+    law: &L,
+    on_site_coupling: Option<f64>,
+) -> Result<InflationSummary, PackingError> {
+    let certificate = |rest: &Rest<2>| {
+        let (packing, criterion) = (rest.packing.get(), Some(rest.criterion));
+        match on_site_coupling {
+            None => Certificate::of(packing, law, criterion),
+            Some(coupling) => Certificate::of(packing, &OnSite { law: *law, coupling }, criterion),
+        }
+    };
+    let state = |rest: &Rest<2>| -> Result<StateSummary, PackingError> {
+        Ok(StateSummary {
+            pressure: rest.pressure,
+            energy: rest.energy,
+            contact_count: rest.contact_count,
+            rattler_count: rest.rattler_count,
+            rest: RestSummary {
+                criterion: rest.criterion,
+                relative_residual: rest.residual.relative(),
+                largest_net_force: rest.residual.largest_net_force,
+                rounding_floor: rest.rounding_floor,
+                cost: rest.cost,
+            },
+            certificate: certificate(rest)?,
+        })
     };
     let before = inflated.before.pressure;
     let pressure_change = inflated.after.pressure - before;
     let exponent = law.exponent();
     let scale = libm::pow(before, (exponent - 2.0) / (exponent - 1.0));
-    InflationSummary {
+    Ok(InflationSummary {
         centre_label: inflated.before.packing.get().labels()[inflated.centre],
         inner_radius: inflated.inner_radius,
         outer_radius: inflated.outer_radius,
         mobile_count: inflated.mobile_count,
-        before: state(&inflated.before),
-        after: state(&inflated.after),
-        deflated: inflated.deflated.as_ref().map(state),
+        before: state(&inflated.before)?,
+        after: state(&inflated.after)?,
+        deflated: inflated.deflated.as_ref().map(state).transpose()?,
         pressure_change,
         scaled_pressure_change: (before > 0.0).then(|| pressure_change / scale),
-    }
+    })
 }

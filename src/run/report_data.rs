@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::certificate::Certificate;
 use crate::displacement::{DisplacementField, MeasuredOn};
 #[cfg(feature = "fit")]
 use crate::fit::FitError;
@@ -161,6 +162,8 @@ pub struct PackingSummary {
     pub relaxation_count: usize,
     /// How well it is at rest.
     pub rest: RestSummary,
+    /// What is known of it.
+    pub certificate: Certificate,
 }
 
 /// How well a state is at rest.
@@ -216,4 +219,6 @@ pub struct StateSummary {
     pub rattler_count: usize,
     /// How well it is at rest.
     pub rest: RestSummary,
+    /// What is known of it.
+    pub certificate: Certificate,
 }

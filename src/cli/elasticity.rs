@@ -1,0 +1,161 @@
+//! Elastic moduli and vibrational modes of a packing file, for `jamscope inspect`.
+
+use std::collections::BTreeMap;
+use std::fmt::Formatter;
+
+use jamscope::contact::{PairLaw, Prestress};
+use jamscope::linear::moduli::Stiffness;
+use jamscope::linear::{ElasticModuli, VibrationalModes};
+use jamscope::packing::Packing;
+use serde::Serialize;
+
+/// Elastic moduli, or why there are none.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Elasticity {
+    /// The moduli.
+    Found(Box<Moduli>),
+    /// Why there are none.
+    Refused(String),
+}
+
+/// Elastic moduli in numbers.
+#[derive(Debug, Serialize)]
+pub struct Moduli {
+    affine: Constants,
+    relaxed: Constants,
+    /// Largest backward error of a solution.
+    backward_error: f64,
+}
+
+/// Elastic constants in numbers.
+#[derive(Debug, Serialize)]
+struct Constants {
+    /// -V dp/dV.
+    bulk: f64,
+    /// Mean, softest and stiffest shear modulus.
+    shear_mean: f64,
+    shear_smallest: f64,
+    shear_largest: f64,
+    /// C_abcd by its indices, each once.
+    constants: BTreeMap<String, f64>,
+}
+
+impl Constants {
+    fn of<const D: usize>(stiffness: &Stiffness<D>) -> Self {
+        let pairs: Vec<(usize, usize)> = (0..D).flat_map(|a| (a..D).map(move |b| (a, b))).collect();
+        let name = |axis: usize| ["x", "y", "z"][axis];
+        let mut constants = BTreeMap::new();
+        for (at, &(a, b)) in pairs.iter().enumerate() {
+            for &(c, d) in &pairs[at..] {
+                constants.insert([a, b, c, d].map(name).concat(), stiffness.constants[a][b][c][d]);
+            }
+        }
+        let shear = stiffness.shear();
+        Constants {
+            bulk: stiffness.bulk(),
+            shear_mean: shear.mean,
+            shear_smallest: shear.smallest,
+            shear_largest: shear.largest,
+            constants,
+        }
+    }
+}
+
+impl Elasticity {
+    /// The moduli of a packing.
+    pub fn of<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> Self {
+        match ElasticModuli::of(packing, law, Prestress::Included) {
+            Ok(moduli) => Elasticity::Found(Box::new(Moduli {
+                affine: Constants::of(&moduli.affine),
+                relaxed: Constants::of(&moduli.relaxed),
+                backward_error: moduli.backward_error,
+            })),
+            Err(error) => Elasticity::Refused(error.to_string()),
+        }
+    }
+
+    /// The moduli as lines.
+    pub fn write(&self, f: &mut Formatter<'_>, unit: &str) -> std::fmt::Result {
+        let moduli = match self {
+            Elasticity::Refused(reason) => return writeln!(f, "{:<28} none: {reason}", "elastic moduli"),
+            Elasticity::Found(moduli) => moduli,
+        };
+        let (relaxed, affine) = (&moduli.relaxed, &moduli.affine);
+        writeln!(f, "{:<28} {} (affine {}) [{unit}]", "bulk modulus, -V dp/dV", relaxed.bulk, affine.bulk)?;
+        writeln!(f, "{:<28} {} (affine {}) [{unit}]", "shear modulus, mean", relaxed.shear_mean, affine.shear_mean)?;
+        writeln!(
+            f,
+            "{:<28} {} to {} [{unit}]",
+            "shear modulus, by direction", relaxed.shear_smallest, relaxed.shear_largest
+        )?;
+        for (name, value) in &relaxed.constants {
+            writeln!(f, "{:<28} {value} [{unit}]", format!("C_{name}"))?;
+        }
+        Ok(())
+    }
+}
+
+/// The lowest vibrational modes, or why there are none.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Vibrations {
+    /// The modes.
+    Found {
+        /// Translations left out.
+        translation_count: usize,
+        /// The modes, ascending.
+        lowest: Vec<ModeSummary>,
+    },
+    /// Why there are none.
+    Refused(String),
+}
+
+/// One mode in numbers.
+#[derive(Debug, Serialize)]
+pub struct ModeSummary {
+    /// λ = ω² for masses 1.
+    eigenvalue: f64,
+    /// ‖K e − λ e‖ / ‖K‖.
+    residual: f64,
+    /// Participation ratio.
+    participation_ratio: f64,
+}
+
+impl Vibrations {
+    /// The `count` lowest modes of a packing.
+    pub fn of<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L, count: usize) -> Self {
+        match VibrationalModes::lowest(packing, law, Prestress::Included, count) {
+            Ok(found) => {
+                let summary = |mode: &jamscope::linear::modes::Mode<D>| ModeSummary {
+                    eigenvalue: mode.eigenvalue,
+                    residual: mode.residual,
+                    participation_ratio: mode.participation_ratio,
+                };
+                let lowest = found.modes.iter().map(summary).collect();
+                Vibrations::Found { translation_count: found.translation_count, lowest }
+            }
+            Err(error) => Vibrations::Refused(error.to_string()),
+        }
+    }
+
+    /// The modes as lines.
+    pub fn write(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let (translation_count, lowest) = match self {
+            Vibrations::Refused(reason) => return writeln!(f, "{:<28} none: {reason}", "modes"),
+            Vibrations::Found { translation_count, lowest } => (translation_count, lowest),
+        };
+        writeln!(f, "{:<28} {translation_count} left out", "translations")?;
+        for (at, mode) in lowest.iter().enumerate() {
+            writeln!(
+                f,
+                "{:<28} {} [force / length / mass], participation {:.4}, residual {:e}",
+                format!("mode {}, omega^2", at + 1),
+                mode.eigenvalue,
+                mode.participation_ratio,
+                mode.residual
+            )?;
+        }
+        Ok(())
+    }
+}

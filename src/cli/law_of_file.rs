@@ -1,0 +1,146 @@
+//! The contact law of a packing: from the file where it says, else the command line, else the model.
+
+use std::path::Path;
+
+use jamscope::contact::{Hertzian, Hookean, LawChoice, PowerLaw};
+use jamscope::io::read_properties;
+
+/// A law as the command line names it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LawName {
+    /// Hertzian.
+    Hertzian,
+    /// Hookean.
+    Hookean,
+    /// The dimensionless power law with this exponent.
+    Power(f64),
+}
+
+/// `hertzian`, `hookean` or `power:ALPHA`.
+pub fn parse(text: &str) -> Result<LawName, String> {
+    match text.split_once(':') {
+        None if text == "hertzian" => Ok(LawName::Hertzian),
+        None if text == "hookean" => Ok(LawName::Hookean),
+        Some(("power", exponent)) => exponent
+            .parse()
+            .map(LawName::Power)
+            .map_err(|_| format!("the exponent of the power law is `{exponent}`, not a number")),
+        _ => Err("not one of hertzian, hookean, power:ALPHA".into()),
+    }
+}
+
+impl std::fmt::Display for LawName {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            LawName::Hertzian => formatter.write_str("hertzian"),
+            LawName::Hookean => formatter.write_str("hookean"),
+            LawName::Power(exponent) => write!(formatter, "power:{exponent}"),
+        }
+    }
+}
+
+/// Why there is no law.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LawOfFileError {
+    /// The file names a law nobody here knows, and the command line none.
+    #[error("{path}: law is `{law}`, not hertz…, hook… or power…: say --law")]
+    UnknownLaw {
+        /// The file.
+        path: String,
+        /// What it says.
+        law: String,
+    },
+    /// A number of the law in the file is none.
+    #[error("{path}: {key} is `{value}`, not a number")]
+    NotANumber {
+        /// The file.
+        path: String,
+        /// Its key.
+        key: &'static str,
+        /// What it says.
+        value: String,
+    },
+    /// The file says the power law but not its exponent.
+    #[error("{path}: law is `{law}`, without an exponent: say --law power:ALPHA")]
+    NoExponent {
+        /// The file.
+        path: String,
+        /// What it says.
+        law: String,
+    },
+    /// File and command line contradict each other.
+    #[error("{path}: the file says {what} {file}, the command line {command_line}")]
+    Contradiction {
+        /// The file.
+        path: String,
+        /// What they differ in.
+        what: &'static str,
+        /// What the file says.
+        file: String,
+        /// What the command line says.
+        command_line: String,
+    },
+}
+
+/// The law a packing file is to be looked at with: what the file says, then what is `asked` for, then the model.
+pub fn law_of(
+    path: &Path,
+    asked: Option<LawName>,
+    asked_stiffness: Option<f64>,
+) -> Result<LawChoice, Box<dyn std::error::Error>> {
+    let name = path.display().to_string();
+    let properties = read_properties(path)?;
+    let value = |key: &str| properties.iter().find(|(other, _)| other.eq_ignore_ascii_case(key)).map(|(_, text)| text);
+    let number = |key: &'static str| -> Result<Option<f64>, LawOfFileError> {
+        let wrong = |value: &String| LawOfFileError::NotANumber { path: name.clone(), key, value: value.clone() };
+        value(key).map(|text| text.parse().map_err(|_| wrong(text))).transpose()
+    };
+    let told = match value("law") {
+        None => None,
+        Some(law) => {
+            let word = law.to_ascii_lowercase();
+            match (word.get(..4), asked) {
+                (Some("hert"), _) => Some(LawName::Hertzian),
+                (Some("hook"), _) => Some(LawName::Hookean),
+                (Some("powe"), _) => match (number("exponent")?, asked) {
+                    (Some(exponent), _) => Some(LawName::Power(exponent)),
+                    (None, Some(LawName::Power(exponent))) => Some(LawName::Power(exponent)),
+                    (None, _) => return Err(LawOfFileError::NoExponent { path: name, law: law.clone() }.into()),
+                },
+                (_, Some(_)) => None,
+                (_, None) => return Err(LawOfFileError::UnknownLaw { path: name, law: law.clone() }.into()),
+            }
+        }
+    };
+    // A stiffness belongs to the law beside it.
+    let told_stiffness = if told.is_some() { number("stiffness")? } else { None };
+    let law = agreed(&name, "law", told, asked)?.unwrap_or(LawName::Hertzian);
+    let stiffness = agreed(&name, "stiffness", told_stiffness, asked_stiffness)?;
+    Ok(match law {
+        LawName::Hertzian => {
+            LawChoice::Hertzian(stiffness.map_or_else(Hertzian::default, |stiffness| Hertzian { stiffness }))
+        }
+        LawName::Hookean => {
+            LawChoice::Hookean(stiffness.map_or_else(Hookean::default, |stiffness| Hookean { stiffness }))
+        }
+        LawName::Power(exponent) => LawChoice::PowerLaw(PowerLaw { energy_scale: stiffness.unwrap_or(1.0), exponent }),
+    })
+}
+
+/// The one that is there; both only if they agree.
+fn agreed<T: Copy + PartialEq + std::fmt::Display>(
+    path: &str,
+    what: &'static str,
+    told: Option<T>,
+    asked: Option<T>,
+) -> Result<Option<T>, LawOfFileError> {
+    match (told, asked) {
+        (Some(file), Some(command_line)) if file != command_line => Err(LawOfFileError::Contradiction {
+            path: path.into(),
+            what,
+            file: file.to_string(),
+            command_line: command_line.to_string(),
+        }),
+        _ => Ok(told.or(asked)),
+    }
+}
