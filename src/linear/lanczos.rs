@@ -6,7 +6,7 @@
 //! ```
 //!
 //! # Source
-//! Parlett (1998), The Symmetric Eigenvalue Problem, chapter 13; "twice is enough" for the orthogonalisation, §6.9.
+//! Parlett (1998), The Symmetric Eigenvalue Problem, on Lanczos and on orthogonalising twice.
 
 use faer::{Mat, Side};
 use rand::{RngExt, SeedableRng};
