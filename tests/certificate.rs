@@ -104,20 +104,48 @@ fn the_residual_is_that_of_the_backbone_beside_its_floor() {
     let (packing, law) = (fixture("hertz_N1000_p10"), Hertzian::default());
     let network = ContactNetwork::new(&packing, &law).expect("apart");
     let found = certificate(&packing, &law);
-    let rattler = network.rattlers().next().expect("there are some");
     // LAMMPS left 1e-10 of a force of 11.
     assert!(found.relative_residual < 1e-10 && found.relative_residual > found.rounding_floor);
     assert_eq!(found.mean_contact_force, network.mean_contact_force());
-    // A rattler pushed into its neighbours is no part of it, a disk of the backbone is.
+    // A disk of the backbone that is moved counts.
     let moved = |disk: usize| {
         let mut positions = packing.positions().to_vec();
         positions[disk][0] += 1e-6;
         certificate(&Packing::new(*packing.domain(), positions, packing.radii().to_vec()).expect("a packing"), &law)
     };
-    assert_eq!(moved(rattler).relative_residual, found.relative_residual);
     let member = network.backbone.iter().position(|&member| member).expect("jammed");
     // A contact's stiffness is at least some 1e3 here, so 1e-6 makes 1e-3 of force over 11.
     assert!(moved(member).relative_residual > 1e-5);
+    // Two loose disks that press each other elsewhere do not, neither by their net force nor by that of their contact.
+    let one = between_three(1.0);
+    let positions = [one.positions(), &[[10.0, 0.0], [10.1, 0.0]]].concat();
+    let with_two = Packing::new(Domain::Open, positions, vec![0.6; 6])
+        .and_then(|packing| packing.with_held(vec![false, true, true, true, false, false]))
+        .expect("a packing");
+    let (alone, with_two) = (certificate(&one, &law), certificate(&with_two, &law));
+    assert_eq!(with_two.rattler_count, 2);
+    assert_eq!(
+        (with_two.largest_net_force, with_two.mean_contact_force),
+        (alone.largest_net_force, alone.mean_contact_force)
+    );
+}
+
+#[test]
+fn bucklers_are_disks_of_the_backbone_with_three_contacts_on_it() {
+    let law = Hertzian::default();
+    for name in ["hertz_N1000_p005", "hertz_N1000_p100"] {
+        let packing = fixture(name);
+        let network = ContactNetwork::new(&packing, &law).expect("apart");
+        let touches = |disk: usize| {
+            let ends =
+                |contact: &&jamscope::contact::Contact<2>| [contact.first, contact.second].contains(&(disk as u32));
+            network.backbone_contacts().filter(ends).count()
+        };
+        let members = (0..packing.len()).filter(|&disk| network.backbone[disk]);
+        let counted = members.filter(|&disk| touches(disk) == 3).count();
+        assert!(counted > 0);
+        assert_eq!(certificate(&packing, &law).buckler_count, counted, "{name}");
+    }
 }
 
 /// A disk between three held ones at this distance, all of radius 0.6.

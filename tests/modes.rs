@@ -127,7 +127,8 @@ fn waves<L: PairLaw>(lattice: &Lattice, cells: [usize; 2], law: &L) -> Vec<f64> 
 #[test]
 fn waves_of_a_lattice_are_found_as_often_as_they_occur() {
     fn check<L: PairLaw>(law: L) {
-        for (cells, count) in [([12, 7], 40), ([20, 11], 24), ([10, 6], 11)] {
+        let few = (1..13).flat_map(|count| [([8, 5], count), ([10, 6], count), ([7, 4], count)]);
+        for (cells, count) in [([12, 7], 40), ([20, 11], 24)].into_iter().chain(few) {
             let lattice = Lattice::triangular(0.5, 0.03).expect("neighbours touch, second ones do not");
             let packing = lattice.periodic(cells).expect("a box");
             let (exact, found) = (waves(&lattice, cells, &law), lowest(&packing, &law, count));
@@ -151,6 +152,36 @@ fn waves_of_a_lattice_are_found_as_often_as_they_occur() {
     }
     check(Hertzian { stiffness: 1.0 });
     check(Hookean { stiffness: 1.0 });
+}
+
+#[test]
+fn eight_equal_cages_have_their_softest_mode_eight_times() {
+    // A ball between six held ones, nearer along one axis than along the next: three levels, each exactly as often as there are
+    // cages, of which one run of Lanczos sees one vector each.
+    let (cages, apart) = (8, [1.0, 1.0625, 1.125]);
+    let (mut positions, mut held) = (Vec::new(), Vec::new());
+    for cage in 0..cages {
+        let middle = [4.0 * cage as f64, 0.0, 0.0];
+        positions.push(middle);
+        held.push(false);
+        for axis in 0..3 {
+            for side in [-1.0, 1.0] {
+                let mut place = middle;
+                place[axis] += side * apart[axis];
+                positions.push(place);
+                held.push(true);
+            }
+        }
+    }
+    let radii = vec![0.625; positions.len()];
+    let packing =
+        Packing::new(Domain::Open, positions, radii).and_then(|packing| packing.with_held(held)).expect("a packing");
+    // Along an axis 2 F', less 2 F/r of the other four: softest where those press hardest, along the longest.
+    let softest = 2.0 - 2.0 * (0.25 / apart[0] + 0.1875 / apart[1]);
+    let found = lowest(&packing, &Hookean { stiffness: 1.0 }, 5);
+    for mode in &found.modes {
+        assert!((mode.eigenvalue - softest).abs() < 1e-14, "{} and {softest}", mode.eigenvalue);
+    }
 }
 
 #[test]

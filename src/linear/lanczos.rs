@@ -6,7 +6,7 @@
 //! ```
 //!
 //! # Source
-//! Parlett (1998), The Symmetric Eigenvalue Problem, chapter 13; "twice is enough" for the orthogonalisation, §6.9.
+//! Parlett (1998), The Symmetric Eigenvalue Problem, on Lanczos and on orthogonalising twice.
 
 use faer::{Mat, Side};
 use rand::{RngExt, SeedableRng};
@@ -53,8 +53,8 @@ pub(super) fn largest(
         next = product;
         let left = norm(&next);
         let size = diagonal.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-        // Nothing is left: the space is one of eigenvectors. NaN ends the run as well.
-        let closed = left.is_nan() || left <= f64::EPSILON * size || basis.len() == room;
+        // Nothing is left but the rounding of the solution: the space is one of eigenvectors. NaN ends the run as well.
+        let closed = left.is_nan() || left <= FOUND * size || basis.len() == room;
         if closed || basis.len() >= look_at || basis.len() == step_limit {
             look_at = basis.len() + LOOK_EVERY.0.max(basis.len() / LOOK_EVERY.1);
             let found = pairs(&diagonal, &beside, if closed { 0.0 } else { left });

@@ -22,7 +22,7 @@
 //! the shear modulus C_xyxy − p/2.
 //!
 //! # Source
-//! Wallace (1967), Phys. Rev. 162, 776, eq. 2.24 (slopes of the stress; written there with derivatives in the Lagrangian strain,
+//! Wallace (1967), Phys. Rev. 162, 776 (slopes of the stress; written there with derivatives in the Lagrangian strain,
 //! C − (σ_ac δ_bd + …)/4). Lutsko (1989), J. Appl. Phys. 65, 2991 (the relaxation). The convention of C is that of the
 //! published constants of `fixtures/goodrich`.
 
