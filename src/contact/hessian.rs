@@ -105,7 +105,17 @@ impl<const D: usize> Hessian<D> {
     /// Takes the second derivatives anew after disks have moved; true if entries stand where they stood, so that an
     /// analysis of the matrix stays valid. The assembly must be the one given first, or one of the same packing.
     pub fn update<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) -> bool {
-        self.set_links(assembly);
+        self.update_with(assembly, |_, _, stiffness, across| (stiffness, across))
+    }
+
+    /// As [`Hessian::update`], with another stiffness along and across each contact: a function of its disks in working
+    /// order, and of its own stiffness F' and −F/r.
+    pub(crate) fn update_with<L: PairLaw>(
+        &mut self,
+        assembly: &Assembly<D, L>,
+        weights: impl Fn(u32, u32, f64, f64) -> (f64, f64),
+    ) -> bool {
+        self.set_links(assembly, weights);
         self.set_members(assembly);
         let blocks = &self.blocks;
         let pairs = self.links.iter().filter_map(|link| {
@@ -138,7 +148,7 @@ impl<const D: usize> Hessian<D> {
         same
     }
 
-    fn set_links<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
+    fn set_links<L: PairLaw>(&mut self, assembly: &Assembly<D, L>, weights: impl Fn(u32, u32, f64, f64) -> (f64, f64)) {
         let (pairs, law, prestress) = (assembly.pairs(), assembly.law(), self.prestress);
         self.links.clear();
         self.links.extend((0..pairs.len()).filter_map(|pair| {
@@ -153,6 +163,7 @@ impl<const D: usize> Hessian<D> {
                 Prestress::Included => -force / distance,
                 Prestress::LeftOut => 0.0,
             };
+            let (stiffness, across) = weights(pairs.first[pair], pairs.second[pair], stiffness, across);
             let normal = scaled(1.0 / distance, apart);
             let block = std::array::from_fn(|a| {
                 std::array::from_fn(|b| {
