@@ -49,5 +49,31 @@ fn relaxers(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// FIRE until Newton pays, then Newton, to limits that FIRE alone reaches and to one near the rounding floor.
+#[cfg(feature = "linear")]
+fn staged(criterion: &mut Criterion) {
+    let law = Hertzian::default();
+    let mut group = criterion.benchmark_group("relax");
+    group.sample_size(10);
+    for name in ["hertz_N1000_p10", "hertz_N1000_p100", "hertz_N1000_p800", "hertz_N5548_p100"] {
+        let start = inflated(name);
+        for limit in [1e-8, 1e-12] {
+            let staged = jamscope::relax::Staged { limit: ForceLimit::Relative(limit), ..Default::default() };
+            let outcome = staged.relax(start.clone(), &law, &mut ()).expect("disks apart");
+            println!(
+                "staged {name} to {limit:e}: {} force evaluations, {} factorisations, {:?}",
+                outcome.cost.force_evaluation_count, outcome.cost.factorisation_count, outcome.stop
+            );
+            group.bench_function(BenchmarkId::new(format!("staged/{name}"), limit), |bencher| {
+                bencher.iter(|| staged.relax(start.clone(), &law, &mut ()));
+            });
+        }
+    }
+    group.finish();
+}
+
+#[cfg(feature = "linear")]
+criterion_group!(benches, relaxers, staged);
+#[cfg(not(feature = "linear"))]
 criterion_group!(benches, relaxers);
 criterion_main!(benches);

@@ -82,7 +82,7 @@
 //! | feature | adds | with |
 //! |---|---|---|
 //! | `fit` | fits of a measured profile | argmin, statrs |
-//! | `linear` | Hessian, factorisations, linear response | faer |
+//! | `linear` | Hessian, factorisations, linear response, Newton | faer |
 //! | `parallel` | the samples of a scene side by side; never changes a bit of a result | rayon |
 //! | `plot` | figures and the HTML page of a report | plotters |
 //! | `cli` | the program `jamscope`, scenes from TOML | clap, toml, indicatif |
@@ -158,6 +158,9 @@ mod book {
     mod relax_fire {}
     #[doc = include_str!("../book/src/relax/damped.md")]
     mod relax_damped {}
+    #[cfg(feature = "linear")]
+    #[doc = include_str!("../book/src/relax/newton.md")]
+    mod relax_newton {}
     #[doc = include_str!("../book/src/relax/stopping.md")]
     mod relax_stopping {}
     #[doc = include_str!("../book/src/preparation.md")]

@@ -370,6 +370,13 @@ fn check_relaxer(field: &str, relaxer: &RelaxerChoice) -> Result<(), SceneError>
                 TimeStep::OfStability(share) => positive(format!("{field}.damped.time_step.of_stability"), share),
             }
         }
+        #[cfg(feature = "linear")]
+        RelaxerChoice::Newton(newton) => positive(format!("{field}.newton.largest_step"), newton.largest_step),
+        #[cfg(feature = "linear")]
+        RelaxerChoice::Staged(staged) => {
+            positive(format!("{field}.staged.hand_over"), staged.hand_over)?;
+            positive(format!("{field}.staged.largest_step"), staged.largest_step)
+        }
     }
 }
 

@@ -75,18 +75,23 @@ struct Link<const D: usize> {
     block: [Vector<D>; D],
 }
 
-/// B = F' n nᵀ − (F/r) (1 − n nᵀ) of one contact, the second part only with the prestress.
+impl Prestress {
+    /// Stiffness of a contact across its line of centres, −F/r or 0 \[force / length\].
+    pub(crate) fn across(self, force: f64, distance: f64) -> f64 {
+        match self {
+            Prestress::Included => -force / distance,
+            Prestress::LeftOut => 0.0,
+        }
+    }
+}
+
+/// B = k n nᵀ + t (1 − n nᵀ) of one contact with stiffness k along its line of centres and t across it.
 pub(crate) fn contact_block<const D: usize>(
     stiffness: f64,
-    force: f64,
+    across: f64,
     apart: Vector<D>,
     distance: f64,
-    prestress: Prestress,
 ) -> [Vector<D>; D] {
-    let across = match prestress {
-        Prestress::Included => -force / distance,
-        Prestress::LeftOut => 0.0,
-    };
     let normal = scaled(1.0 / distance, apart);
     std::array::from_fn(|a| {
         std::array::from_fn(|b| {
@@ -131,7 +136,17 @@ impl<const D: usize> Hessian<D> {
     /// Takes the second derivatives anew after disks have moved; true if entries stand where they stood, so that an
     /// analysis of the matrix stays valid. The assembly must be the one given first, or one of the same packing.
     pub fn update<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) -> bool {
-        self.set_links(assembly);
+        self.update_with(assembly, |_, _, stiffness, across| (stiffness, across))
+    }
+
+    /// As [`Hessian::update`], with another stiffness along and across each contact: a function of its disks in working
+    /// order, and of its own stiffness F' and −F/r.
+    pub(crate) fn update_with<L: PairLaw>(
+        &mut self,
+        assembly: &Assembly<D, L>,
+        weights: impl Fn(u32, u32, f64, f64) -> (f64, f64),
+    ) -> bool {
+        self.set_links(assembly, weights);
         self.set_members(assembly);
         let blocks = &self.blocks;
         let pairs = self.links.iter().filter_map(|link| {
@@ -164,7 +179,7 @@ impl<const D: usize> Hessian<D> {
         same
     }
 
-    fn set_links<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
+    fn set_links<L: PairLaw>(&mut self, assembly: &Assembly<D, L>, weights: impl Fn(u32, u32, f64, f64) -> (f64, f64)) {
         let (pairs, law, prestress) = (assembly.pairs(), assembly.law(), self.prestress);
         self.links.clear();
         self.links.extend((0..pairs.len()).filter_map(|pair| {
@@ -175,7 +190,9 @@ impl<const D: usize> Hessian<D> {
             }
             let force = law.force(pairs.coefficient[pair], overlap);
             let stiffness = if overlap.is_nan() { overlap } else { law.stiffness(force, overlap) };
-            let block = contact_block(stiffness, force, apart, distance, prestress);
+            let across = prestress.across(force, distance);
+            let (stiffness, across) = weights(pairs.first[pair], pairs.second[pair], stiffness, across);
+            let block = contact_block(stiffness, across, apart, distance);
             Some(Link { ends: (pairs.first[pair], pairs.second[pair]), block })
         }));
     }

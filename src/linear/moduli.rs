@@ -205,7 +205,7 @@ fn links<const D: usize, L: PairLaw>(network: &ContactNetwork<D>, law: &L, prest
     let link = contacts.map(|contact| {
         let (apart, distance) = (contact.separation, norm(contact.separation));
         let stiffness = law.stiffness(contact.force, contact.overlap);
-        let block = contact_block(stiffness, contact.force, apart, distance, prestress);
+        let block = contact_block(stiffness, prestress.across(contact.force, distance), apart, distance);
         Link { ends: (contact.first as usize, contact.second as usize), apart, block }
     });
     link.collect()

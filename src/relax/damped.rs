@@ -194,6 +194,7 @@ impl DampedDynamics {
             force_evaluation_count: evaluation_count,
             rebuild_count: motion.assembly.rebuild_count(),
             seconds: start.elapsed().as_secs_f64(),
+            ..Cost::default()
         };
         Ok(Outcome { state: motion.assembly.placed(packing), stop, residual, rounding_floor, cost })
     }

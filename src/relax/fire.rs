@@ -85,12 +85,23 @@ impl Relaxer for Fire {
         let start = Instant::now();
         let mut assembly = Assembly::new(&packing, *law)?;
         let mut monitor = Monitor::new(self.limit, &assembly);
-        let run = Run { settings: self, evaluation_count: 0, step_count: 0 };
-        let (stop, mut cost) = run.run(&mut assembly, &mut monitor, trace)?;
+        let (stop, mut cost) = self.run(&mut assembly, &mut monitor, trace)?;
         let (residual, rounding_floor) = monitor.finish(&assembly, &assembly.forces[..assembly.mobile_count()]);
         cost.rebuild_count = assembly.rebuild_count();
         cost.seconds = start.elapsed().as_secs_f64();
         Ok(Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost })
+    }
+}
+
+impl Fire {
+    /// Moves an assembly until the monitor stops it or the steps are used up.
+    pub(super) fn run<const D: usize, L: PairLaw>(
+        &self,
+        assembly: &mut Assembly<D, L>,
+        monitor: &mut Monitor,
+        trace: &mut impl Trace,
+    ) -> Result<(Stop, Cost), PackingError> {
+        Run { settings: self, evaluation_count: 0, step_count: 0 }.run(assembly, monitor, trace)
     }
 }
 

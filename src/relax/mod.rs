@@ -9,6 +9,12 @@ pub mod damped;
 pub mod fire;
 mod flat;
 mod monitor;
+#[cfg(feature = "linear")]
+pub mod newton;
+#[cfg(feature = "linear")]
+mod shifted;
+#[cfg(feature = "linear")]
+pub mod staged;
 
 use serde::{Deserialize, Serialize};
 
@@ -18,6 +24,10 @@ use crate::packing::{Packing, PackingError};
 pub use damped::{DampedDynamics, Motion, NetForce, TimeStep};
 pub use fire::Fire;
 pub use monitor::rounding_floor;
+#[cfg(feature = "linear")]
+pub use newton::Newton;
+#[cfg(feature = "linear")]
+pub use staged::Staged;
 
 /// When a packing counts as being at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -86,6 +96,12 @@ pub enum Stop {
     /// says nothing. (Forces alone do not tell a saddle from a minimum: disks that nothing pushes off a saddle stay there and
     /// count as at rest. The number of negative eigenvalues tells, see `linear`.)
     NoMinimum,
+    /// The factors of Newton's matrix do not fit in memory.
+    #[cfg(feature = "linear")]
+    OutOfMemory,
+    /// No step of Newton's, however short, lowers the energy, and the residual is above what rounding makes.
+    #[cfg(feature = "linear")]
+    NoDescent,
 }
 
 /// How far from equilibrium a state is.
@@ -129,9 +145,16 @@ pub struct Cost {
     pub force_evaluation_count: usize,
     /// Neighbour lists made.
     pub rebuild_count: usize,
+    /// Sparse factorisations tried, by the relaxers that make them; not written where there are none.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub factorisation_count: usize,
     /// Wall time \[s\]; never written where two runs must agree to the byte.
     #[serde(skip)]
     pub seconds: f64,
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 impl Cost {
@@ -141,6 +164,7 @@ impl Cost {
             step_count: self.step_count + other.step_count,
             force_evaluation_count: self.force_evaluation_count + other.force_evaluation_count,
             rebuild_count: self.rebuild_count + other.rebuild_count,
+            factorisation_count: self.factorisation_count + other.factorisation_count,
             seconds: self.seconds + other.seconds,
         }
     }
@@ -232,6 +256,12 @@ pub enum RelaxerChoice {
     Fire(Fire),
     /// [`DampedDynamics`].
     Damped(DampedDynamics),
+    /// [`Newton`].
+    #[cfg(feature = "linear")]
+    Newton(Newton),
+    /// [`Staged`].
+    #[cfg(feature = "linear")]
+    Staged(Staged),
 }
 
 impl Default for RelaxerChoice {
@@ -246,6 +276,10 @@ impl RelaxerChoice {
         match self {
             RelaxerChoice::Fire(fire) => fire.limit,
             RelaxerChoice::Damped(damped) => damped.limit,
+            #[cfg(feature = "linear")]
+            RelaxerChoice::Newton(newton) => newton.limit,
+            #[cfg(feature = "linear")]
+            RelaxerChoice::Staged(staged) => staged.limit,
         }
     }
 
@@ -257,6 +291,10 @@ impl RelaxerChoice {
                 NetForce::Elastic => "damped dynamics",
                 NetForce::Total => "damped, total force",
             },
+            #[cfg(feature = "linear")]
+            RelaxerChoice::Newton(_) => "Newton",
+            #[cfg(feature = "linear")]
+            RelaxerChoice::Staged(_) => "FIRE, then Newton",
         }
     }
 }
@@ -271,6 +309,10 @@ impl Relaxer for RelaxerChoice {
         match self {
             RelaxerChoice::Fire(fire) => fire.relax(packing, law, trace),
             RelaxerChoice::Damped(damped) => damped.relax(packing, law, trace),
+            #[cfg(feature = "linear")]
+            RelaxerChoice::Newton(newton) => newton.relax(packing, law, trace),
+            #[cfg(feature = "linear")]
+            RelaxerChoice::Staged(staged) => staged.relax(packing, law, trace),
         }
     }
 }

@@ -10,15 +10,24 @@ use crate::vector::{Vector, dot, larger};
 /// Evaluations between two looks at the residual. An evaluation with a look costs half as much again.
 pub const LOOK_EVERY: usize = 20;
 
-/// Looks after which the backbone is determined anew even if nothing suggests convergence.
-const REFRESH_EVERY: usize = 10;
+/// The watch of relaxers whose steps cost one evaluation.
+const WATCH: Watch = Watch { refresh_every: 10, patience: 150, waits_for_rattlers: false };
 
-/// Looks without progress near the rounding floor after which it counts as reached.
-const PATIENCE: usize = 150;
+/// How often a monitor does what costs time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Watch {
+    /// Looks after which the backbone is determined anew even if nothing suggests convergence.
+    pub refresh_every: usize,
+    /// Looks without progress near the rounding floor after which it counts as reached.
+    pub patience: usize,
+    /// Whether a backbone within its limit waits for rattlers at the floor, however long they take.
+    pub waits_for_rattlers: bool,
+}
 
 /// Watches one relaxation.
 pub struct Monitor {
     limit: ForceLimit,
+    watch: Watch,
     unjammed_force: f64,
     /// Way from a site that ends the relaxation; infinite unless the law pushes disks from theirs.
     farthest: f64,
@@ -34,6 +43,11 @@ pub struct Monitor {
 impl Monitor {
     /// A watch with this limit.
     pub fn new<const D: usize, L: PairLaw>(limit: ForceLimit, assembly: &Assembly<D, L>) -> Self {
+        Monitor::with(limit, WATCH, assembly)
+    }
+
+    /// A watch with this limit for steps of another cost.
+    pub fn with<const D: usize, L: PairLaw>(limit: ForceLimit, watch: Watch, assembly: &Assembly<D, L>) -> Self {
         let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
         let unjammed_force = UNJAMMED_FORCE * assembly.law().force_scale(radius);
         let pushed = L::ON_SITE && assembly.law().on_site_coupling() > 0.0;
@@ -41,6 +55,7 @@ impl Monitor {
             if pushed { RUNAWAY * assembly.radii().iter().copied().fold(0.0, f64::max) } else { f64::INFINITY };
         Monitor {
             limit,
+            watch,
             // Who asks for less than what counts as no force gets it.
             unjammed_force: match limit {
                 ForceLimit::Absolute(limit) => unjammed_force.min(limit),
@@ -81,7 +96,7 @@ impl Monitor {
             return Some(Stop::Converged(Criterion::Unjammed));
         }
         let promising = self.within(inner, mean);
-        let due = promising || self.look_count.is_multiple_of(REFRESH_EVERY) || self.look_count == 1;
+        let due = promising || self.look_count.is_multiple_of(self.watch.refresh_every) || self.look_count == 1;
         let converged = if due { self.refresh(assembly, net_forces) } else { None };
         if converged.is_some() {
             return converged;
@@ -160,7 +175,26 @@ impl Monitor {
         }
         // Without a backbone the residual is 0 and says nothing.
         let told = self.last.largest_net_force > 0.0;
-        told && residual <= 16.0 * self.floor && self.look_count - self.best_look >= PATIENCE
+        told && self.near_the_floor() && self.look_count - self.best_look >= self.watch.patience
+    }
+
+    /// Whether the residual of the last look is one that rounding may make, and not one that only waits for rattlers.
+    pub fn near_the_floor(&self) -> bool {
+        let waits =
+            self.watch.waits_for_rattlers && self.within(self.last.largest_net_force, self.last.mean_contact_force);
+        self.last.relative() <= 16.0 * self.floor && !waits
+    }
+
+    /// Whether each disk, in working order, counted for the last residual.
+    #[cfg(feature = "linear")]
+    pub fn backbone(&self) -> &[bool] {
+        &self.backbone
+    }
+
+    /// The residual of the last look.
+    #[cfg(feature = "linear")]
+    pub fn residual(&self) -> Residual {
+        self.last
     }
 
     /// Whether the rounding of displacements from the anchors is felt, so that the caller should re-anchor; asked once a look.

@@ -139,7 +139,8 @@ fn preparation(report: &Report, samples: &[SampleReport], times: Times) -> Secti
         .add("relaxations", |it| Some(count(it.packing.relaxation_count)))
         .add("at rest by", |it| Some(criterion(&it.packing.rest).into()))
         .add("residual / rounding floor", |it| Some(residual(&it.packing.rest)))
-        .add("force evaluations", |it| Some(count(it.packing.rest.cost.force_evaluation_count)));
+        .add("force evaluations", |it| Some(count(it.packing.rest.cost.force_evaluation_count)))
+        .add("factorisations", |it| factorisations(&it.packing.rest));
     if times == Times::Shown {
         rows.add("wall time [s]", |it| Some(significant(it.packing.rest.cost.seconds, 3)));
     }
@@ -167,7 +168,10 @@ fn inflation(report: &Report, samples: &[SampleReport], times: Times) -> Section
         .add("force evaluations after", |it| Some(count(it.inflation.after.rest.cost.force_evaluation_count)))
         .add("force evaluations deflated", |it| {
             it.inflation.deflated.as_ref().map(|state| count(state.rest.cost.force_evaluation_count))
-        });
+        })
+        .add("factorisations before", |it| factorisations(&it.inflation.before.rest))
+        .add("factorisations after", |it| factorisations(&it.inflation.after.rest))
+        .add("factorisations deflated", |it| factorisations(&it.inflation.deflated.as_ref()?.rest));
     if times == Times::Shown {
         rows.add("wall time [s]", |it| Some(significant(inflation_seconds(it), 3)));
     }
@@ -363,6 +367,12 @@ fn scaled_label(exponent: f64) -> String {
     } else {
         format!("Δp/p^{0} [(force/length)^{1}]", significant(exponent, 3), significant(1.0 - exponent, 3))
     }
+}
+
+/// Factorisations, where the relaxer made any.
+fn factorisations(rest: &RestSummary) -> Option<String> {
+    let made = rest.cost.factorisation_count;
+    (made > 0).then(|| count(made))
 }
 
 fn criterion(rest: &RestSummary) -> &'static str {

@@ -1,0 +1,118 @@
+//! When FIRE should hand a packing over to Newton: work and time of the staged relaxer over those of FIRE alone.
+//!
+//! ```text
+//! cargo run --release --example hand_over -- [NAME] ...          (stored Hertzian packings, four centres each)
+//! cargo run --release --example hand_over -- DISKS PRESSURE ...  (packings prepared first, one centre each)
+//! ```
+//!
+//! The centre of each packing is inflated by 0.1 in a circle with a held rim and the rest relaxed to 10⁻¹² of the mean contact
+//! force, by FIRE alone and by the staged relaxer with hand-overs from 10⁻¹ to 10⁻⁶. Evaluations and factorisations are
+//! sums over the centres (the most factorisations of one centre beside them), times are over that of FIRE to 10⁻¹².
+
+use std::error::Error;
+
+use jamscope::contact::{ContactNetwork, Hertzian};
+use jamscope::inflation::{Centre, Circle, choose_centre};
+use jamscope::io::read_packing;
+use jamscope::packing::{Mixture, Packing};
+use jamscope::preparation::{Preparation, Target, prepare};
+use jamscope::relax::{Cost, Fire, ForceLimit, Outcome, Relaxer, Staged, Stop};
+
+/// Stored packings if none is named.
+const STORED: [&str; 7] = [
+    "hertz_N1000_p1",
+    "hertz_N1000_p10",
+    "hertz_N1000_p100",
+    "hertz_N1000_p800",
+    "hertz_N5548_p1",
+    "hertz_N5548_p10",
+    "hertz_N5548_p100",
+];
+
+const LIMIT: ForceLimit = ForceLimit::Relative(1e-12);
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let law = Hertzian::default();
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    println!(
+        "{:<18} {:>9} {:>12} {:>7} {:>5} {:>6} {:>9} {:>9}  stop",
+        "packing", "hand-over", "evaluations", "factor.", "most", "time", "residual", "floor"
+    );
+    if let Some(Ok(disk_count)) = arguments.first().map(|first| first.parse::<usize>()) {
+        for text in &arguments[1..] {
+            let pressure = text.parse()?;
+            let preparation = Preparation {
+                disk_count,
+                mixture: Mixture::default(),
+                target: Target::Pressure(pressure),
+                tolerance: 0.2,
+                seed: 1,
+            };
+            let coarse = Staged { limit: ForceLimit::Relative(1e-6), ..Staged::default() };
+            let prepared = prepare::<2, _>(&preparation, &law, &coarse, &mut ())?;
+            let name = format!("{disk_count} at {:.3}", prepared.pressure);
+            let start = inflated(prepared.packing.get(), 1)?;
+            table(&name, &[start], &[1e-4], &law)?;
+        }
+    } else {
+        let names: Vec<&str> =
+            if arguments.is_empty() { STORED.to_vec() } else { arguments.iter().map(String::as_str).collect() };
+        for name in names {
+            let packing = read_packing::<2>(format!("{}/fixtures/packings/{name}.xyz", env!("CARGO_MANIFEST_DIR")))?;
+            let starts = (1..=4).map(|seed| inflated(&packing, seed)).collect::<Result<Vec<_>, _>>()?;
+            table(name, &starts, &[1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6], &law)?;
+        }
+    }
+    Ok(())
+}
+
+/// The packing cut to a circle around a small disk of its backbone, which has grown by 0.1.
+fn inflated(packing: &Packing<2>, seed: u64) -> Result<Packing<2>, Box<dyn Error>> {
+    let chosen = choose_centre(packing, &Hertzian::default(), Centre::Backbone, seed)?;
+    let side = packing.domain().lengths().ok_or("the packing is not periodic")?[0];
+    let circle = Circle::cut(packing, chosen, 0.48 * side)?;
+    let radius = circle.packing.radii()[circle.centre];
+    Ok(circle.packing.with_radius(circle.centre, radius + 0.1)?)
+}
+
+fn table(name: &str, starts: &[Packing<2>], hand_overs: &[f64], law: &Hertzian) -> Result<(), Box<dyn Error>> {
+    let fire = Fire { limit: LIMIT, ..Fire::default() };
+    let alone = row(name, "FIRE", starts, &fire, law, None)?;
+    for &hand_over in hand_overs {
+        let staged = Staged { limit: LIMIT, hand_over, ..Staged::default() };
+        row(name, &format!("{hand_over:.0e}"), starts, &staged, law, Some(alone))?;
+    }
+    Ok(())
+}
+
+/// Relaxes all starts and prints what that took; the seconds.
+fn row(
+    name: &str,
+    what: &str,
+    starts: &[Packing<2>],
+    relaxer: &impl Relaxer,
+    law: &Hertzian,
+    alone: Option<f64>,
+) -> Result<f64, Box<dyn Error>> {
+    let (mut cost, mut most, mut residual, mut floor, mut stops) = (Cost::default(), 0, 0.0f64, 0.0f64, Vec::new());
+    for start in starts {
+        let outcome: Outcome<Packing<2>> = relaxer.relax(start.clone(), law, &mut ())?;
+        let network = ContactNetwork::new(&outcome.state, law)?;
+        assert!(network.backbone_count() > 0, "{name}: the packing is unjammed");
+        cost = cost.plus(outcome.cost);
+        most = most.max(outcome.cost.factorisation_count);
+        residual = residual.max(outcome.residual.relative());
+        floor = floor.max(outcome.rounding_floor);
+        if !matches!(outcome.stop, Stop::Converged(_)) {
+            stops.push(format!("{:?}", outcome.stop));
+        }
+    }
+    let stops = if stops.is_empty() { "all converged".to_string() } else { stops.join(", ") };
+    println!(
+        "{name:<18} {what:>9} {:>12} {:>7} {most:>5} {:>6.2} {residual:>9.1e} {floor:>9.1e}  {stops}",
+        cost.force_evaluation_count,
+        cost.factorisation_count,
+        cost.seconds / alone.unwrap_or(cost.seconds),
+    );
+    Ok(cost.seconds)
+}

@@ -1,0 +1,154 @@
+//! The Newton step of a packing: its Hessian with a shift that makes it positive definite, factorised and solved.
+//!
+//! ```text
+//! (K' + S) s = F        S_ii = θ p_i + ε k_i on the backbone,  θ p_i + (η + θ) k_i off it
+//! p_i = Σ_j 2 F/r (+ Γ if positive)        k_i = Σ_j 2 F'        a contact with a held disk counts once
+//! ```
+//!
+//! K' is the Hessian, but for contacts of disks off the backbone. At rest those carry no force. Their forces grow as
+//! δ^(α−1), so Newton's own step would leave (1 − 1/(α−1)) of such an overlap for ever, a third for Hertzian contacts; with
+//! the secant stiffness F/δ for F', and no prestress, it is gone at once.
+//!
+//! The only negative parts of K' are the prestress −F/r across contacts and −Γ of sites, and p_i are Gershgorin's rows of
+//! them: with θ = 1 the matrix is positive definite whatever the packing (to the change of r since the anchors). So θ, from
+//! 0 upwards, is the whole of the globalisation, and it has no unit. ε k_i holds what nothing else holds, such as the
+//! translations of a periodic box; (η + θ) k_i a rattler along directions in which none of its contacts does, so that it does
+//! not run into its neighbours.
+
+use crate::contact::assembly::Assembly;
+use crate::contact::forces::stiffness_rows;
+use crate::contact::hessian::{Hessian, Members, Prestress};
+use crate::contact::law::PairLaw;
+use crate::linear::{Analysis, LinearError};
+use crate::sparse::SymmetricMatrix;
+use crate::vector::{Vector, norm, scaled};
+
+/// ε: far below the softest mode over the stiffest (10⁻⁷ near jamming), far above the rounding of a pivot (10⁻¹⁴).
+const GROUND: f64 = 1e-10;
+
+/// Largest η: about what remains of the overlap of a rattler after a step. η is the net force of the rattler over the mean
+/// contact force, at most this: a rattler that is almost free has little way to go, however steep the wedge it leaves.
+const OFF_BACKBONE: f64 = 1e-4;
+
+/// What became of a factorisation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Solved {
+    /// There is a step.
+    Step,
+    /// The matrix is not positive definite, or not to rounding.
+    Indefinite,
+    /// Its factors do not fit in memory.
+    OutOfMemory,
+}
+
+/// The shifted Hessian; its buffers and, while entries stand where they stood, its analysis are kept.
+pub struct Shifted<const D: usize> {
+    hessian: Hessian<D>,
+    matrix: SymmetricMatrix,
+    analysis: Option<Analysis>,
+    prestress: Vec<f64>,
+    stiffness: Vec<f64>,
+    right_side: Vec<f64>,
+    unknowns: Vec<f64>,
+    /// Factorisations tried.
+    pub factorisation_count: usize,
+    /// The step of each mobile disk.
+    pub step: Vec<Vector<D>>,
+}
+
+impl<const D: usize> Shifted<D> {
+    /// Buffers for an assembly; [`Shifted::update`] fills them.
+    pub fn new<L: PairLaw>(assembly: &Assembly<D, L>) -> Self {
+        Shifted {
+            hessian: Hessian::of(assembly, Members::InContact, Prestress::Included),
+            matrix: SymmetricMatrix::default(),
+            analysis: None,
+            prestress: vec![0.0; assembly.len()],
+            stiffness: vec![0.0; assembly.len()],
+            right_side: Vec::new(),
+            unknowns: Vec::new(),
+            factorisation_count: 0,
+            step: vec![[0.0; D]; assembly.mobile_count()],
+        }
+    }
+
+    /// Takes the Hessian at the present displacements.
+    pub fn update<L: PairLaw>(&mut self, assembly: &Assembly<D, L>, backbone: &[bool]) {
+        let power = assembly.law().exponent() - 1.0;
+        let weights = |first: u32, second: u32, stiffness: f64, across: f64| {
+            if backbone[first as usize] && backbone[second as usize] {
+                (stiffness, across)
+            } else {
+                (stiffness / power, 0.0)
+            }
+        };
+        if !self.hessian.update_with(assembly, weights) {
+            self.analysis = None;
+        }
+        self.set_rows(assembly);
+    }
+
+    fn set_rows<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
+        let (law, pairs, mobile) = (assembly.law(), assembly.pairs(), assembly.mobile_count());
+        let power = law.exponent() - 1.0;
+        let displacements = &assembly.displacements;
+        // F = F' δ / (α − 1).
+        let across = |pair: usize, overlap: f64, stiffness: f64| stiffness * overlap / (power * pairs.distance[pair]);
+        stiffness_rows(law, pairs, displacements, mobile, across, &mut self.prestress);
+        stiffness_rows(law, pairs, displacements, mobile, |_, _, stiffness| stiffness, &mut self.stiffness);
+        if L::ON_SITE && law.on_site_coupling() > 0.0 {
+            self.prestress.iter_mut().for_each(|row| *row += law.on_site_coupling());
+        }
+    }
+
+    /// Solves for the step under the forces of the last evaluation.
+    pub fn solve<L: PairLaw>(&mut self, assembly: &Assembly<D, L>, backbone: &[bool], mean: f64, shift: f64) -> Solved {
+        let coupling = assembly.law().on_site_coupling().abs();
+        for (step, &force) in self.step.iter_mut().zip(&assembly.forces) {
+            // Disks without rows feel their site at most.
+            *step = if L::ON_SITE && coupling > 0.0 { scaled(1.0 / coupling, force) } else { [0.0; D] };
+        }
+        if self.hessian.matrix().dimension() == 0 {
+            return Solved::Step;
+        }
+        self.matrix.clone_from(self.hessian.matrix());
+        self.right_side.clear();
+        self.right_side.resize(self.matrix.dimension(), 0.0);
+        for disk in 0..assembly.mobile_count() {
+            let Some(row) = self.hessian.row_of(disk as u32) else { continue };
+            let ground = if backbone[disk] {
+                GROUND
+            } else {
+                let force = norm(assembly.forces[disk]) / mean;
+                shift + if force < OFF_BACKBONE { force.max(GROUND) } else { OFF_BACKBONE }
+            };
+            let value = shift * self.prestress[disk] + ground * self.stiffness[disk];
+            for d in 0..D {
+                // The first entry of a column is the one on the diagonal.
+                self.matrix.values[self.matrix.starts[row + d]] += value;
+                self.right_side[row + d] = assembly.forces[disk][d];
+            }
+        }
+        match self.factorise_and_solve() {
+            Ok(()) => {}
+            Err(LinearError::OutOfMemory { .. }) => return Solved::OutOfMemory,
+            Err(_) => return Solved::Indefinite,
+        }
+        for (disk, step) in self.step.iter_mut().enumerate() {
+            if let Some(row) = self.hessian.row_of(disk as u32) {
+                *step = std::array::from_fn(|d| self.unknowns[row + d]);
+            }
+        }
+        Solved::Step
+    }
+
+    fn factorise_and_solve(&mut self) -> Result<(), LinearError> {
+        let analysis = match &mut self.analysis {
+            Some(analysis) => analysis,
+            empty => empty.insert(Analysis::new(&self.matrix)?),
+        };
+        self.factorisation_count += 1;
+        self.unknowns.resize(self.right_side.len(), 0.0);
+        analysis.cholesky(&self.matrix)?.solve(&self.right_side, &mut self.unknowns).map(|_| ())
+    }
+}
