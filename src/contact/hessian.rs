@@ -68,6 +68,21 @@ pub struct Hessian<const D: usize> {
 /// No block row.
 const NONE: u32 = u32::MAX;
 
+/// A contact about to enter the matrix.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StiffContact {
+    /// Its place in the neighbour list.
+    pub pair: usize,
+    /// Its disks in working order.
+    pub ends: (u32, u32),
+    /// δ, negative for a gap \[length\].
+    pub overlap: f64,
+    /// F', along the line of centres \[force / length\].
+    pub stiffness: f64,
+    /// −F/r, across it; 0 without prestress \[force / length\].
+    pub across: f64,
+}
+
 /// A contact: its disks in working order, and its block B.
 #[derive(Debug, Clone, Copy)]
 struct Link<const D: usize> {
@@ -136,17 +151,18 @@ impl<const D: usize> Hessian<D> {
     /// Takes the second derivatives anew after disks have moved; true if entries stand where they stood, so that an
     /// analysis of the matrix stays valid. The assembly must be the one given first, or one of the same packing.
     pub fn update<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) -> bool {
-        self.update_with(assembly, |_, _, stiffness, across| (stiffness, across))
+        self.update_with(assembly, |_| 0.0, |contact| (contact.stiffness, contact.across))
     }
 
-    /// As [`Hessian::update`], with another stiffness along and across each contact: a function of its disks in working
-    /// order, and of its own stiffness F' and −F/r.
+    /// As [`Hessian::update`], with another stiffness along and across each contact, and with pairs of the list whose gap is
+    /// below `reach` among them.
     pub(crate) fn update_with<L: PairLaw>(
         &mut self,
         assembly: &Assembly<D, L>,
-        weights: impl Fn(u32, u32, f64, f64) -> (f64, f64),
+        reach: impl Fn(usize) -> f64,
+        weights: impl Fn(&StiffContact) -> (f64, f64),
     ) -> bool {
-        self.set_links(assembly, weights);
+        self.set_links(assembly, reach, weights);
         self.set_members(assembly);
         let blocks = &self.blocks;
         let pairs = self.links.iter().filter_map(|link| {
@@ -179,21 +195,27 @@ impl<const D: usize> Hessian<D> {
         same
     }
 
-    fn set_links<L: PairLaw>(&mut self, assembly: &Assembly<D, L>, weights: impl Fn(u32, u32, f64, f64) -> (f64, f64)) {
+    fn set_links<L: PairLaw>(
+        &mut self,
+        assembly: &Assembly<D, L>,
+        reach: impl Fn(usize) -> f64,
+        weights: impl Fn(&StiffContact) -> (f64, f64),
+    ) {
         let (pairs, law, prestress) = (assembly.pairs(), assembly.law(), self.prestress);
         self.links.clear();
         self.links.extend((0..pairs.len()).filter_map(|pair| {
             let (apart, distance, overlap) = geometry(pairs, pair, &assembly.displacements);
             // Written so that NaN becomes an entry, and is refused there.
-            if overlap <= 0.0 {
+            if overlap <= -reach(pair) {
                 return None;
             }
-            let force = law.force(pairs.coefficient[pair], overlap);
+            let force = if overlap < 0.0 { 0.0 } else { law.force(pairs.coefficient[pair], overlap) };
             let stiffness = if overlap.is_nan() { overlap } else { law.stiffness(force, overlap) };
             let across = prestress.across(force, distance);
-            let (stiffness, across) = weights(pairs.first[pair], pairs.second[pair], stiffness, across);
+            let ends = (pairs.first[pair], pairs.second[pair]);
+            let (stiffness, across) = weights(&StiffContact { pair, ends, overlap, stiffness, across });
             let block = contact_block(stiffness, across, apart, distance);
-            Some(Link { ends: (pairs.first[pair], pairs.second[pair]), block })
+            Some(Link { ends, block })
         }));
     }
 

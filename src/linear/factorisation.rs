@@ -156,6 +156,22 @@ impl Analysis {
         }
     }
 
+    /// Whether a matrix of this pattern has a factor L Lᵀ; it is in the buffer then.
+    pub(crate) fn has_cholesky(&mut self, matrix: &SymmetricMatrix) -> bool {
+        self.check(matrix).is_ok() && self.factorise_definite(matrix).is_ok()
+    }
+
+    /// The factor that [`Analysis::has_cholesky`] has just made of this matrix.
+    ///
+    /// # Errors
+    /// Singular to rounding.
+    pub(crate) fn factorised_cholesky<'a>(
+        &'a mut self,
+        matrix: &'a SymmetricMatrix,
+    ) -> Result<Factorisation<'a>, LinearError> {
+        self.factorised(matrix, true)
+    }
+
     /// L D Lᵀ.
     ///
     /// # Errors
@@ -328,6 +344,15 @@ impl Factorisation<'_> {
         } else {
             Err(LinearError::NotAccurate { backward_error, refinement_count })
         }
+    }
+
+    /// Solves A x = b with the factor alone: backward error of a Cholesky factor, not told.
+    ///
+    /// # Panics
+    /// If a length differs from the dimension.
+    pub(crate) fn solve_unrefined(&mut self, right_side: &[f64], solution: &mut [f64]) {
+        solution.copy_from_slice(right_side);
+        self.solve_once(solution);
     }
 
     fn solve_once(&mut self, x: &mut [f64]) {

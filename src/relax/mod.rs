@@ -10,6 +10,8 @@ pub mod fire;
 mod flat;
 mod monitor;
 #[cfg(feature = "linear")]
+pub mod implicit;
+#[cfg(feature = "linear")]
 pub mod newton;
 #[cfg(feature = "linear")]
 mod shifted;
@@ -23,6 +25,8 @@ use crate::packing::{Packing, PackingError};
 
 pub use damped::{DampedDynamics, Motion, NetForce, TimeStep};
 pub use fire::Fire;
+#[cfg(feature = "linear")]
+pub use implicit::{GradientFlow, ImplicitDynamics};
 pub use monitor::rounding_floor;
 #[cfg(feature = "linear")]
 pub use newton::Newton;
@@ -141,6 +145,9 @@ pub struct Outcome<T> {
 pub struct Cost {
     /// Steps taken.
     pub step_count: usize,
+    /// Steps among them whose error was too large, so that they were repeated; not written where there are none.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub rejected_count: usize,
     /// Evaluations of all forces.
     pub force_evaluation_count: usize,
     /// Neighbour lists made.
@@ -162,6 +169,7 @@ impl Cost {
     pub fn plus(self, other: Cost) -> Cost {
         Cost {
             step_count: self.step_count + other.step_count,
+            rejected_count: self.rejected_count + other.rejected_count,
             force_evaluation_count: self.force_evaluation_count + other.force_evaluation_count,
             rebuild_count: self.rebuild_count + other.rebuild_count,
             factorisation_count: self.factorisation_count + other.factorisation_count,

@@ -17,7 +17,7 @@
 
 use crate::contact::assembly::Assembly;
 use crate::contact::forces::stiffness_rows;
-use crate::contact::hessian::{Hessian, Members, Prestress};
+use crate::contact::hessian::{Hessian, Members, Prestress, StiffContact};
 use crate::contact::law::PairLaw;
 use crate::linear::{Analysis, LinearError};
 use crate::sparse::SymmetricMatrix;
@@ -75,14 +75,14 @@ impl<const D: usize> Shifted<D> {
     /// Takes the Hessian at the present displacements.
     pub fn update<L: PairLaw>(&mut self, assembly: &Assembly<D, L>, backbone: &[bool]) {
         let power = assembly.law().exponent() - 1.0;
-        let weights = |first: u32, second: u32, stiffness: f64, across: f64| {
-            if backbone[first as usize] && backbone[second as usize] {
-                (stiffness, across)
+        let weights = |contact: &StiffContact| {
+            if backbone[contact.ends.0 as usize] && backbone[contact.ends.1 as usize] {
+                (contact.stiffness, contact.across)
             } else {
-                (stiffness / power, 0.0)
+                (contact.stiffness / power, 0.0)
             }
         };
-        if !self.hessian.update_with(assembly, weights) {
+        if !self.hessian.update_with(assembly, |_| 0.0, weights) {
             self.analysis = None;
         }
         self.set_rows(assembly);

@@ -1,0 +1,481 @@
+//! [`ImplicitMotion`]: disks in damped motion, moved by one long step of a linearly implicit method at a time.
+//!
+//! ```text
+//! u̇ = v        m v̇ = F(u) − ζ v − Σ c_ij (n·v_ij) n        Ẇ = ζ v² + Σ c_ij (n·v_ij)²
+//! (m/(hγ)² + (ζ + C)/(hγ) + K) U_i = r_v + (m/(hγ) + ζ + C) r_u        r_u, r_v the right sides of the stage
+//! ```
+//!
+//! C is the matrix of the contact damping, K the [`Hessian`]; m = 1, ζ = 0 for damped dynamics, m = 0, C = 0 for gradient
+//! flow, which then has no velocities. The matrix is symmetric, and one factorisation serves all stages. What it leaves out
+//! (how C turns and grows with u, contacts that close during the step) costs no order: see [`super::tableau`]. It is
+//! positive definite but for the prestress in K, which is left out where it would not be. Where the mass term dominates,
+//! the diagonal and an incomplete factor are enough, and conjugate gradients need a few products.
+
+use crate::contact::PairLaw;
+use crate::contact::assembly::Assembly;
+use crate::contact::damping::DampingLaw;
+use crate::contact::forces::{Totals, add_damping, geometry};
+use crate::contact::hessian::{Hessian, Members, Prestress};
+use crate::linear::iterative::{IncompleteFactor, IterationLimits, conjugate_gradients};
+use crate::linear::{Analysis, LinearError};
+use crate::packing::{Packing, PackingError};
+use crate::relax::flat::products;
+use crate::relax::implicit::tableau::{ROS34PW2, STAGE_COUNT};
+use crate::sparse::SymmetricMatrix;
+use crate::vector::{Vector, difference, dot, larger, scaled, sum};
+
+/// What resists motion beside the contacts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Inertia {
+    /// Masses 1, no friction: damped dynamics.
+    Massive,
+    /// No masses, friction ζ on every disk: gradient flow \[force / velocity\].
+    Friction(f64),
+}
+
+/// What a step came to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stepped<const D: usize> {
+    /// The disks are where the step ends.
+    Moved(Totals<D>),
+    /// The factors of its matrix do not fit in memory; nothing has moved.
+    OutOfMemory,
+    /// The matrix is not positive definite: the step is so long that it would pass over a motion that grows, away from a
+    /// saddle; nothing has moved.
+    Indefinite,
+}
+
+/// Work of a motion so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Work {
+    /// Evaluations of forces and damping.
+    pub evaluation_count: usize,
+    /// Sparse factorisations tried.
+    pub factorisation_count: usize,
+    /// Iterations of conjugate gradients.
+    pub iteration_count: usize,
+    /// Steps over whose start the set of contacts had changed since the start of the step before.
+    pub contact_change_count: usize,
+}
+
+/// A touching pair that dissipates.
+#[derive(Debug, Clone, Copy)]
+struct Damper<const D: usize> {
+    ends: (u32, u32),
+    normal: Vector<D>,
+    damping: f64,
+}
+
+/// One stage: U of positions, of velocities and of the work of damping.
+#[derive(Debug, Clone, Default)]
+struct Stage<const D: usize> {
+    way: Vec<Vector<D>>,
+    kick: Vec<Vector<D>>,
+    work: f64,
+}
+
+/// Condition of the matrix, by its rows, up to which conjugate gradients are used.
+thread_local!{static IB: f64 = std::env::var("IB").map_or(10.0, |s| s.parse().unwrap());static IT: f64 = std::env::var("IT").map_or(1e-8, |s| s.parse().unwrap());}
+
+/// Accuracy of their solutions: the change of a stage is known to about this, far below any tolerance of a step.
+
+
+/// A packing in motion under elastic and damping forces.
+pub struct ImplicitMotion<const D: usize, L, C> {
+    /// Where the disks are, and the elastic forces.
+    pub assembly: Assembly<D, L>,
+    /// Velocities of the mobile disks in working order; 0 for gradient flow.
+    pub velocities: Vec<Vector<D>>,
+    /// Work of damping and friction since the start \[energy\].
+    pub dissipated: f64,
+    /// Time since the start.
+    pub time: f64,
+    /// Work so far.
+    pub work: Work,
+    /// How much nearer disks are taken to be in the matrix of a step than they are at its start \[length\]: contacts that
+    /// close on the way are in it then, and no step is unstable for want of them.
+    pub margin: f64,
+    /// Ways.
+    pub ways: Vec<f64>,
+    pub factor: f64,
+    /// Whether the prestress of contacts between two such disks is in the matrix, one a disk in working order; all at first.
+    pub prestressed: Vec<bool>,
+    inertia: Inertia,
+    damping: C,
+    damping_coefficient: Vec<f64>,
+    /// Elastic and damping forces at the present positions and velocities.
+    net_forces: Vec<Vector<D>>,
+    dissipation: f64,
+    hessian: Hessian<D>,
+    matrix: SymmetricMatrix,
+    analysis: Option<Analysis>,
+    pair_damping: Vec<f64>,
+    margins: Vec<f64>,
+    dampers: Vec<Damper<D>>,
+    stages: [Stage<D>; STAGE_COUNT],
+    before: Before<D>,
+    all_velocities: Vec<Vector<D>>,
+    carried: Vec<Vector<D>>,
+    right_side: Vec<f64>,
+    unknowns: Vec<f64>,
+}
+
+/// What a step that is taken back has to put back.
+#[derive(Debug, Clone, Default)]
+struct Before<const D: usize> {
+    velocities: Vec<Vector<D>>,
+    net_forces: Vec<Vector<D>>,
+    forces: Vec<Vector<D>>,
+    dissipated: f64,
+    dissipation: f64,
+    time: f64,
+}
+
+/// How the stages of one step are solved.
+enum Solver<'a> {
+    Factor(crate::linear::Factorisation<'a>),
+    Iterate(IncompleteFactor, &'a SymmetricMatrix),
+}
+
+impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
+    /// A packing at rest. A `damping` without rate belongs to gradient flow.
+    ///
+    /// # Errors
+    /// As [`Assembly::new`].
+    pub fn new(packing: &Packing<D>, law: &L, damping: &C, inertia: Inertia) -> Result<Self, PackingError> {
+        let assembly = Assembly::new(packing, *law)?;
+        let mobile = assembly.mobile_count();
+        let zero = vec![[0.0; D]; mobile];
+        let mut motion = ImplicitMotion {
+            velocities: zero.clone(),
+            dissipated: 0.0,
+            time: 0.0,
+            work: Work::default(),
+            margin: 0.0,
+            ways: vec![f64::INFINITY; mobile], factor: 3.0,
+            prestressed: vec![true; assembly.len()],
+            inertia,
+            damping: *damping,
+            damping_coefficient: Vec::new(),
+            net_forces: zero.clone(),
+            dissipation: 0.0,
+            hessian: Hessian::of(&assembly, Members::InContact, Prestress::Included),
+            matrix: SymmetricMatrix::default(),
+            analysis: None,
+            pair_damping: Vec::new(),
+            margins: Vec::new(),
+            dampers: Vec::new(),
+            stages: std::array::from_fn(|_| Stage { way: zero.clone(), kick: zero.clone(), work: 0.0 }),
+            before: Before::default(),
+            all_velocities: vec![[0.0; D]; assembly.len()],
+            carried: vec![[0.0; D]; assembly.len()],
+            right_side: Vec::new(),
+            unknowns: Vec::new(),
+            assembly,
+        };
+        motion.set_damping_coefficients();
+        let _ = motion.evaluate();
+        Ok(motion)
+    }
+
+    /// Forces of the present positions and velocities, and what is lost to damping.
+    pub fn evaluate(&mut self) -> Totals<D> {
+        let totals = self.assembly.evaluate_totals();
+        self.add_damping_forces();
+        totals
+    }
+
+    /// One step of length h \[time\]; [`ImplicitMotion::take_back`] undoes it.
+    ///
+    /// # Errors
+    /// Two disks with the same centre.
+    pub fn step(&mut self, time_step: f64) -> Result<Stepped<D>, PackingError> {
+        self.remember();
+        let scale = time_step * ROS34PW2.diagonal;
+        let mut analysis = self.analysis.take();
+        let mut matrix = std::mem::take(&mut self.matrix);
+        let made = self.set_matrix(scale, &mut matrix, &mut analysis);
+        let stepped = match made {
+            Ok(mut solver) => self.stages(time_step, &mut solver).map(Stepped::Moved),
+            Err(LinearError::OutOfMemory { .. }) => Ok(Stepped::OutOfMemory),
+            Err(_) => Ok(Stepped::Indefinite),
+        };
+        (self.analysis, self.matrix) = (analysis, matrix);
+        stepped
+    }
+
+    /// Puts everything back to where the last step began.
+    ///
+    /// # Errors
+    /// Two disks with the same centre.
+    pub fn take_back(&mut self) -> Result<(), PackingError> {
+        self.assembly.restore()?;
+        self.velocities.clone_from(&self.before.velocities);
+        self.net_forces.clone_from(&self.before.net_forces);
+        self.assembly.forces.clone_from(&self.before.forces);
+        (self.dissipated, self.dissipation, self.time) =
+            (self.before.dissipated, self.before.dissipation, self.before.time);
+        self.set_damping_coefficients();
+        Ok(())
+    }
+
+    /// Estimated error of the last step over what is allowed, for each mobile disk: that of the position, and that of the
+    /// velocity times h γ.
+    pub fn error(&self, time_step: f64, disk: usize) -> f64 {
+        let scale = time_step * ROS34PW2.diagonal;
+        let (mut way, mut kick) = ([0.0; D], [0.0; D]);
+        for (stage, weight) in self.stages.iter().zip(ROS34PW2.error) {
+            way = sum(way, scaled(weight, stage.way[disk]));
+            kick = sum(kick, scaled(weight, stage.kick[disk]));
+        }
+        match self.inertia {
+            Inertia::Massive => (dot(way, way) + scale * scale * dot(kick, kick)).sqrt(),
+            Inertia::Friction(_) => dot(way, way).sqrt(),
+        }
+    }
+
+    /// Forces with damping on the mobile disks \[force\].
+    pub fn net_forces(&self) -> &[Vector<D>] {
+        &self.net_forces
+    }
+
+    /// Σ v²/2, 0 without masses \[energy\].
+    pub fn kinetic_energy(&self) -> f64 {
+        let v = self.velocities.as_flattened();
+        0.5 * products(v, v).speed_squared
+    }
+
+    /// Anchors take over the displacements.
+    ///
+    /// # Errors
+    /// Two disks with the same centre.
+    pub fn reanchor(&mut self) -> Result<(), PackingError> {
+        self.assembly.reanchor()?;
+        self.set_damping_coefficients();
+        let _ = self.evaluate();
+        Ok(())
+    }
+
+    fn remember(&mut self) {
+        self.assembly.set_checkpoint();
+        self.before.velocities.clone_from(&self.velocities);
+        self.before.net_forces.clone_from(&self.net_forces);
+        self.before.forces.clone_from(&self.assembly.forces);
+        (self.before.dissipated, self.before.dissipation, self.before.time) =
+            (self.dissipated, self.dissipation, self.time);
+    }
+
+    /// Mass and friction of a disk.
+    fn resistance(&self) -> (f64, f64) {
+        match self.inertia {
+            Inertia::Massive => (1.0, 0.0),
+            Inertia::Friction(friction) => (0.0, friction),
+        }
+    }
+
+    /// The matrix of a step, factorised or ready for conjugate gradients.
+    fn set_matrix<'a>(
+        &mut self,
+        scale: f64,
+        matrix: &'a mut SymmetricMatrix,
+        analysis: &'a mut Option<Analysis>,
+    ) -> Result<Solver<'a>, LinearError> {
+        self.set_dampers();
+        let (mass, friction) = self.resistance();
+        let diagonal = mass / (scale * scale) + friction / scale;
+        let pair_damping = &self.pair_damping;
+        let (law, pairs, prestressed) = (self.assembly.law(), self.assembly.pairs(), &self.prestressed);
+        let margins = &self.margins;
+        let same = self.hessian.update_with(&self.assembly, |pair| margins[pair], |contact| {
+            let both = prestressed[contact.ends.0 as usize] && prestressed[contact.ends.1 as usize];
+            let overlap = contact.overlap + margins[contact.pair];
+            let stiffness = law.stiffness(law.force(pairs.coefficient[contact.pair], overlap), overlap);
+            (stiffness + pair_damping[contact.pair] / scale, if both { contact.across } else { 0.0 })
+        });
+        if !same {
+            *analysis = None;
+            self.work.contact_change_count += 1;
+        }
+        matrix.clone_from(self.hessian.matrix());
+        for column in 0..matrix.dimension() {
+            // The first entry of a column is the one on the diagonal.
+            matrix.values[matrix.starts[column]] += diagonal;
+        }
+        self.right_side.resize(matrix.dimension(), 0.0);
+        self.unknowns.resize(matrix.dimension(), 0.0);
+        if mass > 0.0 && matrix.norm() <= IB.with(|m| *m) * diagonal {
+            return Ok(Solver::Iterate(IncompleteFactor::new(matrix)?, matrix));
+        }
+        if analysis.is_none() {
+            *analysis = Some(Analysis::new(matrix)?);
+        }
+        self.work.factorisation_count += 1;
+        match analysis {
+            Some(analysis) => Ok(Solver::Factor(analysis.cholesky(matrix)?)),
+            None => Err(LinearError::NotPositiveDefinite { dimension: matrix.dimension() }),
+        }
+    }
+
+    /// All stages; the disks are where the step ends afterwards.
+    fn stages(&mut self, time_step: f64, solver: &mut Solver<'_>) -> Result<Totals<D>, PackingError> {
+        let scale = time_step * ROS34PW2.diagonal;
+        let (mass, friction) = self.resistance();
+        let mobile = self.assembly.mobile_count();
+        for index in 0..STAGE_COUNT {
+            if index > 0 {
+                let _ = self.go(&ROS34PW2.argument[index][..index])?;
+            }
+            let (done, rest) = self.stages.split_at_mut(index);
+            let stage = &mut rest[0];
+            let carried = ROS34PW2.carried[index];
+            // r_u, kept in `carried`; r_v + (m/(hγ) + ζ) r_u, gathered in the stage.
+            for disk in 0..mobile {
+                let (mut way, mut kick) = (self.velocities[disk], self.net_forces[disk]);
+                for (past, factor) in done.iter().zip(carried) {
+                    way = sum(way, scaled(factor / time_step, past.way[disk]));
+                    kick = sum(kick, scaled(factor / time_step, past.kick[disk]));
+                }
+                self.carried[disk] = way;
+                stage.way[disk] = sum(kick, scaled(mass / scale + friction, way));
+            }
+            let kept: f64 = done.iter().zip(carried).map(|(past, factor)| factor * past.work).sum();
+            stage.work = scale * (self.dissipation + kept / time_step);
+            for damper in &self.dampers {
+                let (i, j) = (damper.ends.0 as usize, damper.ends.1 as usize);
+                let along = dot(difference(self.carried[i], self.carried[j]), damper.normal);
+                let force = scaled(damper.damping * along, damper.normal);
+                stage.way[i] = sum(stage.way[i], force);
+                if j < mobile {
+                    stage.way[j] = difference(stage.way[j], force);
+                }
+            }
+            let alone = 1.0 / (mass / (scale * scale) + friction / scale);
+            for disk in 0..mobile {
+                match self.hessian.row_of(disk as u32) {
+                    Some(row) => self.right_side[row..row + D].copy_from_slice(&stage.way[disk]),
+                    // A disk that touches nothing: the matrix is its diagonal.
+                    None => stage.way[disk] = scaled(alone, stage.way[disk]),
+                }
+            }
+            self.work.iteration_count += solver.solve(&self.right_side, &mut self.unknowns);
+            for disk in 0..mobile {
+                if let Some(row) = self.hessian.row_of(disk as u32) {
+                    stage.way[disk] = std::array::from_fn(|d| self.unknowns[row + d]);
+                }
+                if mass > 0.0 {
+                    stage.kick[disk] = difference(scaled(1.0 / scale, stage.way[disk]), self.carried[disk]);
+                }
+            }
+        }
+        // Stiffly accurate: the end is the argument of the last stage and its U.
+        let mut weights = ROS34PW2.argument[STAGE_COUNT - 1];
+        weights[STAGE_COUNT - 1] = 1.0;
+        let totals = self.go(&weights)?;
+        self.dissipated =
+            self.before.dissipated + self.stages.iter().zip(weights).map(|(stage, m)| m * stage.work).sum::<f64>();
+        self.time = self.before.time + time_step;
+        Ok(totals)
+    }
+
+    /// Disks and velocities at the start of the step plus this sum of stages, and the forces there.
+    fn go(&mut self, weights: &[f64]) -> Result<Totals<D>, PackingError> {
+        self.assembly.restore()?;
+        let mut longest = 0.0;
+        for disk in 0..self.assembly.mobile_count() {
+            let (mut way, mut velocity) = ([0.0; D], self.before.velocities[disk]);
+            for (stage, &weight) in self.stages.iter().zip(weights) {
+                way = sum(way, scaled(weight, stage.way[disk]));
+                velocity = sum(velocity, scaled(weight, stage.kick[disk]));
+            }
+            self.assembly.displacements[disk] = sum(self.assembly.displacements[disk], way);
+            self.velocities[disk] = velocity;
+            longest = larger(dot(way, way), longest);
+            self.ways[disk] = dot(way, way).sqrt();
+        }
+        // A restored assembly may have a new list as well.
+        let _ = self.assembly.keep_listed(longest.sqrt())?;
+        self.set_damping_coefficients();
+        Ok(self.evaluate())
+    }
+
+    /// Adds the damping forces to the elastic ones just evaluated.
+    fn add_damping_forces(&mut self) {
+        self.work.evaluation_count += 1;
+        let mobile = self.assembly.mobile_count();
+        self.net_forces.copy_from_slice(&self.assembly.forces[..mobile]);
+        match self.inertia {
+            Inertia::Massive => {
+                self.all_velocities[..mobile].copy_from_slice(&self.velocities);
+                let mut forces = std::mem::take(&mut self.assembly.forces);
+                let elastic = forces.clone();
+                self.dissipation = add_damping(
+                    &self.damping,
+                    self.assembly.pairs(),
+                    &self.damping_coefficient,
+                    &self.assembly.displacements,
+                    &self.all_velocities,
+                    &mut forces,
+                );
+                self.net_forces.copy_from_slice(&forces[..mobile]);
+                self.assembly.forces = elastic;
+            }
+            Inertia::Friction(friction) => {
+                // u̇ = F/ζ.
+                let f = self.net_forces.as_flattened();
+                self.dissipation = products(f, f).force_squared / friction;
+            }
+        }
+    }
+
+    /// The touching pairs with their damping at the present positions.
+    fn set_dampers(&mut self) {
+        let pairs = self.assembly.pairs();
+        self.dampers.clear();
+        self.pair_damping.clear();
+        self.pair_damping.resize(pairs.len(), 0.0);
+        let way = |disk: u32| self.ways.get(disk as usize).copied().unwrap_or(0.0);
+        let of_pair = |pair: usize| (self.factor * larger(way(pairs.first[pair]), way(pairs.second[pair]))).min(self.margin);
+        self.margins.clear();
+        self.margins.extend((0..pairs.len()).map(of_pair));
+        if let Inertia::Friction(_) = self.inertia {
+            return;
+        }
+        for pair in 0..pairs.len() {
+            let (apart, distance, overlap) = geometry(pairs, pair, &self.assembly.displacements);
+            if overlap > -self.margins[pair] {
+                let damping = self.damping.damping(self.damping_coefficient[pair], overlap + self.margins[pair]);
+                self.pair_damping[pair] = damping;
+                let ends = (pairs.first[pair], pairs.second[pair]);
+                self.dampers.push(Damper { ends, normal: scaled(1.0 / distance, apart), damping });
+            }
+        }
+    }
+
+    fn set_damping_coefficients(&mut self) {
+        let (pairs, radii) = (self.assembly.pairs(), self.assembly.radii());
+        let of_pair = |(&i, &j): (&u32, &u32)| self.damping.coefficient(radii[i as usize], radii[j as usize]);
+        self.damping_coefficient.clear();
+        self.damping_coefficient.extend(pairs.first.iter().zip(&pairs.second).map(of_pair));
+    }
+}
+
+impl Solver<'_> {
+    /// Solves for one stage; the iterations it took.
+    fn solve(&mut self, right_side: &[f64], unknowns: &mut [f64]) -> usize {
+        match self {
+            Solver::Factor(factorisation) => {
+                factorisation.solve_unrefined(right_side, unknowns);
+                0
+            }
+            Solver::Iterate(factor, matrix) => {
+                unknowns.fill(0.0);
+                let limits = IterationLimits { backward_error: IT.with(|m| *m), iteration_count: 200 };
+                match conjugate_gradients(matrix, factor, right_side, unknowns, &limits) {
+                    Ok(solution) => solution.iteration_count,
+                    // The best so far; the error of the step tells if it is not good enough.
+                    Err(_) => limits.iteration_count,
+                }
+            }
+        }
+    }
+}
