@@ -422,6 +422,11 @@ fn limits_are_outcomes() {
         assert_eq!(outcome.stop, Stop::Converged(Criterion::AbsoluteForce), "{}", choice.name());
         assert!(outcome.residual.largest_net_force <= 1e-9 && outcome.residual.mean_contact_force > 1.0);
     }
+    // FIRE 2.0 gives up after so many steps uphill; none is soon too few.
+    let uphill = Uphill::StepBack(StepBack { uphill_limit: 0, ..StepBack::default() });
+    let outcome =
+        relax(&Fire { uphill, ..Fire::default() }, inflated("hertz_N1000_p100", 0), &Hertzian::default());
+    assert_eq!(outcome.stop, Stop::NoDescent);
     // Without memory L-BFGS is steepest descent, which is slow but not lost.
     let choice = RelaxerChoice::QuasiNewton(QuasiNewton { memory: 0, ..QuasiNewton::default() });
     let _ = at_rest(relax(&choice, cross([0.02, -0.013]), &Hertzian::default()));
@@ -496,8 +501,10 @@ fn the_work_of_fixed_scenes_stays_what_it_was() {
         let made = ours.force_evaluation_count;
         assert!(near(made, then.1), "{name}, {}: {made} evaluations, {} then", choice.name(), then.1);
     };
-    for (name, work) in [("hertz_N1000_p10", [(1, 1), (1, 1), (1, 1)]), ("hertz_N1000_p800", [(1, 1), (1, 1), (1, 1)])]
-    {
+    for (name, work) in [
+        ("hertz_N1000_p10", [(1850, 3198), (1890, 1954), (2780, 2798)]),
+        ("hertz_N1000_p800", [(440, 770), (470, 492), (640, 652)]),
+    ] {
         for (choice, (steps, evaluations)) in all(1e-8).into_iter().zip(work) {
             counted(name, choice, steps, evaluations);
         }
