@@ -8,7 +8,8 @@ use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
 use jamscope::packing::Packing;
 use jamscope::relax::{
-    DampedDynamics, Fire, ForceLimit, NonlinearConjugateGradients, QuasiNewton, Relaxer, RelaxerChoice, StepBack, Uphill,
+    DampedDynamics, Fire, ForceLimit, NonlinearConjugateGradients, QuasiNewton, Relaxer, RelaxerChoice, StepBack,
+    Uphill,
 };
 
 /// The centre of a stored packing inflated by 0.1 in its circle, everything else still where it was.

@@ -424,8 +424,7 @@ fn limits_are_outcomes() {
     }
     // FIRE 2.0 gives up after so many steps uphill; none is soon too few.
     let uphill = Uphill::StepBack(StepBack { uphill_limit: 0, ..StepBack::default() });
-    let outcome =
-        relax(&Fire { uphill, ..Fire::default() }, inflated("hertz_N1000_p100", 0), &Hertzian::default());
+    let outcome = relax(&Fire { uphill, ..Fire::default() }, inflated("hertz_N1000_p100", 0), &Hertzian::default());
     assert_eq!(outcome.stop, Stop::NoDescent);
     // Without memory L-BFGS is steepest descent, which is slow but not lost.
     let choice = RelaxerChoice::QuasiNewton(QuasiNewton { memory: 0, ..QuasiNewton::default() });
