@@ -155,3 +155,35 @@ fn low_enough<const D: usize>(before: &Totals<D>, reached: &Reached<D>, slope: f
         fall >= -rounding && reached.slope >= -0.9 * slope
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::law::Hookean;
+    use crate::packing::{Domain, Packing};
+
+    /// A disk pressed to the right by one at −0.9, one at 1.5 in its way and one at 3.3 beyond: at 2.4 the slope is zero too,
+    /// but the energy twice that of the start. It must come to rest where nothing touches it, between 0.1 and 0.5.
+    #[test]
+    fn a_flat_place_beyond_a_hump_is_refused() {
+        let law = Hookean { stiffness: 1.0 };
+        let positions = vec![[0.0, 0.0], [-0.9, 0.0], [1.5, 0.0], [3.3, 0.0]];
+        let packing = Packing::new(Domain::<2>::Open, positions, vec![0.5; 4])
+            .and_then(|packing| packing.with_held(vec![false, true, true, true]))
+            .expect("valid");
+        let mut assembly = Assembly::new(&packing, law).expect("no coincidence");
+        let before = assembly.evaluate_totals();
+        let direction = [1.0, 0.0];
+        // F·s = k δ = 0.1, to the rounding of 0.9.
+        let slope = dot_product(assembly.forces[..1].as_flattened(), &direction);
+        assert!((slope - 0.1).abs() < 1e-15);
+        let line = Line { direction: &direction, slope, first: 2.4, flat: 0.1, largest_step: 100.0 };
+        let mut evaluation_count = 0;
+        let found = search(&mut assembly, &line, &before, &mut evaluation_count).expect("no coincidence");
+        let reached = found.expect("it goes down");
+        assert!((0.09..=0.51).contains(&reached.length), "{reached:?}");
+        assert!(reached.totals.energy < before.energy && evaluation_count > 1, "{reached:?}");
+        let place = assembly.placed(packing).centre(0);
+        assert_eq!(place.0[0] + place.1[0], reached.length);
+    }
+}
