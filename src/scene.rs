@@ -379,6 +379,8 @@ fn check_relaxer(field: &str, relaxer: &RelaxerChoice) -> Result<(), SceneError>
         RelaxerChoice::QuasiNewton(quasi_newton) => {
             let name = |last: &str| format!("{field}.quasi_newton.{last}");
             positive(name("largest_step"), quasi_newton.largest_step)?;
+            let memory = quasi_newton.memory;
+            within(name("memory"), memory as f64, "at most 1000", memory <= 1000)?;
             let flatness = quasi_newton.flatness;
             within(name("flatness"), flatness, "between 0 and 1", flatness > 0.0 && flatness < 1.0)
         }

@@ -426,6 +426,9 @@ fn limits_are_outcomes() {
     let uphill = Uphill::StepBack(StepBack { uphill_limit: 0, ..StepBack::default() });
     let outcome = relax(&Fire { uphill, ..Fire::default() }, inflated("hertz_N1000_p100", 0), &Hertzian::default());
     assert_eq!(outcome.stop, Stop::NoDescent);
+    // A memory for all steps there may ever be is as large as the steps there are.
+    let endless = QuasiNewton { memory: usize::MAX, ..QuasiNewton::default() };
+    let _ = at_rest(relax(&endless, points::<2>(100, 0.95, 8), &Hertzian::default()));
     // Without memory L-BFGS is steepest descent, which is slow but not lost.
     let choice = RelaxerChoice::QuasiNewton(QuasiNewton { memory: 0, ..QuasiNewton::default() });
     let _ = at_rest(relax(&choice, cross([0.02, -0.013]), &Hertzian::default()));
@@ -479,6 +482,8 @@ fn a_scene_names_them_and_refuses_what_makes_no_sense() {
     };
     let message = refused(RelaxerChoice::QuasiNewton(QuasiNewton { largest_step: f64::NAN, ..QuasiNewton::default() }));
     assert!(message.contains("relaxer.quasi_newton.largest_step = NaN"), "{message}");
+    let message = refused(RelaxerChoice::QuasiNewton(QuasiNewton { memory: usize::MAX, ..QuasiNewton::default() }));
+    assert!(message.contains("relaxer.quasi_newton.memory"), "{message}");
     let message = refused(RelaxerChoice::ConjugateGradients(NonlinearConjugateGradients {
         flatness: 1.0,
         ..NonlinearConjugateGradients::default()

@@ -59,7 +59,7 @@ impl Relaxer for QuasiNewton {
         let mut monitor = Monitor::with(self.limit, WATCH, &assembly);
         let QuasiNewton { limit, step_limit, largest_step, memory, flatness: flat } = *self;
         let descent = Descent { limit, step_limit, largest_step, flat };
-        let mut directions = Memory::new(memory, assembly.mobile_count() * D);
+        let mut directions = Memory::new(memory);
         let (stop, mut cost) = descent.run(&mut directions, &mut assembly, &mut monitor, trace)?;
         let (residual, rounding_floor) = monitor.finish(&assembly, &assembly.forces[..assembly.mobile_count()]);
         cost.rebuild_count = assembly.rebuild_count();
@@ -78,8 +78,9 @@ struct Pair {
     weight: f64,
 }
 
-/// The last steps, the newest at `newest`, in buffers made once.
+/// The last steps, the newest at `newest`, in buffers made once: one more with each of the first steps.
 struct Memory {
+    limit: usize,
     pairs: Vec<Pair>,
     newest: usize,
     count: usize,
@@ -88,9 +89,8 @@ struct Memory {
 }
 
 impl Memory {
-    fn new(memory: usize, length: usize) -> Self {
-        let pair = |_| Pair { way: vec![0.0; length], change: vec![0.0; length], curvature: 0.0, weight: 0.0 };
-        Memory { pairs: (0..memory).map(pair).collect(), newest: 0, count: 0, scale: 0.0 }
+    fn new(limit: usize) -> Self {
+        Memory { limit, pairs: Vec::new(), newest: 0, count: 0, scale: 0.0 }
     }
 
     /// Index of the pair learnt `age` steps before the newest.
@@ -102,10 +102,17 @@ impl Memory {
 impl Directions for Memory {
     fn learn(&mut self, step: &Step<'_>) {
         let curvature = step.length * (step.slopes[0] - step.slopes[1]);
-        if curvature.is_nan() || curvature <= 0.0 || self.pairs.is_empty() {
+        if curvature.is_nan() || curvature <= 0.0 || self.limit == 0 {
             return;
         }
-        self.newest = (self.newest + 1) % self.pairs.len();
+        if self.count == self.pairs.len() && self.count < self.limit {
+            let column = || vec![0.0; step.direction.len()];
+            // All are in use, the oldest comes after the newest: the new one in between.
+            self.newest = if self.count == 0 { 0 } else { self.newest + 1 };
+            self.pairs.insert(self.newest, Pair { way: column(), change: column(), curvature, weight: 0.0 });
+        } else {
+            self.newest = (self.newest + 1) % self.pairs.len();
+        }
         self.count = (self.count + 1).min(self.pairs.len());
         let pair = &mut self.pairs[self.newest];
         combine(0.0, &mut pair.way, step.length, step.direction);
