@@ -7,7 +7,10 @@ use jamscope::contact::Hertzian;
 use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
 use jamscope::packing::Packing;
-use jamscope::relax::{DampedDynamics, Fire, ForceLimit, Relaxer};
+use jamscope::relax::{
+    DampedDynamics, Fire, ForceLimit, NonlinearConjugateGradients, QuasiNewton, Relaxer, RelaxerChoice, StepBack,
+    Uphill,
+};
 
 /// The centre of a stored packing inflated by 0.1 in its circle, everything else still where it was.
 fn inflated(name: &str) -> Packing<2> {
@@ -49,6 +52,34 @@ fn relaxers(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// Conjugate gradients, L-BFGS and FIRE's step back, to a limit that FIRE reaches and to one near the rounding floor.
+fn minimisers(criterion: &mut Criterion) {
+    let law = Hertzian::default();
+    let mut group = criterion.benchmark_group("relax");
+    group.sample_size(10);
+    for name in ["hertz_N1000_p10", "hertz_N1000_p100", "hertz_N1000_p800", "hertz_N5548_p100"] {
+        let start = inflated(name);
+        for limit in [1e-8, 1e-12] {
+            let asked = ForceLimit::Relative(limit);
+            let gradients = NonlinearConjugateGradients { limit: asked, ..Default::default() };
+            let uphill = Uphill::StepBack(StepBack::default());
+            for (what, relaxer) in [
+                ("gradients", RelaxerChoice::ConjugateGradients(gradients)),
+                ("l-bfgs", RelaxerChoice::QuasiNewton(QuasiNewton { limit: asked, ..Default::default() })),
+                ("fire-step-back", RelaxerChoice::Fire(Fire { limit: asked, uphill, ..Default::default() })),
+            ] {
+                let outcome = relaxer.relax(start.clone(), &law, &mut ()).expect("disks apart");
+                let made = outcome.cost.force_evaluation_count;
+                println!("{what} {name} to {limit:e}: {made} force evaluations, {:?}", outcome.stop);
+                group.bench_function(BenchmarkId::new(format!("{what}/{name}"), limit), |bencher| {
+                    bencher.iter(|| relaxer.relax(start.clone(), &law, &mut ()));
+                });
+            }
+        }
+    }
+    group.finish();
+}
+
 /// FIRE until Newton pays, then Newton, to limits that FIRE alone reaches and to one near the rounding floor.
 #[cfg(feature = "linear")]
 fn staged(criterion: &mut Criterion) {
@@ -73,7 +104,7 @@ fn staged(criterion: &mut Criterion) {
 }
 
 #[cfg(feature = "linear")]
-criterion_group!(benches, relaxers, staged);
+criterion_group!(benches, relaxers, minimisers, staged);
 #[cfg(not(feature = "linear"))]
-criterion_group!(benches, relaxers);
+criterion_group!(benches, relaxers, minimisers);
 criterion_main!(benches);

@@ -161,6 +161,8 @@ mod book {
     #[cfg(feature = "linear")]
     #[doc = include_str!("../book/src/relax/newton.md")]
     mod relax_newton {}
+    #[doc = include_str!("../book/src/relax/others.md")]
+    mod relax_others {}
     #[doc = include_str!("../book/src/relax/stopping.md")]
     mod relax_stopping {}
     #[doc = include_str!("../book/src/preparation.md")]

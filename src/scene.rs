@@ -370,6 +370,20 @@ fn check_relaxer(field: &str, relaxer: &RelaxerChoice) -> Result<(), SceneError>
                 TimeStep::OfStability(share) => positive(format!("{field}.damped.time_step.of_stability"), share),
             }
         }
+        RelaxerChoice::ConjugateGradients(gradients) => {
+            let name = |last: &str| format!("{field}.conjugate_gradients.{last}");
+            positive(name("largest_step"), gradients.largest_step)?;
+            let flatness = gradients.flatness;
+            within(name("flatness"), flatness, "between 0 and 1", flatness > 0.0 && flatness < 1.0)
+        }
+        RelaxerChoice::QuasiNewton(quasi_newton) => {
+            let name = |last: &str| format!("{field}.quasi_newton.{last}");
+            positive(name("largest_step"), quasi_newton.largest_step)?;
+            let memory = quasi_newton.memory;
+            within(name("memory"), memory as f64, "at most 1000", memory <= 1000)?;
+            let flatness = quasi_newton.flatness;
+            within(name("flatness"), flatness, "between 0 and 1", flatness > 0.0 && flatness < 1.0)
+        }
         #[cfg(feature = "linear")]
         RelaxerChoice::Newton(newton) => positive(format!("{field}.newton.largest_step"), newton.largest_step),
         #[cfg(feature = "linear")]

@@ -6,7 +6,10 @@ use std::f64::consts::PI;
 use jamscope::contact::damping::ConstantDamping;
 use jamscope::contact::{Assembly, ContactNetwork, Hertzian, Hookean, PairLaw, PowerLaw};
 use jamscope::packing::{Domain, Packing};
-use jamscope::relax::{Criterion, Fire, ForceLimit, Motion, Outcome, Relaxer, Stop};
+use jamscope::relax::{
+    Criterion, Fire, ForceLimit, Motion, NonlinearConjugateGradients, Outcome, QuasiNewton, Relaxer, RelaxerChoice,
+    StepBack, Stop, Uphill,
+};
 use jamscope::vector::norm;
 
 /// Radii of the chains: multiples of 1/8, so that touching disks stand at exact positions.
@@ -49,10 +52,18 @@ fn check_row<L: PairLaw>(law: &L, outcome: Outcome<Packing<2>>, radii: &[(f64, f
     }
 }
 
-/// FIRE to this share of the force that the row will have.
-fn fire<L: PairLaw>(law: &L, radii: &[(f64, f64)], total: f64, limit: f64) -> Fire {
+/// Relaxers to this share of the force that the row will have.
+fn relaxers<L: PairLaw>(law: &L, radii: &[(f64, f64)], total: f64, limit: f64) -> [RelaxerChoice; 4] {
     let force = law.force(law.coefficient(radii[0].0, radii[0].1), shared(law, radii, total)[0]);
-    Fire { limit: ForceLimit::Absolute(limit * force), ..Fire::default() }
+    let limit = ForceLimit::Absolute(limit * force);
+    let fire = Fire { limit, ..Fire::default() };
+    let gradients = NonlinearConjugateGradients { limit, ..NonlinearConjugateGradients::default() };
+    [
+        RelaxerChoice::Fire(fire),
+        RelaxerChoice::Fire(Fire { uphill: Uphill::StepBack(StepBack::default()), ..fire }),
+        RelaxerChoice::ConjugateGradients(gradients),
+        RelaxerChoice::QuasiNewton(QuasiNewton { limit, ..QuasiNewton::default() }),
+    ]
 }
 
 /// A chain on a line between two held disks, the last of them pushed in by the total overlap.
@@ -80,9 +91,10 @@ fn a_chain_between_held_disks_shares_the_overlap_as_its_stiffnesses_ask() {
         for count in [1, 2, 5] {
             for total in overlaps() {
                 let (packing, radii) = chain(count, total);
-                let fire = fire(&law, &radii, total, 1e-12);
-                let outcome = fire.relax(packing, &law, &mut ()).expect("no coincidence");
-                check_row(&law, outcome, &radii, total, 1e-12);
+                for relaxer in relaxers(&law, &radii, total, 1e-12) {
+                    let outcome = relaxer.relax(packing.clone(), &law, &mut ()).expect("no coincidence");
+                    check_row(&law, outcome, &radii, total, 1e-12);
+                }
             }
         }
     }
@@ -102,8 +114,10 @@ fn three_disks_on_a_ring_press_each_other_with_one_force() {
             let domain = Domain::Periodic { corner: [0.0; 2], lengths: [side, 8.0] };
             let packing =
                 Packing::new(domain, vec![[0.0, 1.0], [1.125, 1.0], [2.5, 1.0]], radii.to_vec()).expect("valid");
-            let outcome = fire(&law, &pairs, total, 1e-12).relax(packing, &law, &mut ()).expect("no coincidence");
-            check_row(&law, outcome, &pairs, total, 1e-12);
+            for relaxer in relaxers(&law, &pairs, total, 1e-12) {
+                let outcome = relaxer.relax(packing.clone(), &law, &mut ()).expect("no coincidence");
+                check_row(&law, outcome, &pairs, total, 1e-12);
+            }
         }
     }
     check(Hertzian::default());

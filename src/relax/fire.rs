@@ -8,6 +8,10 @@
 //! The largest time step follows the contacts: `dt_max = c · 2/√λ` with λ Gershgorin's bound on the largest eigenvalue of
 //! the present stiffness matrix, taken anew every few steps, so no step has to be chosen for a pressure.
 //!
+//! [`Uphill::StepBack`] are the corrections of FIRE 2.0: where a step climbed, the disks go half of it back before they rest,
+//! `u ← u − (dt/2) v`, and the first steps may climb without a shorter time step. Forces are taken anew where the disks then
+//! are, in place of the evaluation that a restart has anyway.
+//!
 //! What is guaranteed about the energy: FIRE lets it rise within a run, but every restart (v ← 0) happens at an energy
 //! not above that of the restart before, to rounding (10⁻¹³ of it; of contacts and sites added up where disks have sites). Where a restart would be higher, the disks go back
 //! to the last one and the time step is halved. The final energy is therefore never above the first.
@@ -23,7 +27,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
 use crate::packing::{Packing, PackingError};
-use crate::relax::flat::{kick_and_drift, products};
+use crate::relax::flat::{combine, kick_and_drift, products};
 use crate::relax::monitor::{LOOK_EVERY, Monitor};
 use crate::relax::{Cost, ForceLimit, Look, Outcome, Relaxer, Stop, Trace};
 
@@ -48,6 +52,43 @@ pub struct Fire {
     pub mixing: f64,
     /// Factor on the mixing after a step downhill \[1\].
     pub mixing_decay: f64,
+    /// What happens where a step climbed.
+    #[serde(skip_serializing_if = "Uphill::is_restart")]
+    pub uphill: Uphill,
+}
+
+/// What FIRE does where a step climbed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Uphill {
+    /// It rests where it is.
+    #[default]
+    Restart,
+    /// It goes half a step back and rests there.
+    StepBack(StepBack),
+}
+
+impl Uphill {
+    /// Whether it is the one that needs no mention.
+    fn is_restart(&self) -> bool {
+        *self == Uphill::Restart
+    }
+}
+
+/// The corrections of FIRE 2.0. Defaults: Guénolé et al. (2020), Comput. Mater. Sci. 175, 109584, table 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct StepBack {
+    /// Steps from the start in which a step that climbs leaves the time step as it is.
+    pub start_delay: usize,
+    /// Steps that may climb one after the other; one more ends the relaxation.
+    pub uphill_limit: usize,
+}
+
+impl Default for StepBack {
+    fn default() -> Self {
+        StepBack { start_delay: 20, uphill_limit: 2000 }
+    }
 }
 
 impl Default for Fire {
@@ -62,6 +103,7 @@ impl Default for Fire {
             step_cut: 0.5,
             mixing: 0.1,
             mixing_decay: 0.99,
+            uphill: Uphill::default(),
         }
     }
 }
@@ -125,7 +167,7 @@ impl Run<'_> {
         let mut largest_step = self.largest_step(assembly, &mut row);
         let mut time_step = FIRST_STEP * largest_step;
         let mut mixing = settings.mixing;
-        let mut downhill = 0;
+        let (mut downhill, mut uphill) = (0, 0);
         let mut rest_energy = f64::INFINITY;
         let mut rest_scale = f64::INFINITY;
         loop {
@@ -165,9 +207,17 @@ impl Run<'_> {
                 time_step = time_step.min(largest_step);
             }
             if restart {
+                uphill += 1;
+                if let Uphill::StepBack(back) = settings.uphill {
+                    if uphill > back.uphill_limit {
+                        let floor = monitor.near_the_floor();
+                        return Ok((if floor { Stop::RoundingFloor } else { Stop::NoDescent }, self.cost()));
+                    }
+                    step_back(assembly, time_step, &velocity, sums.speed_squared)?;
+                }
                 let totals = match totals {
-                    Some(totals) => totals,
-                    None => {
+                    Some(totals) if settings.uphill == Uphill::Restart => totals,
+                    _ => {
                         self.evaluation_count += 1;
                         assembly.evaluate_totals()
                     }
@@ -200,11 +250,16 @@ impl Run<'_> {
                 }
                 velocity.fill(0.0);
                 sums = products(assembly.forces[..mobile].as_flattened(), &velocity);
-                time_step *= settings.step_cut;
+                let kept =
+                    matches!(settings.uphill, Uphill::StepBack(back) if self.step_count < back.start_delay && !higher);
+                if !kept {
+                    time_step *= settings.step_cut;
+                }
                 mixing = settings.mixing;
                 downhill = 0;
             } else {
                 downhill += 1;
+                uphill = 0;
                 if downhill > settings.delay {
                     time_step = (time_step * settings.step_growth).min(largest_step);
                     mixing *= settings.mixing_decay;
@@ -246,6 +301,18 @@ impl Run<'_> {
     fn cost(&self) -> Cost {
         Cost { step_count: self.step_count, force_evaluation_count: self.evaluation_count, ..Cost::default() }
     }
+}
+
+/// `u ← u − (dt/2) v`: half of the step that climbed, back.
+fn step_back<const D: usize, L: PairLaw>(
+    assembly: &mut Assembly<D, L>,
+    time_step: f64,
+    velocity: &[f64],
+    speed_squared: f64,
+) -> Result<(), PackingError> {
+    let mobile = assembly.mobile_count();
+    combine(1.0, assembly.displacements[..mobile].as_flattened_mut(), -0.5 * time_step, velocity);
+    assembly.keep_listed(0.5 * time_step * speed_squared.sqrt()).map(|_| ())
 }
 
 fn trace_is_active<T: Trace>(_trace: &T) -> bool {

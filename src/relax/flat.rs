@@ -86,3 +86,36 @@ impl pulp::WithSimd for KickAndDrift<'_> {
         }
     }
 }
+
+/// a·b.
+pub fn dot_product(a: &[f64], b: &[f64]) -> f64 {
+    pulp::Arch::new().dispatch(
+        #[inline(always)]
+        || {
+            let mut lanes = [0.0; LANES];
+            let (left, right) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+            let rest = (left.remainder(), right.remainder());
+            for (x, y) in left.zip(right) {
+                for k in 0..LANES {
+                    lanes[k] += x[k] * y[k];
+                }
+            }
+            for (k, (&x, &y)) in rest.0.iter().zip(rest.1).enumerate() {
+                lanes[k] += x * y;
+            }
+            lanes.iter().sum()
+        },
+    )
+}
+
+/// `y ← keep·y + factor·x`.
+pub fn combine(keep: f64, y: &mut [f64], factor: f64, x: &[f64]) {
+    pulp::Arch::new().dispatch(
+        #[inline(always)]
+        || {
+            for (y, x) in y.iter_mut().zip(x) {
+                *y = keep * *y + factor * x;
+            }
+        },
+    );
+}

@@ -5,14 +5,18 @@
 //! Rattlers are held to the square root of the limit only: their contacts open algebraically slowly, without touching the
 //! backbone.
 
+pub mod conjugate_gradients;
 pub mod damped;
+mod descent;
 pub mod fire;
 mod flat;
+mod line_search;
 mod monitor;
 #[cfg(feature = "linear")]
 pub mod implicit;
 #[cfg(feature = "linear")]
 pub mod newton;
+pub mod quasi_newton;
 #[cfg(feature = "linear")]
 mod shifted;
 #[cfg(feature = "linear")]
@@ -23,13 +27,15 @@ use serde::{Deserialize, Serialize};
 use crate::contact::PairLaw;
 use crate::packing::{Packing, PackingError};
 
+pub use conjugate_gradients::NonlinearConjugateGradients;
 pub use damped::{DampedDynamics, Motion, NetForce, TimeStep};
-pub use fire::Fire;
+pub use fire::{Fire, StepBack, Uphill};
 #[cfg(feature = "linear")]
 pub use implicit::{GradientFlow, ImplicitDynamics};
 pub use monitor::rounding_floor;
 #[cfg(feature = "linear")]
 pub use newton::Newton;
+pub use quasi_newton::QuasiNewton;
 #[cfg(feature = "linear")]
 pub use staged::Staged;
 
@@ -103,8 +109,7 @@ pub enum Stop {
     /// The factors of Newton's matrix do not fit in memory.
     #[cfg(feature = "linear")]
     OutOfMemory,
-    /// No step of Newton's, however short, lowers the energy, and the residual is above what rounding makes.
-    #[cfg(feature = "linear")]
+    /// No step, however short, lowers the energy, and the residual is above what rounding makes.
     NoDescent,
 }
 
@@ -264,6 +269,10 @@ pub enum RelaxerChoice {
     Fire(Fire),
     /// [`DampedDynamics`].
     Damped(DampedDynamics),
+    /// [`NonlinearConjugateGradients`].
+    ConjugateGradients(NonlinearConjugateGradients),
+    /// [`QuasiNewton`].
+    QuasiNewton(QuasiNewton),
     /// [`Newton`].
     #[cfg(feature = "linear")]
     Newton(Newton),
@@ -284,6 +293,8 @@ impl RelaxerChoice {
         match self {
             RelaxerChoice::Fire(fire) => fire.limit,
             RelaxerChoice::Damped(damped) => damped.limit,
+            RelaxerChoice::ConjugateGradients(conjugate_gradients) => conjugate_gradients.limit,
+            RelaxerChoice::QuasiNewton(quasi_newton) => quasi_newton.limit,
             #[cfg(feature = "linear")]
             RelaxerChoice::Newton(newton) => newton.limit,
             #[cfg(feature = "linear")]
@@ -299,6 +310,8 @@ impl RelaxerChoice {
                 NetForce::Elastic => "damped dynamics",
                 NetForce::Total => "damped, total force",
             },
+            RelaxerChoice::ConjugateGradients(_) => "conjugate gradients",
+            RelaxerChoice::QuasiNewton(_) => "L-BFGS",
             #[cfg(feature = "linear")]
             RelaxerChoice::Newton(_) => "Newton",
             #[cfg(feature = "linear")]
@@ -317,6 +330,8 @@ impl Relaxer for RelaxerChoice {
         match self {
             RelaxerChoice::Fire(fire) => fire.relax(packing, law, trace),
             RelaxerChoice::Damped(damped) => damped.relax(packing, law, trace),
+            RelaxerChoice::ConjugateGradients(conjugate_gradients) => conjugate_gradients.relax(packing, law, trace),
+            RelaxerChoice::QuasiNewton(quasi_newton) => quasi_newton.relax(packing, law, trace),
             #[cfg(feature = "linear")]
             RelaxerChoice::Newton(newton) => newton.relax(packing, law, trace),
             #[cfg(feature = "linear")]

@@ -192,7 +192,6 @@ impl Monitor {
     }
 
     /// The residual of the last look.
-    #[cfg(feature = "linear")]
     pub fn residual(&self) -> Residual {
         self.last
     }

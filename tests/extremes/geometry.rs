@@ -5,7 +5,7 @@ use jamscope::packing::{Domain, Packing, PackingError};
 use jamscope::relax::{Criterion, Fire, Relaxer, Stop};
 use jamscope::vector::two_sum;
 
-use crate::{all_finite, fire, open, points, relax};
+use crate::{all_finite, fire, open, points, relax, relaxers};
 
 #[test]
 fn a_hundred_disks_at_one_point_are_refused_by_number() {
@@ -23,12 +23,14 @@ fn a_hundred_disks_next_to_one_point_fly_apart() {
             ([radius * angle.cos(), radius * angle.sin()], 0.5)
         };
         let packing = open(&(0..100).map(spiral).collect::<Vec<_>>(), &[false; 100]);
-        for outcome in [
-            relax(packing.clone(), &Hertzian::default(), &fire(1e-8)),
-            relax(packing.clone(), &Hookean::default(), &fire(1e-8)),
-        ] {
-            assert_eq!(outcome.stop, Stop::Converged(Criterion::Unjammed), "{apart:e}");
-            assert!(all_finite(&outcome.state));
+        for relaxer in relaxers(1e-8) {
+            for outcome in [
+                relax(packing.clone(), &Hertzian::default(), &relaxer),
+                relax(packing.clone(), &Hookean::default(), &relaxer),
+            ] {
+                assert_eq!(outcome.stop, Stop::Converged(Criterion::Unjammed), "{apart:e}, {}", relaxer.name());
+                assert!(all_finite(&outcome.state));
+            }
         }
     }
 }
@@ -71,8 +73,10 @@ fn a_packing_fraction_an_ulp_above_contact_has_overlaps_of_an_ulp_and_counts_as_
     }
     assert!(network.contacts.len() >= 64);
     // Forces of 10⁻¹¹ where one radius gives 10⁵: as good as none.
-    let outcome = relax(packing, &Hookean::default(), &fire(1e-8));
-    assert_eq!((outcome.stop, outcome.cost.step_count), (Stop::Converged(Criterion::Unjammed), 0));
+    for relaxer in relaxers(1e-8) {
+        let outcome = relax(packing.clone(), &Hookean::default(), &relaxer);
+        assert_eq!((outcome.stop, outcome.cost.step_count), (Stop::Converged(Criterion::Unjammed), 0));
+    }
 }
 
 #[test]
@@ -94,8 +98,10 @@ fn subnormal_overlaps_have_forces_that_are_tiny_and_never_nan() {
             );
         }
         assert!(totals.energy >= 0.0 && totals.energy <= expected * overlap);
-        let outcome = relax(packing, &law, &fire(1e-8));
-        assert_eq!(outcome.stop, Stop::Converged(Criterion::Unjammed));
+        for relaxer in relaxers(1e-8) {
+            let outcome = relax(packing.clone(), &law, &relaxer);
+            assert_eq!(outcome.stop, Stop::Converged(Criterion::Unjammed), "{}", relaxer.name());
+        }
     }
     for overlap in [f64::from_bits(1), 1e-310, 1e-300, 1e-200, 1e-100] {
         check(Hookean::default(), overlap);
@@ -114,11 +120,13 @@ fn a_box_of_exactly_two_contact_ranges_is_the_smallest() {
     let error = ContactNetwork::new(&boxed(2.0, 0.5 + f64::EPSILON), &Hookean::default()).expect_err("too small");
     assert!(matches!(error, PackingError::BoxTooSmall { axis: 0, .. }), "{error}");
     // A little larger: neighbours in the box overlap, their images do not, and the disks space out evenly to rest.
-    let outcome = relax(boxed(2.125, 0.53125), &Hookean::default(), &fire(1e-10));
-    assert!(matches!(outcome.stop, Stop::Converged(_)), "{:?}", outcome.stop);
-    let network = ContactNetwork::new(&outcome.state, &Hookean::default()).expect("large enough");
-    // Spacing 1.0625 = two radii: nothing is left of the overlaps, or next to nothing where the path ends early.
-    assert!(network.contacts.iter().all(|contact| contact.overlap < 1e-6), "{:?}", network.contacts);
+    for relaxer in relaxers(1e-10) {
+        let outcome = relax(boxed(2.125, 0.53125), &Hookean::default(), &relaxer);
+        assert!(matches!(outcome.stop, Stop::Converged(_)), "{}: {:?}", relaxer.name(), outcome.stop);
+        let network = ContactNetwork::new(&outcome.state, &Hookean::default()).expect("large enough");
+        // Spacing 1.0625 = two radii: nothing is left of the overlaps, or next to nothing where the path ends early.
+        assert!(network.contacts.iter().all(|contact| contact.overlap < 1e-6), "{:?}", network.contacts);
+    }
 }
 
 #[test]
@@ -161,10 +169,12 @@ fn one_contact_short_of_rigid_is_unjammed_and_with_it_at_rest() {
         }
         open(&disks, &[false, true, true, true])
     };
-    let rigid = relax(around(3), &Hertzian::default(), &fire(1e-10));
-    assert_eq!(rigid.stop, Stop::Converged(Criterion::RelativeForce));
-    let short = relax(around(2), &Hertzian::default(), &fire(1e-10));
-    assert_eq!(short.stop, Stop::Converged(Criterion::Unjammed));
+    for relaxer in relaxers(1e-10) {
+        let rigid = relax(around(3), &Hertzian::default(), &relaxer);
+        assert_eq!(rigid.stop, Stop::Converged(Criterion::RelativeForce), "{}", relaxer.name());
+        let short = relax(around(2), &Hertzian::default(), &relaxer);
+        assert_eq!(short.stop, Stop::Converged(Criterion::Unjammed), "{}", relaxer.name());
+    }
 }
 
 #[test]
@@ -172,7 +182,9 @@ fn a_far_away_disk_costs_no_memory_and_moves_nothing() {
     let mut disks: Vec<_> = (0..10).map(|disk| ([0.9 * f64::from(disk), 0.0], 0.5)).collect();
     disks.push(([1e300, -1e300], 0.5));
     let packing = open(&disks, &[false; 11]);
-    let outcome = relax(packing, &Hookean::default(), &fire(1e-8));
-    assert_eq!(outcome.stop, Stop::Converged(Criterion::Unjammed));
-    assert_eq!(outcome.state.positions()[10], [1e300, -1e300]);
+    for relaxer in relaxers(1e-8) {
+        let outcome = relax(packing.clone(), &Hookean::default(), &relaxer);
+        assert_eq!(outcome.stop, Stop::Converged(Criterion::Unjammed), "{}", relaxer.name());
+        assert_eq!(outcome.state.positions()[10], [1e300, -1e300]);
+    }
 }

@@ -14,15 +14,31 @@ mod scales;
 use jamscope::contact::PairLaw;
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::random_points;
-use jamscope::relax::{Fire, ForceLimit, Outcome, Relaxer};
+use jamscope::relax::{
+    Fire, ForceLimit, NonlinearConjugateGradients, Outcome, QuasiNewton, Relaxer, RelaxerChoice, StepBack, Uphill,
+};
 
 /// FIRE with this relative limit and no more than 200 000 steps: a hang would show as the step limit.
 fn fire(limit: f64) -> Fire {
     Fire { limit: ForceLimit::Relative(limit), step_limit: 200_000, ..Fire::default() }
 }
 
-fn relax<const D: usize, L: PairLaw>(packing: Packing<D>, law: &L, fire: &Fire) -> Outcome<Packing<D>> {
-    fire.relax(packing, law, &mut ()).expect("no coincidence")
+/// Every relaxer that goes by forces alone and knows no time.
+fn relaxers(limit: f64) -> [RelaxerChoice; 4] {
+    let (fire, limit) = (fire(limit), ForceLimit::Relative(limit));
+    let gradients =
+        NonlinearConjugateGradients { limit, step_limit: 200_000, ..NonlinearConjugateGradients::default() };
+    let quasi_newton = QuasiNewton { limit, step_limit: 200_000, ..QuasiNewton::default() };
+    [
+        RelaxerChoice::Fire(fire),
+        RelaxerChoice::Fire(Fire { uphill: Uphill::StepBack(StepBack::default()), ..fire }),
+        RelaxerChoice::ConjugateGradients(gradients),
+        RelaxerChoice::QuasiNewton(quasi_newton),
+    ]
+}
+
+fn relax<const D: usize, L: PairLaw>(packing: Packing<D>, law: &L, relaxer: &impl Relaxer) -> Outcome<Packing<D>> {
+    relaxer.relax(packing, law, &mut ()).expect("no coincidence")
 }
 
 fn points(count: usize, packing_fraction: f64, seed: u64) -> Packing<2> {
