@@ -80,7 +80,7 @@ fn compare<const D: usize>(packing: &Packing<D>, folder: Option<&Path>) -> Resul
         let mut value_count = 0;
         for _ in 0..REPEATS {
             let mut clock = Clock(Instant::now());
-            let order = if dissected { nested_dissection(&hessian, &packing) } else { minimum_degree(&hessian)? };
+            let order = if dissected { nested_dissection(&hessian) } else { minimum_degree(&hessian)? };
             let ordered = clock.lap();
             let mut analysis = Analysis::in_order(matrix, &order)?;
             let analysed = clock.lap();

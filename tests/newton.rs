@@ -82,7 +82,7 @@ fn moved<const D: usize>(one: &Packing<D>, two: &Packing<D>, disk: usize) -> Vec
 fn softest<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> f64 {
     let hessian = Hessian::new(packing, law, Members::Backbone, Prestress::Included).expect("no coincidence");
     let matrix = hessian.matrix();
-    let mut analysis = Analysis::new(matrix).expect("small");
+    let mut analysis = Analysis::of(&hessian).expect("small");
     let mut factorisation = analysis.cholesky(matrix).expect("a minimum");
     let mut generator = Pcg64::seed_from_u64(1);
     let mut mode: Vec<f64> = (0..matrix.dimension()).map(|_| generator.random::<f64>() - 0.5).collect();

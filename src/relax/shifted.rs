@@ -145,7 +145,7 @@ impl<const D: usize> Shifted<D> {
     fn factorise_and_solve(&mut self) -> Result<(), LinearError> {
         let analysis = match &mut self.analysis {
             Some(analysis) => analysis,
-            empty => empty.insert(Analysis::new(&self.matrix)?),
+            empty => empty.insert(Analysis::of(&self.hessian)?),
         };
         self.factorisation_count += 1;
         self.unknowns.resize(self.right_side.len(), 0.0);
