@@ -71,7 +71,7 @@ fn check<const D: usize, L: PairLaw>(law: L, packing: &Packing<D>, members: Memb
         let allowed = rounding(matrix);
 
         // Symmetric in what a product does, and diagonal blocks in what they hold: one triangle is stored of each.
-        prop_close(dot(&y, &kx), dot(&x, &ky), allowed * dimension as f64, "symmetry");
+        close(dot(&y, &kx), dot(&x, &ky), allowed * dimension as f64, "symmetry");
 
         // Sum of rows: a motion of all disks alike is resisted by sites, −Γ each, and by held disks, as by their motion back.
         let held = packing.held().contains(&true);
@@ -83,7 +83,7 @@ fn check<const D: usize, L: PairLaw>(law: L, packing: &Packing<D>, members: Memb
             assert!(held || back.iter().all(|&force| force == 0.0));
             for (row, (force, from_held)) in product(matrix, &together).iter().zip(&back).enumerate() {
                 let sites = -law.on_site_coupling() * together[row];
-                prop_close(*force, sites + from_held, allowed, "sum of a row");
+                close(*force, sites + from_held, allowed, "sum of a row");
             }
         }
 
@@ -92,7 +92,7 @@ fn check<const D: usize, L: PairLaw>(law: L, packing: &Packing<D>, members: Memb
             for (vector, image) in [(&x, &kx), (&y, &ky)] {
                 assert!(dot(vector, image) >= -allowed * dimension as f64);
             }
-            // L Dᵀ L of the dense matrix, moved up by rounding, has no negative pivot.
+            // L D Lᵀ of the dense matrix, moved up by rounding, has no negative pivot.
             let mut dense = dense(matrix);
             for pivot in 0..dimension {
                 dense[pivot][pivot] += allowed * dimension as f64;
@@ -115,14 +115,14 @@ fn check<const D: usize, L: PairLaw>(law: L, packing: &Packing<D>, members: Memb
         let (ours, theirs) = (hessian.scatter(&kx), other.scatter(&product(other.matrix(), &other.gather(&moved))));
         assert_eq!(other.matrix().dimension(), dimension);
         for (one, two) in ours.iter().rev().zip(&theirs) {
-            prop_close(-one[1], two[0], allowed, "turned, x");
-            prop_close(one[0], two[1], allowed, "turned, y");
-            (2..D).for_each(|axis| prop_close(one[axis], two[axis], allowed, "turned, z"));
+            close(-one[1], two[0], allowed, "turned, x");
+            close(one[0], two[1], allowed, "turned, y");
+            (2..D).for_each(|axis| close(one[axis], two[axis], allowed, "turned, z"));
         }
     }
 }
 
-fn prop_close(found: f64, expected: f64, allowed: f64, what: &str) {
+fn close(found: f64, expected: f64, allowed: f64, what: &str) {
     assert!((found - expected).abs() <= allowed, "{what}: {found:e} and {expected:e}, {allowed:e} allowed");
 }
 
