@@ -6,7 +6,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use jamscope::contact::{Assembly, Hertzian, Hessian, Members, OnSite, Prestress};
 use jamscope::inflation::Circle;
 use jamscope::lattice::Lattice;
-use jamscope::linear::{Analysis, LinearResponse, ordering};
+use jamscope::linear::{Analysis, LinearResponse};
 
 /// Radii of circles that hold about 1 000, 5 500, 22 000 and 89 000 disks.
 const RADII: [f64; 4] = [16.0, 37.2, 74.4, 149.0];
@@ -33,13 +33,9 @@ fn stages(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("hessian", disks), |bencher| bencher.iter(|| hessian.update(&assembly)));
         let matrix = hessian.matrix();
         group.bench_function(BenchmarkId::new("analysis", disks), |bencher| {
-            bencher.iter(|| {
-                let order = ordering::best(&hessian, &circle.packing).expect("memory");
-                Analysis::in_order(matrix, &order).expect("memory")
-            })
+            bencher.iter(|| Analysis::of(&hessian).expect("memory"))
         });
-        let order = ordering::best(&hessian, &circle.packing).expect("memory");
-        let mut analysis = Analysis::in_order(matrix, &order).expect("memory");
+        let mut analysis = Analysis::of(&hessian).expect("memory");
         println!(
             "{disks} disks: {} values in a factor, {} in the matrix",
             analysis.factor_count(),

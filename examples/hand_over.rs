@@ -2,18 +2,22 @@
 //!
 //! ```text
 //! cargo run --release --example hand_over -- [NAME] ...          (stored Hertzian packings, four centres each)
-//! cargo run --release --example hand_over -- DISKS PRESSURE ...  (packings prepared first, one centre each)
+//! cargo run --release --example hand_over -- [--keep FOLDER] DISKS PRESSURE ...  (packings prepared first, one centre each)
 //! ```
 //!
 //! The centre of each packing is inflated by 0.1 in a circle with a held rim and the rest relaxed to 10⁻¹² of the mean contact
-//! force, by FIRE alone and by the staged relaxer with hand-overs from 10⁻¹ to 10⁻⁶. Evaluations and factorisations are
-//! sums over the centres (the most factorisations of one centre beside them), times are over that of FIRE to 10⁻¹².
+//! force: stored packings by FIRE alone and by the staged relaxer with hand-overs from 10⁻¹ to 10⁻⁶, prepared ones by the
+//! staged relaxer as it is. Evaluations and factorisations are sums over the centres (the most factorisations of one centre
+//! beside them). Times of stored packings are over that of FIRE to 10⁻¹², those of prepared ones in seconds. With `--keep` a
+//! prepared packing is written to a file of the folder, and read from there by the next run.
 
 use std::error::Error;
+use std::path::Path;
+use std::time::Instant;
 
 use jamscope::contact::{ContactNetwork, Hertzian};
 use jamscope::inflation::{Centre, Circle, choose_centre};
-use jamscope::io::read_packing;
+use jamscope::io::{read_packing, write_packing};
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{Cost, Fire, ForceLimit, Outcome, Relaxer, Staged, Stop};
@@ -38,21 +42,23 @@ fn main() -> Result<(), Box<dyn Error>> {
         "{:<18} {:>9} {:>12} {:>7} {:>5} {:>6} {:>9} {:>9}  stop",
         "packing", "hand-over", "evaluations", "factor.", "most", "time", "residual", "floor"
     );
+    let (folder, arguments) = match arguments.as_slice() {
+        [option, folder, rest @ ..] if option == "--keep" => (Some(Path::new(folder)), rest),
+        all => (None, all),
+    };
     if let Some(Ok(disk_count)) = arguments.first().map(|first| first.parse::<usize>()) {
         for text in &arguments[1..] {
-            let pressure = text.parse()?;
-            let preparation = Preparation {
-                disk_count,
-                mixture: Mixture::default(),
-                target: Target::Pressure(pressure),
-                tolerance: 0.2,
-                seed: 1,
-            };
-            let coarse = Staged { limit: ForceLimit::Relative(1e-6), ..Staged::default() };
-            let prepared = prepare::<2, _>(&preparation, &law, &coarse, &mut ())?;
-            let name = format!("{disk_count} at {:.3}", prepared.pressure);
-            let start = inflated(prepared.packing.get(), 1)?;
-            table(&name, &[start], &[1e-4], &law)?;
+            let file = folder.map(|folder| folder.join(format!("hertz_N{disk_count}_p{text}.xyz")));
+            let packing = prepared(disk_count, text.parse()?, &law, file.as_deref())?;
+            let start = inflated(&packing, 1)?;
+            row(
+                &format!("{disk_count} at {text}"),
+                "default",
+                &[start],
+                &Staged { limit: LIMIT, ..Staged::default() },
+                &law,
+                Some(1.0),
+            )?;
         }
     } else {
         let names: Vec<&str> =
@@ -64,6 +70,29 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     Ok(())
+}
+
+/// A packing at a pressure, to 20 %: from the file if there is one, else prepared, and written to the file if one is named.
+fn prepared(
+    disk_count: usize,
+    pressure: f64,
+    law: &Hertzian,
+    file: Option<&Path>,
+) -> Result<Packing<2>, Box<dyn Error>> {
+    if let Some(file) = file.filter(|file| file.exists()) {
+        return Ok(read_packing(file)?);
+    }
+    let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
+    let preparation = Preparation { disk_count, mixture, target, tolerance: 0.2, seed: 1 };
+    let coarse = Staged { limit: ForceLimit::Relative(1e-6), ..Staged::default() };
+    let clock = Instant::now();
+    let prepared = prepare::<2, _>(&preparation, law, &coarse, &mut ())?;
+    let (pressure, seconds) = (prepared.pressure, clock.elapsed().as_secs_f64());
+    println!("prepared {disk_count} at p = {pressure:.4}: {} relaxations, {seconds:.0} s", prepared.relaxation_count);
+    if let Some(file) = file {
+        write_packing(file, prepared.packing.get(), &[], &[])?;
+    }
+    Ok(prepared.packing.get().clone())
 }
 
 /// The packing cut to a circle around a small disk of its backbone, which has grown by 0.1.

@@ -1,4 +1,4 @@
-//! Minimum degree against nested dissection on jammed packings: values in a factor, and times as the least of three; and
+//! Minimum degree, on rows and on disks, against nested dissection on jammed packings: values in a factor, and times as the least of three; and
 //! conjugate gradients with an incomplete factor once.
 //!
 //! ```sh
@@ -75,14 +75,22 @@ fn compare<const D: usize>(packing: &Packing<D>, folder: Option<&Path>) -> Resul
     }
     let right = vec![1.0; matrix.dimension()];
     let mut solution = right.clone();
-    for dissected in [false, true] {
+    for name in ["minimum degree on rows", "minimum degree", "nested dissection"] {
         let mut least = [f64::INFINITY; 4];
         let mut value_count = 0;
         for _ in 0..REPEATS {
             let mut clock = Clock(Instant::now());
-            let order = if dissected { nested_dissection(&hessian, &packing) } else { minimum_degree(&hessian)? };
+            let order = match name {
+                "minimum degree" => Some(minimum_degree(&hessian)?),
+                "nested dissection" => Some(nested_dissection(&hessian)),
+                _ => None,
+            };
             let ordered = clock.lap();
-            let mut analysis = Analysis::in_order(matrix, &order)?;
+            // On rows the order is part of the analysis.
+            let mut analysis = match order {
+                Some(order) => Analysis::in_order(matrix, &order)?,
+                None => Analysis::new(matrix)?,
+            };
             let analysed = clock.lap();
             value_count = analysis.factor_count();
             let mut factorisation = analysis.cholesky(matrix)?;
@@ -91,7 +99,6 @@ fn compare<const D: usize>(packing: &Packing<D>, folder: Option<&Path>) -> Resul
             let laps = [ordered, analysed, factorised, clock.lap()];
             least.iter_mut().zip(laps).for_each(|(least, lap)| *least = least.min(lap));
         }
-        let name = if dissected { "nested dissection" } else { "minimum degree" };
         let [ordered, analysed, factorised, solved] = least;
         println!(
             "| {D} | {} | {name} | {value_count} | {ordered:.1} | {analysed:.1} | {factorised:.1} | {solved:.1} |",

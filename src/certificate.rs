@@ -263,7 +263,7 @@ impl Stability {
         let fixed = if floating { pinned(packing, network)? } else { None };
         let hessian = Hessian::new(fixed.as_ref().unwrap_or(packing), law, Members::Backbone, Prestress::Included)?;
         let matrix = hessian.matrix();
-        let counted = Analysis::new(matrix).and_then(|mut analysis| {
+        let counted = Analysis::of(&hessian).and_then(|mut analysis| {
             let factorisation = analysis.factorise(matrix)?;
             Ok((factorisation.negative_eigenvalue_count(), factorisation.pivot_ratio()))
         });

@@ -1,6 +1,9 @@
 //! Few disks, answers in closed form: chains, a ring, collisions, a square lattice at its instability, with overlaps from
 //! 10⁻¹⁵ to half a radius.
 
+#[path = "scenes/square_lattice.rs"]
+mod square_lattice;
+
 use std::f64::consts::PI;
 
 use jamscope::contact::damping::ConstantDamping;
@@ -11,6 +14,7 @@ use jamscope::relax::{
     StepBack, Stop, Uphill,
 };
 use jamscope::vector::norm;
+use square_lattice::square_lattice;
 
 /// Radii of the chains: multiples of 1/8, so that touching disks stand at exact positions.
 const RADII: [f64; 7] = [0.5, 0.75, 0.5, 0.625, 1.0, 0.5, 0.75];
@@ -216,19 +220,6 @@ fn an_undamped_hertzian_collision_lasts_as_long_as_hertz_says() {
     for (steps, error) in [200.0f64, 400.0, 800.0].into_iter().zip(&errors) {
         assert!(*error < 10.0 / (steps * steps), "{error:e} of the velocity lost with {steps} steps");
     }
-}
-
-/// n × n disks of radius 1/2 at the sites of a square lattice of spacing `1 − overlap`, columns moved along y by ± `height`.
-///
-/// An overlap that is a power of two from 2⁻⁴⁶ on rounds nothing in sites up to 8.
-fn square_lattice(count: usize, overlap: f64, height: f64) -> Packing<2> {
-    let spacing = 1.0 - overlap;
-    let sites = (0..count * count).map(|site| (site / count, site % count));
-    let positions = sites.clone().map(|(x, y)| [x as f64 * spacing, y as f64 * spacing]).collect();
-    let corrections = sites.map(|(x, _)| [0.0, if x % 2 == 0 { height } else { -height }]).collect();
-    Packing::new(Domain::cube(count as f64 * spacing), positions, vec![0.5; count * count])
-        .and_then(|packing| packing.with_corrections(corrections))
-        .expect("valid")
 }
 
 /// Force on a disk of the lattice above in closed form: two neighbours, each `2 height` across, 2 F(δ') 2h/r away from the row.

@@ -147,11 +147,15 @@ fn of<const D: usize, L: PairLaw>(
 
 /// The lines of a certificate.
 fn write_certificate(f: &mut std::fmt::Formatter<'_>, certificate: &Certificate) -> std::fmt::Result {
-    writeln!(
-        f,
-        "{:<28} {:e} (rounding floor {:e}) [1]",
-        "relative residual", certificate.relative_residual, certificate.rounding_floor
-    )?;
+    if certificate.contacts.is_none() {
+        writeln!(f, "{:<28} none: there is no backbone", "relative residual")?;
+    } else {
+        writeln!(
+            f,
+            "{:<28} {:e} (rounding floor {:e}) [1]",
+            "relative residual", certificate.relative_residual, certificate.rounding_floor
+        )?;
+    }
     if let Some(contacts) = certificate.contacts {
         writeln!(
             f,

@@ -10,7 +10,7 @@ use crate::contact::forces::{self, Totals};
 use crate::contact::law::PairLaw;
 use crate::contact::neighbours::{Disks, PairList, build_pairs, spatial_order};
 use crate::packing::{Domain, Packing, PackingError};
-use crate::vector::{Vector, difference, dot, extended_sum, two_sum};
+use crate::vector::{Vector, difference, dot, extended_sum, sum, two_sum};
 
 /// Width of the skin over the smallest radius \[1\]. Changes speed only: a wider one makes lists last longer and adds pairs
 /// that do not touch.
@@ -143,6 +143,11 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Radii in working order.
     pub fn radii(&self) -> &[f64] {
         &self.radii
+    }
+
+    /// Where a disk is, rounded, from an origin of the assembly's own \[length\].
+    pub fn place(&self, index: usize) -> Vector<D> {
+        sum(self.anchors[index], self.displacements[index])
     }
 
     /// The contact law.

@@ -56,6 +56,8 @@ pub struct Hessian<const D: usize> {
     disks: Vec<u32>,
     /// Block row of each disk in working order; `NONE` for those left out.
     blocks: Vec<u32>,
+    /// Where the disks with rows are, from an origin of the assembly's own.
+    places: Vec<Vector<D>>,
     disk_count: usize,
     mobile_count: usize,
     /// Held disks in working order, in the packing's own numbering.
@@ -137,6 +139,7 @@ impl<const D: usize> Hessian<D> {
             members,
             disks: Vec::new(),
             blocks: Vec::new(),
+            places: Vec::new(),
             disk_count: assembly.len(),
             mobile_count: assembly.mobile_count(),
             held: assembly.order()[assembly.mobile_count()..].to_vec(),
@@ -239,9 +242,11 @@ impl<const D: usize> Hessian<D> {
         self.disks.clear();
         self.blocks.clear();
         self.blocks.resize(assembly.len(), NONE);
+        self.places.clear();
         for disk in (0..mobile).filter(|&disk| member[disk]) {
             self.blocks[disk] = self.disks.len() as u32;
             self.disks.push(assembly.order()[disk]);
+            self.places.push(assembly.place(disk));
         }
     }
 
@@ -258,6 +263,12 @@ impl<const D: usize> Hessian<D> {
     /// The disk of each block of D rows, in the packing's own numbering.
     pub fn disks(&self) -> &[u32] {
         &self.disks
+    }
+
+    /// Where each disk of [`Hessian::disks`] was when the derivatives were taken, from an origin of the assembly's own
+    /// \[length\].
+    pub fn places(&self) -> &[Vector<D>] {
+        &self.places
     }
 
     /// The first row of a disk given in working order; none if the disk has no rows.

@@ -15,6 +15,8 @@
 //! | `label:I:1` | label, repeats allowed; goes before `id` | no |
 //! | `held:I:1` or `held:L:1` | 1 or T: held in place | no |
 //! | `correction:R:D` | low part of the centre \[length\], [`Packing::corrections`] | no |
+//! | `site:R:D` | site of the disk \[length\], [`Packing::sites`] | no |
+//! | `site_correction:R:D` | low part of the site \[length\]; goes with `site` | no |
 //!
 //! Columns stand in any order, others are ignored. `pbc` is all T in the directions of the packing (a periodic box, its
 //! sides from `Lattice`, its corner from `Origin`) or all F (the open plane, whatever the lattice). Without `pbc` a
@@ -50,11 +52,16 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
     let domain = domain(source, line, &comment)?;
     let mut disks = Vec::with_capacity(count);
     let mut extras = Vec::with_capacity(count);
+    let mut sites = Vec::with_capacity(if columns.site.is_some() { count } else { 0 });
     for row_line in line + 1..line + 1 + count {
         let row = source.row(row_line);
         row.expect_count(columns.total)?;
         disks.push(columns.disk(source, &row, row_line)?);
-        extras.push((columns.held(source, &row, row_line)?, columns.correction(&row)?));
+        extras.push((columns.held(source, &row, row_line)?, columns.vector(&row, columns.correction, "correction")?));
+        if columns.site.is_some() {
+            let rest = columns.vector(&row, columns.site_correction, "site_correction")?;
+            sites.push((columns.vector(&row, columns.site, "site")?, rest));
+        }
     }
     if columns.label.is_none() && columns.id.is_some() {
         source.order_by_id(&disks)?;
@@ -73,6 +80,11 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
                 return Err(source.bad(disks[disk].line, "correction", &value, "a number much below the coordinate"));
             }
         }
+    }
+    if columns.site.is_some() {
+        packing = packing
+            .with_sites(sites)
+            .map_err(|error| ReadError::Packing { path: source.path.into(), source: error })?;
     }
     Ok(packing)
 }
@@ -187,6 +199,8 @@ struct Columns<const D: usize> {
     label: Option<usize>,
     held: Option<usize>,
     correction: Option<usize>,
+    site: Option<usize>,
+    site_correction: Option<usize>,
     total: usize,
 }
 
@@ -226,6 +240,11 @@ impl<const D: usize> Columns<D> {
         let (radius, _) = find("radius", "RI", &[1], "radius:R:1")?
             .ok_or_else(|| source.missing(line, "column radius in Properties", properties))?;
         let start = |found: Option<(usize, usize)>| found.map(|(start, _)| start);
+        let site = start(find("site", "R", &[D], "site:R with D values")?);
+        let site_correction = start(find("site_correction", "R", &[D], "site_correction:R with D values")?);
+        if site.is_none() && site_correction.is_some() {
+            return Err(source.missing(line, "column site in Properties", properties));
+        }
         Ok(Columns {
             position,
             position_width,
@@ -234,6 +253,8 @@ impl<const D: usize> Columns<D> {
             label: start(find("label", "I", &[1], "label:I:1")?),
             held: start(find("held", "IL", &[1], "held:I:1 or held:L:1")?),
             correction: start(find("correction", "R", &[D], "correction:R with D values")?),
+            site,
+            site_correction,
             total,
         })
     }
@@ -259,13 +280,14 @@ impl<const D: usize> Columns<D> {
         flag(value).ok_or_else(|| source.bad(line, "held", value, "1 or T, 0 or F"))
     }
 
-    fn correction(&self, row: &Row) -> Result<Vector<D>, ReadError> {
-        let mut correction = [0.0; D];
-        if let Some(column) = self.correction {
+    /// The D values from a column on; nothing where there is no such column.
+    fn vector(&self, row: &Row, start: Option<usize>, name: &str) -> Result<Vector<D>, ReadError> {
+        let mut vector = [0.0; D];
+        if let Some(column) = start {
             for axis in 0..D {
-                correction[axis] = row.number(column + axis, "correction")?;
+                vector[axis] = row.number(column + axis, name)?;
             }
         }
-        Ok(correction)
+        Ok(vector)
     }
 }

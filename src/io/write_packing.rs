@@ -8,7 +8,8 @@ use crate::io::atomic::{WriteError, write_atomically};
 use crate::packing::{Domain, Packing};
 
 /// Columns that [`write_packing`] writes itself or to which programs give a meaning of their own (Z: atomic number).
-const RESERVED_COLUMNS: [&str; 8] = ["species", "pos", "radius", "id", "label", "held", "correction", "Z"];
+const RESERVED_COLUMNS: [&str; 10] =
+    ["species", "pos", "radius", "id", "label", "held", "correction", "site", "site_correction", "Z"];
 
 /// Keys that [`write_packing`] writes itself.
 const RESERVED_KEYS: [&str; 5] = ["Lattice", "Origin", "pbc", "Properties", "dimension"];
@@ -28,7 +29,8 @@ pub struct Column<'a> {
 /// to the same bits.
 ///
 /// Numbers are the shortest decimals that give the same `f64` again. Columns `species pos radius id`, then `held` if a
-/// disk is held, `correction` if a centre has one, then `columns`. Labels that repeat (the periodic images of a rim) are
+/// disk is held, `correction` if a centre has one, `site` if disks have sites (`site_correction` if one of those has a low
+/// part), then `columns`. Labels that repeat (the periodic images of a rim) are
 /// written as `label`, as programs expect an `id` to be unique. For D = 2 a coordinate z = 0 and a lattice of height 1
 /// are added. In the open plane there is no lattice and `pbc="F F F"`.
 ///
@@ -99,6 +101,13 @@ fn write<const D: usize>(
     if corrected {
         layout += &format!(":correction:R:{D}");
     }
+    let split = packing.sites().is_some_and(|sites| sites.iter().flat_map(|site| site.1).any(|low| low.to_bits() != 0));
+    if packing.sites().is_some() {
+        layout += &format!(":site:R:{D}");
+    }
+    if split {
+        layout += &format!(":site_correction:R:{D}");
+    }
     for column in columns {
         layout += &format!(":{}:R:{}", column.name, column.width);
     }
@@ -125,6 +134,12 @@ fn write<const D: usize>(
         }
         if corrected {
             numbers(&mut line, &packing.corrections()[disk]);
+        }
+        if let Some(sites) = packing.sites() {
+            numbers(&mut line, &sites[disk].0);
+            if split {
+                numbers(&mut line, &sites[disk].1);
+            }
         }
         for column in columns {
             numbers(&mut line, &column.values[disk * column.width..(disk + 1) * column.width]);

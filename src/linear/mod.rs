@@ -13,7 +13,7 @@
 //! let circle = Lattice::triangular(0.5, 0.05)?.circle(8.0)?;
 //! let hessian = Hessian::new(&circle.packing, &Hertzian::default(), Members::Backbone, Prestress::Included)?;
 //! // One analysis serves all matrices with entries in the same places.
-//! let mut analysis = Analysis::new(hessian.matrix())?;
+//! let mut analysis = Analysis::of(&hessian)?;
 //! let mut factors = analysis.factorise(hessian.matrix())?;
 //! assert!(factors.is_cholesky() && factors.negative_eigenvalue_count() == 0);
 //! // Every disk pushed along x.

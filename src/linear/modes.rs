@@ -116,7 +116,7 @@ impl<const D: usize> VibrationalModes<D> {
         if DENSE_SHARE * count >= matrix.dimension() {
             search.all()?
         } else {
-            search.until_found(count)?
+            search.until_found(count, || Analysis::of(&hessian))?
         }
         let mode = |pair: &Pair| {
             let displacements = hessian.scatter(&pair.vector);
@@ -192,12 +192,15 @@ impl<'a> Search<'a> {
     }
 
     /// Goes on until the lowest `count` pairs are known to be the lowest.
-    fn until_found(&mut self, count: usize) -> Result<(), LinearError> {
+    fn until_found(
+        &mut self,
+        count: usize,
+        analysis: impl Fn() -> Result<Analysis, LinearError>,
+    ) -> Result<(), LinearError> {
         if count == 0 {
             return Ok(());
         }
-        let mut inverse = Analysis::new(self.matrix)?;
-        let mut counting = Analysis::new(self.matrix)?;
+        let (mut inverse, mut counting) = (analysis()?, analysis()?);
         let shifted = self.definite(&mut inverse)?;
         let mut inverse = inverse.cholesky(&shifted)?;
         let available = self.matrix.dimension() - self.translation_count;

@@ -118,7 +118,7 @@ impl<const D: usize> ElasticModuli<D> {
         let links = links(&network, law, prestress);
         let strains = strains::<D>();
 
-        let mut analysis = Analysis::new(hessian.matrix())?;
+        let mut analysis = Analysis::of(&hessian)?;
         let mut factorisation = analysis.factorise(hessian.matrix())?;
         let mut backward_error = 0.0;
         let mut fields = Vec::with_capacity(strains.len());

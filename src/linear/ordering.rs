@@ -2,7 +2,8 @@
 //!
 //! Both orders treat a disk as one vertex, coupled to those it touches, and keep its D coordinates together:
 //! [`minimum_degree`] guesses from the contacts alone, [`nested_dissection`] knows where the disks are. A function here
-//! gives the row to eliminate in each place, for [`Analysis::in_order`](crate::linear::Analysis::in_order).
+//! gives the row to eliminate in each place, for [`Analysis::in_order`](crate::linear::Analysis::in_order);
+//! [`Analysis::of`](crate::linear::Analysis::of) takes [`best`].
 //!
 //! # Source
 //! Amestoy, Davis, Duff (1996), SIAM J. Matrix Anal. Appl. 17, 886 (approximate minimum degree, as in faer 0.24); George
@@ -14,7 +15,6 @@ use faer::sparse::linalg::amd;
 
 use crate::contact::Hessian;
 use crate::linear::{LinearError, dissection};
-use crate::packing::Packing;
 
 /// The order that is best here: minimum degree in two dimensions, nested dissection in three.
 ///
@@ -24,11 +24,8 @@ use crate::packing::Packing;
 ///
 /// # Errors
 /// Not enough memory.
-///
-/// # Panics
-/// If the Hessian is not one of this packing.
-pub fn best<const D: usize>(hessian: &Hessian<D>, packing: &Packing<D>) -> Result<Vec<usize>, LinearError> {
-    if D == 2 { minimum_degree(hessian) } else { Ok(nested_dissection(hessian, packing)) }
+pub fn best<const D: usize>(hessian: &Hessian<D>) -> Result<Vec<usize>, LinearError> {
+    if D == 2 { minimum_degree(hessian) } else { Ok(nested_dissection(hessian)) }
 }
 
 /// Approximate minimum degree on the disks.
@@ -56,16 +53,12 @@ pub fn minimum_degree<const D: usize>(hessian: &Hessian<D>) -> Result<Vec<usize>
     Ok(unknowns::<D>(order.into_iter()))
 }
 
-/// Nested dissection of the disks where they are in a packing.
-///
-/// # Panics
-/// If the Hessian is not one of this packing.
+/// Nested dissection of the disks where they are.
 ///
 /// # Cost
 /// N log N in disks.
-pub fn nested_dissection<const D: usize>(hessian: &Hessian<D>, packing: &Packing<D>) -> Vec<usize> {
-    let points: Vec<_> = hessian.disks().iter().map(|&disk| packing.positions()[disk as usize]).collect();
-    let order = dissection::nested_dissection(&points, &hessian.graph());
+pub fn nested_dissection<const D: usize>(hessian: &Hessian<D>) -> Vec<usize> {
+    let order = dissection::nested_dissection(hessian.places(), &hessian.graph());
     unknowns::<D>(order.into_iter().map(|vertex| vertex as usize))
 }
 

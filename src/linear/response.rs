@@ -14,7 +14,7 @@
 use crate::contact::forces::geometry;
 use crate::contact::hessian::{Hessian, Members, Prestress};
 use crate::contact::{Assembly, ContactNetwork, PairLaw};
-use crate::linear::{Analysis, LinearError, ordering};
+use crate::linear::{Analysis, LinearError};
 use crate::packing::Packing;
 use crate::vector::{Vector, difference, scaled, sum};
 
@@ -170,7 +170,7 @@ fn solve<const D: usize, L: PairLaw>(
         return Err(LinearError::NoBackbone { disk_count });
     }
     let push = load(&assembly, &hessian)?;
-    let mut analysis = Analysis::in_order(matrix, &ordering::best(&hessian, packing)?)?;
+    let mut analysis = Analysis::of(&hessian)?;
     let mut factorisation = analysis.factorise(matrix)?;
     let mut unknowns = vec![0.0; push.len()];
     let solution = factorisation.solve(&push, &mut unknowns)?;

@@ -211,6 +211,23 @@ impl<const D: usize> Packing<D> {
         self
     }
 
+    /// The same packing with these sites, position and correction of each.
+    ///
+    /// # Errors
+    /// One site a disk, all finite.
+    pub fn with_sites(mut self, sites: Vec<(Vector<D>, Vector<D>)>) -> Result<Self, PackingError> {
+        if sites.len() != self.len() {
+            return Err(PackingError::LengthsDiffer { positions: sites.len(), radii: self.len() });
+        }
+        for (disk, (site, rest)) in sites.iter().enumerate() {
+            if let Some(axis) = (0..D).find(|&axis| !(site[axis].is_finite() && rest[axis].is_finite())) {
+                return Err(PackingError::PositionNotFinite { disk, axis, value: site[axis] + rest[axis] });
+            }
+        }
+        self.sites = Some(sites);
+        Ok(self)
+    }
+
     /// The same packing without sites: the next relaxation that needs some begins with them where the disks are.
     #[must_use]
     pub fn without_sites(mut self) -> Self {

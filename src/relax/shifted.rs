@@ -13,7 +13,7 @@
 //! them: with θ = 1 the matrix is positive definite whatever the packing (to the change of r since the anchors). So θ, from
 //! 0 upwards, is the whole of the globalisation, and it has no unit. ε k_i holds what nothing else holds, such as the
 //! translations of a periodic box; (η + θ) k_i a rattler along directions in which none of its contacts does, so that it does
-//! not run into its neighbours.
+//! not run into its neighbours. No entry of S is below 10⁻¹² of the largest k_i.
 
 use crate::contact::assembly::Assembly;
 use crate::contact::forces::stiffness_rows;
@@ -21,7 +21,7 @@ use crate::contact::hessian::{Hessian, Members, Prestress, StiffContact};
 use crate::contact::law::PairLaw;
 use crate::linear::{Analysis, LinearError};
 use crate::sparse::SymmetricMatrix;
-use crate::vector::{Vector, norm, scaled};
+use crate::vector::{Vector, larger, norm, scaled};
 
 /// ε: far below the softest mode over the stiffest (10⁻⁷ near jamming), far above the rounding of a pivot (10⁻¹⁴).
 const GROUND: f64 = 1e-10;
@@ -29,6 +29,10 @@ const GROUND: f64 = 1e-10;
 /// Largest η: about what remains of the overlap of a rattler after a step. η is the net force of the rattler over the mean
 /// contact force, at most this: a rattler that is almost free has little way to go, however steep the wedge it leaves.
 const OFF_BACKBONE: f64 = 1e-4;
+
+/// Least diagonal added over the largest k_i: a rattler may have so little stiffness left that its pivots count as those of a
+/// singular matrix (10⁻¹⁴). A hundred times above that, and below it a rattler's force is below 10⁻²⁴ of the others.
+const LEAST: f64 = 1e-12;
 
 /// What became of a factorisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -114,6 +118,7 @@ impl<const D: usize> Shifted<D> {
         self.matrix.clone_from(self.hessian.matrix());
         self.right_side.clear();
         self.right_side.resize(self.matrix.dimension(), 0.0);
+        let least = LEAST * self.stiffness[..assembly.mobile_count()].iter().fold(0.0, |most, &k| larger(k, most));
         for disk in 0..assembly.mobile_count() {
             let Some(row) = self.hessian.row_of(disk as u32) else { continue };
             let ground = if backbone[disk] {
@@ -122,7 +127,7 @@ impl<const D: usize> Shifted<D> {
                 let force = norm(assembly.forces[disk]) / mean;
                 shift + if force < OFF_BACKBONE { force.max(GROUND) } else { OFF_BACKBONE }
             };
-            let value = shift * self.prestress[disk] + ground * self.stiffness[disk];
+            let value = larger(shift * self.prestress[disk] + ground * self.stiffness[disk], least);
             for d in 0..D {
                 // The first entry of a column is the one on the diagonal.
                 self.matrix.values[self.matrix.starts[row + d]] += value;
@@ -145,7 +150,7 @@ impl<const D: usize> Shifted<D> {
     fn factorise_and_solve(&mut self) -> Result<(), LinearError> {
         let analysis = match &mut self.analysis {
             Some(analysis) => analysis,
-            empty => empty.insert(Analysis::new(&self.matrix)?),
+            empty => empty.insert(Analysis::of(&self.hessian)?),
         };
         self.factorisation_count += 1;
         self.unknowns.resize(self.right_side.len(), 0.0);

@@ -36,7 +36,7 @@ impl Default for Staged {
     fn default() -> Self {
         Staged {
             limit: ForceLimit::default(),
-            hand_over: 1e-4,
+            hand_over: 1e-5,
             step_limit: Fire::default().step_limit,
             factorisation_limit: 300,
             largest_step: 0.1,

@@ -80,19 +80,25 @@ pub(crate) fn failures(samples: &[SampleReport]) -> impl Iterator<Item = (&str, 
     })
 }
 
-/// The samples whose profile could not be fitted, with the reason.
-#[cfg(feature = "fit")]
-pub(crate) fn refusals(samples: &[SampleReport]) -> impl Iterator<Item = (&str, &str)> {
-    samples.iter().filter_map(|sample| match &done(sample)?.profile_fit {
-        Some(crate::run::FitResult::Refused(reason)) => Some((sample.name.as_str(), reason.as_str())),
-        _ => None,
-    })
-}
-
-/// Without the feature `fit` nothing is fitted and nothing refused.
-#[cfg(not(feature = "fit"))]
-pub(crate) fn refusals(_samples: &[SampleReport]) -> impl Iterator<Item = (&str, &str)> {
-    std::iter::empty()
+/// What samples were refused, with the reason: sample, what there is not, why.
+#[cfg_attr(
+    not(any(feature = "fit", feature = "linear")),
+    allow(unused_variables, unused_mut, reason = "nothing is refused")
+)]
+pub(crate) fn refusals(samples: &[SampleReport]) -> Vec<(&str, &'static str, &str)> {
+    let mut refused = Vec::new();
+    #[cfg(any(feature = "fit", feature = "linear"))]
+    for (sample, result) in samples.iter().filter_map(|sample| Some((sample, done(sample)?))) {
+        #[cfg(feature = "fit")]
+        if let Some(crate::run::FitResult::Refused(reason)) = &result.profile_fit {
+            refused.push((sample.name.as_str(), "no fit", reason.as_str()));
+        }
+        #[cfg(feature = "linear")]
+        if let Some(crate::run::PlasticResult::Refused(reason)) = &result.plastic_part {
+            refused.push((sample.name.as_str(), "no linear response", reason.as_str()));
+        }
+    }
+    refused
 }
 
 /// All rows of these samples of a report; sections without rows are left out.

@@ -41,7 +41,7 @@ fn section_lines(section: &Section, lines: &mut Vec<String>) {
 
 fn failure_lines(samples: &[SampleReport], lines: &mut Vec<String>) {
     let failed = failures(samples).map(|(name, reason)| format!("{name} failed: {reason}"));
-    let unfitted = refusals(samples).map(|(name, reason)| format!("{name}, no fit: {reason}"));
+    let unfitted = refusals(samples).into_iter().map(|(name, what, reason)| format!("{name}, {what}: {reason}"));
     for text in failed.chain(unfitted) {
         lines.push(String::new());
         lines.extend(wrapped(&text));

@@ -46,9 +46,9 @@ fn row<const D: usize>() -> impl Strategy<Value = Row<D>> {
 }
 
 fn packing<const D: usize>() -> impl Strategy<Value = Packing<D>> {
-    let flags = (any::<bool>(), any::<bool>(), any::<bool>());
+    let flags = (any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>());
     (domain(), prop::collection::vec(row::<D>(), 1..12), flags).prop_map(
-        |(domain, rows, (corrected, held, labelled))| {
+        |(domain, rows, (corrected, held, labelled, tied))| {
             let positions: Vec<_> = rows.iter().map(|row| row.0).collect();
             let mut packing =
                 Packing::new(domain, positions.clone(), rows.iter().map(|row| row.2).collect()).expect("valid disks");
@@ -62,6 +62,12 @@ fn packing<const D: usize>() -> impl Strategy<Value = Packing<D>> {
             }
             if labelled {
                 packing = packing.with_labels(rows.iter().map(|row| row.4).collect()).expect("a label a disk");
+            }
+            if tied {
+                // Anywhere: away from the disks, with low parts of their own if those have some.
+                let low = |d: usize, row: &Row<D>| if corrected { row.0[d] * (-60f64).exp2() * row.1[d] } else { 0.0 };
+                let site = |row: &Row<D>| (row.0.map(|x| -0.5 * x), std::array::from_fn(|d| low(d, row)));
+                packing = packing.with_sites(rows.iter().map(site).collect()).expect("a finite site a disk");
             }
             packing
         },
@@ -77,7 +83,9 @@ fn bits<const D: usize>(packing: &Packing<D>) -> Vec<u64> {
     let vectors = packing.positions().iter().chain(packing.corrections()).flatten();
     let numbers = domain.iter().chain(vectors).chain(packing.radii()).map(|value| value.to_bits());
     let flags = packing.held().iter().map(|&held| held.into());
-    numbers.chain(flags).chain(packing.labels().iter().copied()).collect()
+    let sites = packing.sites().into_iter().flatten().flat_map(|site| site.0.into_iter().chain(site.1));
+    let sites = sites.map(f64::to_bits);
+    numbers.chain(flags).chain(packing.labels().iter().copied()).chain(sites).collect()
 }
 
 fn assert_round_trip<const D: usize>(packing: &Packing<D>) -> Result<(), TestCaseError> {
@@ -122,6 +130,21 @@ fn columns_and_properties_of_the_caller_do_not_disturb_the_packing() {
         X 1.0 2.0 0.0 0.5 0 0.1 -0.2 0.0\n\
         X 2.1 2.0 0.0 0.7 1 NaN 1e-300 1.0\n";
     assert_eq!(text, expected);
+}
+
+#[test]
+fn a_site_is_written_only_where_there_is_one_and_its_low_part_never_stands_alone() {
+    let scratch = Scratch::new();
+    let packing = Packing::<2>::new(Domain::cube(9.0), vec![[1.0, 2.0]], vec![0.5]).expect("valid");
+    let with = packing.clone().with_sites(vec![([0.1, -2.0], [1e-18, 0.0])]).expect("finite");
+    write_packing(scratch.path(), &with, &[], &[]).expect("writable");
+    assert_eq!(read_packing::<2>(scratch.path()).expect("readable"), with);
+    let text = std::fs::read_to_string(scratch.path()).expect("text");
+    assert!(text.contains(":site:R:2:site_correction:R:2") && text.ends_with(" 0.1 -2.0 1e-18 0.0\n"), "{text}");
+    let alone = "1\npbc=\"F F F\" Properties=pos:R:3:radius:R:1:site_correction:R:2\n0 0 0 0.5 0 0\n";
+    let refused = scratch.read::<2>(alone).expect_err("no site").to_string();
+    assert!(refused.contains("column site"), "{refused}");
+    assert!(packing.with_sites(vec![([0.1, f64::NAN], [0.0; 2])]).is_err());
 }
 
 #[test]

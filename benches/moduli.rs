@@ -1,0 +1,144 @@
+//! Elastic moduli, lowest modes and certificate of packings at rest, and faer's partial eigensolver on the same operator.
+//!
+//! Times are per call, factorisations included. `cargo bench --bench moduli`.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::matrix_free::LinOp;
+use faer::matrix_free::eigen::{PartialEigenParams, partial_self_adjoint_eigen, partial_self_adjoint_eigen_scratch};
+use faer::{Col, Mat, MatMut, MatRef, Par};
+use jamscope::certificate::Certificate;
+use jamscope::contact::{Hertzian, Hessian, Members, Prestress};
+use jamscope::io::read_packing;
+use jamscope::linear::{Analysis, ElasticModuli, Factorisation, VibrationalModes};
+use jamscope::packing::{Mixture, Packing};
+use jamscope::preparation::{Preparation, Target, prepare};
+use jamscope::relax::{ForceLimit, Staged};
+
+/// Modes asked for.
+const MODE_COUNTS: [usize; 3] = [1, 10, 40];
+
+fn disks(name: &str) -> Packing<2> {
+    read_packing(format!("{}/fixtures/packings/{name}.xyz", env!("CARGO_MANIFEST_DIR"))).expect("a fixture")
+}
+
+fn balls() -> Packing<3> {
+    let target = Target::PackingFraction(0.75);
+    let preparation = Preparation { disk_count: 1000, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
+    let staged = Staged { limit: ForceLimit::Relative(1e-10), ..Staged::default() };
+    prepare::<3, _>(&preparation, &Hertzian::default(), &staged, &mut ()).expect("at rest").packing.get().clone()
+}
+
+fn of<const D: usize>(criterion: &mut Criterion, name: &str, packing: &Packing<D>) {
+    let law = Hertzian::default();
+    let mut group = criterion.benchmark_group(name);
+    group.sample_size(10);
+    group.bench_function("elastic_moduli", |bencher| {
+        bencher.iter(|| ElasticModuli::of(packing, &law, Prestress::Included).expect("rigid"))
+    });
+    group.bench_function("certificate", |bencher| {
+        bencher.iter(|| Certificate::of(packing, &law, None).expect("disks apart"))
+    });
+    for count in MODE_COUNTS {
+        group.bench_function(format!("modes/{count}"), |bencher| {
+            bencher.iter(|| VibrationalModes::lowest(packing, &law, Prestress::Included, count).expect("found"))
+        });
+        group.bench_function(format!("faer_modes/{count}"), |bencher| {
+            bencher.iter(|| krylov_schur(packing, &law, count))
+        });
+    }
+    let modes = VibrationalModes::lowest(packing, &law, Prestress::Included, 10).expect("found");
+    let worst = modes.modes.iter().fold(0.0, |most: f64, mode| most.max(mode.residual));
+    let (residual, solutions, found) = krylov_schur(packing, &law, 10);
+    println!(
+        "{name}, 10 modes: {} solutions, residual {worst:.1e}; faer {solutions} solutions, residual {residual:.1e}, {found} found",
+        modes.solution_count
+    );
+}
+
+/// (K + s)⁻¹ as faer's solvers take it: one solution, refined as ours are.
+struct Inverse<'a>(std::sync::Mutex<(Factorisation<'a>, usize)>, usize);
+
+impl std::fmt::Debug for Inverse<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "Inverse of {} rows", self.1)
+    }
+}
+
+impl LinOp<f64> for Inverse<'_> {
+    fn apply_scratch(&self, _: usize, _: Par) -> StackReq {
+        StackReq::EMPTY
+    }
+
+    fn nrows(&self) -> usize {
+        self.1
+    }
+
+    fn ncols(&self) -> usize {
+        self.1
+    }
+
+    fn apply(&self, mut out: MatMut<'_, f64>, right: MatRef<'_, f64>, _: Par, _: &mut MemStack) {
+        let mut held = self.0.lock().expect("one thread");
+        let mut solution = vec![0.0; self.1];
+        for column in 0..right.ncols() {
+            let right: Vec<f64> = (0..self.1).map(|row| right[(row, column)]).collect();
+            let _ = held.0.solve(&right, &mut solution).expect("accurate");
+            held.1 += 1;
+            (0..self.1).for_each(|row| out[(row, column)] = solution[row]);
+        }
+    }
+
+    fn conj_apply(&self, out: MatMut<'_, f64>, right: MatRef<'_, f64>, par: Par, stack: &mut MemStack) {
+        self.apply(out, right, par, stack);
+    }
+}
+
+/// The lowest modes, translations among them, by faer's restarted Krylov–Schur iteration on the inverse that ours takes: largest
+/// residual over ‖K‖, solutions, modes found. Whether any is missing is not looked at.
+fn krylov_schur<const D: usize>(packing: &Packing<D>, law: &Hertzian, count: usize) -> (f64, usize, usize) {
+    let hessian = Hessian::new(packing, law, Members::Backbone, Prestress::Included).expect("disks apart");
+    let matrix = hessian.matrix();
+    let (dimension, norm) = (matrix.dimension(), matrix.norm());
+    // The translations come first.
+    let count = count + D;
+    let shifted = matrix.shifted(1e-9 * norm);
+    let mut analysis = Analysis::of(&hessian).expect("memory");
+    let factorisation = analysis.cholesky(&shifted).expect("definite");
+    let inverse = Inverse(std::sync::Mutex::new((factorisation, 0)), dimension);
+    let parameters = PartialEigenParams::default();
+    let mut memory = MemBuffer::new(partial_self_adjoint_eigen_scratch(&inverse, count, Par::Seq, parameters));
+    let (mut vectors, mut values) = (Mat::<f64>::zeros(dimension, count), vec![0.0; count]);
+    let start = Col::<f64>::from_fn(dimension, |row| (1.0 + 1.7 * row as f64 * (1.0 + 0.01 * row as f64)).sin());
+    let start = &start * (1.0 / start.norm_l2());
+    let found = partial_self_adjoint_eigen(
+        vectors.as_mut(),
+        &mut values,
+        &inverse,
+        start.as_ref(),
+        1e-14,
+        Par::Seq,
+        MemStack::new(&mut memory),
+        parameters,
+    );
+    let mut worst = 0.0f64;
+    for mode in 0..found.n_converged_eigen.min(count) {
+        let vector: Vec<f64> = (0..dimension).map(|row| vectors[(row, mode)]).collect();
+        let mut product = vec![0.0; dimension];
+        matrix.multiply(&vector, &mut product);
+        let value: f64 = vector.iter().zip(&product).map(|(x, y)| x * y).sum();
+        let off: f64 = vector.iter().zip(&product).map(|(x, y)| (y - value * x).powi(2)).sum();
+        worst = worst.max(off.sqrt() / norm);
+    }
+    let solutions = inverse.0.lock().expect("one thread").1;
+    (worst, solutions, found.n_converged_eigen)
+}
+
+fn all(criterion: &mut Criterion) {
+    of(criterion, "1000_disks", &disks("hertz_N1000_p100"));
+    of(criterion, "5548_disks", &disks("hertz_N5548_p100"));
+    of(criterion, "1000_balls", &balls());
+}
+
+criterion_group!(benches, all);
+criterion_main!(benches);

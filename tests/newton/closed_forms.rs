@@ -1,0 +1,125 @@
+//! Few disks whose rest is known in closed form, with Newton's method and the staged relaxer.
+
+use jamscope::contact::{Assembly, ContactNetwork, Hertzian, Hookean, OnSite, PairLaw, PowerLaw};
+use jamscope::packing::{Domain, Packing};
+use jamscope::relax::{RelaxerChoice, Stop};
+use jamscope::vector::{norm, sum};
+
+use crate::{at_rest, cross, newton, relax, staged};
+
+#[test]
+fn a_disk_between_four_held_ones_comes_to_rest_in_their_middle() {
+    fn check<L: PairLaw>(law: L) {
+        let limit = 1e-12;
+        let outcome = relax(&newton(limit), cross([0.02, -0.013]), &law);
+        assert!(outcome.cost.factorisation_count <= 8, "{law:?}: {:?}", outcome.cost);
+        let force = law.force(law.coefficient(0.55, 0.5), 0.05);
+        // Stiffness of the mobile disk: two contacts along, 2 F', two across, −2 F/r with r = 1.
+        let stiffness = 2.0 * (law.stiffness(force, 0.05) - force);
+        let (position, rest) = at_rest(outcome).centre(0);
+        let off = norm(sum(position, rest));
+        // Force limit over stiffness; twice, for the change of both on the way to the middle.
+        assert!(off <= 2.0 * limit * force / stiffness, "{law:?}: {off:e} from the middle");
+    }
+    check(Hertzian::default());
+    check(Hookean::default());
+    check(PowerLaw { energy_scale: 3.0, exponent: 3.5 });
+}
+
+/// Three disks in a row between two held ones have no backbone, and nothing holds them across the row: they rest under
+/// one force F = c_j δ_j^(α−1), the overlaps adding up to what the last disk was pushed in.
+#[test]
+fn a_chain_without_a_backbone_comes_to_rest_under_one_force() {
+    let (law, total, limit) = (Hertzian::default(), 0.125, 1e-12);
+    let radii = [0.5, 0.75, 0.5, 0.625, 1.0];
+    let mut positions = vec![[0.0, 0.0]];
+    for pair in radii.windows(2) {
+        positions.push([positions[positions.len() - 1][0] + pair[0] + pair[1], 0.0]);
+    }
+    positions[4][0] -= total;
+    let packing = Packing::new(Domain::Open, positions, radii.to_vec())
+        .and_then(|packing| packing.with_held(vec![true, false, false, false, true]))
+        .expect("valid");
+    let shares: Vec<f64> = radii.windows(2).map(|pair| law.coefficient(pair[0], pair[1]).powf(-2.0 / 3.0)).collect();
+    for choice in [RelaxerChoice::Newton(newton(limit)), RelaxerChoice::Staged(staged(limit))] {
+        let end = at_rest(relax(&choice, packing.clone(), &law));
+        let network = ContactNetwork::new(&end, &law).expect("no coincidence");
+        assert_eq!(network.contacts.len(), 4);
+        for contact in &network.contacts {
+            let expected = total * shares[contact.first as usize] / shares.iter().sum::<f64>();
+            // Forces differ by the limit a disk, overlaps by two thirds of that; rounding of positions up to 5 over 0.03.
+            let error = (contact.overlap / expected - 1.0).abs();
+            assert!(error <= 5.0 * limit + 5.0 * 8.0 * f64::EPSILON / 0.03, "{}: {error:e}", choice.name());
+        }
+    }
+}
+
+/// A Hookean disk between four held ones, one of them grown, with a site: force along x at (x, 0), by hand.
+fn push(x: f64, growth: f64, coupling: f64) -> f64 {
+    let force = |overlap: f64| 2e5 * overlap.max(0.0);
+    let above = (1.0 + x * x).sqrt();
+    force(0.05 + growth - x) - force(0.05 + x) + 2.0 * force(1.05 - above) * x / above + coupling * x
+}
+
+fn grown_cross(growth: f64) -> Packing<2> {
+    cross([0.0; 2]).with_radius(2, 0.5 + growth).expect("positive")
+}
+
+#[test]
+fn a_disk_pushed_from_its_site_rests_where_contacts_hold_it_and_else_there_is_no_minimum() {
+    let (growth, limit) = (0.01, 1e-12);
+    // Two contacts along, two across.
+    let stiffness = 2.0 * 2e5 - 2.0 * 2e5 * 0.05;
+    for share in [-1.0, 0.5, 0.7] {
+        let law = OnSite { law: Hookean { stiffness: 2e5 }, coupling: share * stiffness };
+        let (mut low, mut high) = (0.0, 0.04);
+        for _ in 0..200 {
+            let middle = 0.5 * (low + high);
+            if push(middle, growth, law.coupling) > 0.0 { low = middle } else { high = middle }
+        }
+        for choice in [RelaxerChoice::Newton(newton(limit)), RelaxerChoice::Staged(staged(limit))] {
+            let outcome = relax(&choice, grown_cross(growth), &law);
+            let mean = outcome.residual.mean_contact_force;
+            let (position, rest) = at_rest(outcome).centre(0);
+            let off = norm([position[0] + rest[0] - low, position[1] + rest[1]]);
+            // Limit over what is left of the stiffness (its change along the way: a tenth), twice; and 4 ulp of the root.
+            let allowed = 2.0 * limit * mean / ((1.0 - share) * 0.9 * stiffness) + 4.0 * f64::EPSILON * low;
+            assert!(off <= allowed, "Γ = {share} K, {}: {off:e}, {allowed:e} allowed", choice.name());
+        }
+    }
+    for share in [1.5, 10.0, 1e6] {
+        let law = OnSite { law: Hookean { stiffness: 2e5 }, coupling: share * stiffness };
+        for choice in [RelaxerChoice::Newton(newton(limit)), RelaxerChoice::Staged(staged(limit))] {
+            let outcome = relax(&choice, grown_cross(1e-3), &law);
+            assert_eq!(outcome.stop, Stop::NoMinimum, "Γ = {share} K, {}: {:?}", choice.name(), outcome.cost);
+        }
+    }
+}
+
+/// The stiffness of a rattler's contacts is the one that opens them in one step; Newton's own would leave a third of each
+/// overlap, a residual of a fifth a step.
+#[test]
+fn a_rattler_is_pushed_off_in_a_step() {
+    let law = Hertzian::default();
+    let mut packing = cross([0.0; 2]);
+    // A fifth disk leans on the mobile one and on nothing else.
+    let positions = [packing.positions(), &[[0.55f64, 0.55].map(|x| x * 0.99)]].concat();
+    let radii = [packing.radii(), &[0.22786]].concat();
+    let held = [packing.held(), &[false]].concat();
+    packing = Packing::new(Domain::Open, positions, radii).and_then(|packing| packing.with_held(held)).expect("valid");
+    let network = ContactNetwork::new(&packing, &law).expect("no coincidence");
+    assert!(network.contacts.iter().any(|contact| contact.second == 5), "the disk leans on nothing");
+    let outcome = relax(&newton(1e-12), packing, &law);
+    println!("{:?}", outcome.cost);
+    assert!(matches!(outcome.stop, Stop::Converged(_)), "{:?}", outcome.stop);
+    assert!(outcome.cost.factorisation_count <= 8, "{:?}", outcome.cost);
+}
+
+#[test]
+fn assemblies_are_left_where_they_were_found_when_nothing_is_to_do() {
+    let packing = cross([0.0; 2]);
+    let mut assembly = Assembly::new(&packing, Hookean::default()).expect("no coincidence");
+    assert_eq!(assembly.evaluate_totals().contact_count, 4);
+    let outcome = relax(&newton(1e-8), packing.clone(), &Hookean::default());
+    assert_eq!((outcome.state, outcome.cost.factorisation_count, outcome.cost.step_count), (packing, 0, 0));
+}
