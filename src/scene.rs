@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 use crate::contact::law::{LawChoice, LawError};
 use crate::inflation::{Boundary, Inflation};
 use crate::packing::{Mixture, PackingError};
+#[cfg(feature = "linear")]
+use crate::relax::implicit::Finish;
 use crate::relax::{DampedDynamics, Fire, ForceLimit, RelaxerChoice, TimeStep};
 
 /// Everything a run needs.
@@ -385,12 +387,33 @@ fn check_relaxer(field: &str, relaxer: &RelaxerChoice) -> Result<(), SceneError>
             within(name("flatness"), flatness, "between 0 and 1", flatness > 0.0 && flatness < 1.0)
         }
         #[cfg(feature = "linear")]
+        RelaxerChoice::Implicit(dynamics) => {
+            let rate = dynamics.damping.rate();
+            let rate_field = format!("{field}.implicit.damping");
+            within(rate_field, rate, "a finite number, not negative", rate.is_finite() && rate >= 0.0)?;
+            positive(format!("{field}.implicit.tolerance"), dynamics.tolerance)?;
+            check_finish(&format!("{field}.implicit"), dynamics.finish)
+        }
+        #[cfg(feature = "linear")]
+        RelaxerChoice::GradientFlow(flow) => {
+            positive(format!("{field}.gradient_flow.tolerance"), flow.tolerance)?;
+            check_finish(&format!("{field}.gradient_flow"), flow.finish)
+        }
+        #[cfg(feature = "linear")]
         RelaxerChoice::Newton(newton) => positive(format!("{field}.newton.largest_step"), newton.largest_step),
         #[cfg(feature = "linear")]
         RelaxerChoice::Staged(staged) => {
             positive(format!("{field}.staged.hand_over"), staged.hand_over)?;
             positive(format!("{field}.staged.largest_step"), staged.largest_step)
         }
+    }
+}
+
+#[cfg(feature = "linear")]
+fn check_finish(field: &str, finish: Finish) -> Result<(), SceneError> {
+    match finish {
+        Finish::Motion => Ok(()),
+        Finish::Newton(residual) => positive(format!("{field}.finish.newton"), residual),
     }
 }
 

@@ -173,6 +173,12 @@ impl BlockPattern {
         }
     }
 
+    /// Whether a block below the diagonal is in the pattern.
+    pub(crate) fn has(&self, row: u32, column: u32) -> bool {
+        let range = self.starts[column as usize]..self.starts[column as usize + 1];
+        self.rows[range].binary_search(&row).is_ok()
+    }
+
     /// Zeros at the entries of the pattern; whether they stand where they stood.
     pub(crate) fn clear_into<const D: usize>(&self, matrix: &mut SymmetricMatrix) -> bool {
         let block_count = self.starts.len() - 1;

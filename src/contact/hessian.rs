@@ -35,6 +35,8 @@ pub enum Members {
     Backbone,
     /// Those with a contact.
     InContact,
+    /// All: rows of disks without a contact are 0, for matrices to whose diagonal something is added.
+    Mobile,
 }
 
 /// Second derivatives of the energy of a packing with respect to its unknowns.
@@ -63,6 +65,8 @@ pub struct Hessian<const D: usize> {
     /// Held disks in working order, in the packing's own numbering.
     held: Vec<u32>,
     links: Vec<Link<D>>,
+    /// Ends of the pairs that have a place in the pattern when it is made.
+    near: Vec<(u32, u32)>,
     pattern: BlockPattern,
     matrix: SymmetricMatrix,
 }
@@ -144,6 +148,7 @@ impl<const D: usize> Hessian<D> {
             mobile_count: assembly.mobile_count(),
             held: assembly.order()[assembly.mobile_count()..].to_vec(),
             links: Vec::new(),
+            near: Vec::new(),
             pattern: BlockPattern::default(),
             matrix: SymmetricMatrix::default(),
         };
@@ -154,25 +159,39 @@ impl<const D: usize> Hessian<D> {
     /// Takes the second derivatives anew after disks have moved; true if entries stand where they stood, so that an
     /// analysis of the matrix stays valid. The assembly must be the one given first, or one of the same packing.
     pub fn update<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) -> bool {
-        self.update_with(assembly, |_| 0.0, |contact| (contact.stiffness, contact.across))
+        self.update_with(assembly, |contact| (contact.stiffness, contact.across))
     }
 
-    /// As [`Hessian::update`], with another stiffness along and across each contact, and with pairs of the list whose gap is
-    /// below `reach` among them.
+    /// As [`Hessian::update`], with another stiffness along and across each contact.
     pub(crate) fn update_with<L: PairLaw>(
         &mut self,
         assembly: &Assembly<D, L>,
-        reach: impl Fn(usize) -> f64,
         weights: impl Fn(&StiffContact) -> (f64, f64),
     ) -> bool {
-        self.set_links(assembly, reach, weights);
+        self.update_within(assembly, |_| 0.0, 0.0, weights)
+    }
+
+    /// As [`Hessian::update_with`], with pairs of the list whose gap is below `reach` among the contacts. Pairs whose gap is
+    /// no more than `spare` wider have entries, of value 0, so that those of later updates still stand where they stood.
+    pub(crate) fn update_within<L: PairLaw>(
+        &mut self,
+        assembly: &Assembly<D, L>,
+        reach: impl Fn(usize) -> f64,
+        spare: f64,
+        weights: impl Fn(&StiffContact) -> (f64, f64),
+    ) -> bool {
+        self.set_links(assembly, reach, spare, weights);
+        let first_time = self.disks.is_empty();
         self.set_members(assembly);
         let blocks = &self.blocks;
-        let pairs = self.links.iter().filter_map(|link| {
-            let (a, b) = (blocks[link.ends.0 as usize], blocks[link.ends.1 as usize]);
+        let of_ends = |&(first, second): &(u32, u32)| {
+            let (a, b) = (blocks[first as usize], blocks[second as usize]);
             (a != NONE && b != NONE).then(|| (a.max(b), a.min(b)))
-        });
-        self.pattern.set(self.disks.len(), pairs);
+        };
+        let mut needed = self.links.iter().filter_map(|link| of_ends(&link.ends));
+        if spare == 0.0 || first_time || !needed.all(|(row, column)| self.pattern.has(row, column)) {
+            self.pattern.set(self.disks.len(), self.near.iter().filter_map(of_ends));
+        }
         let same = self.pattern.clear_into::<D>(&mut self.matrix);
         let coupling = assembly.law().on_site_coupling();
         if L::ON_SITE {
@@ -202,24 +221,30 @@ impl<const D: usize> Hessian<D> {
         &mut self,
         assembly: &Assembly<D, L>,
         reach: impl Fn(usize) -> f64,
+        spare: f64,
         weights: impl Fn(&StiffContact) -> (f64, f64),
     ) {
         let (pairs, law, prestress) = (assembly.pairs(), assembly.law(), self.prestress);
         self.links.clear();
-        self.links.extend((0..pairs.len()).filter_map(|pair| {
+        self.near.clear();
+        for pair in 0..pairs.len() {
             let (apart, distance, overlap) = geometry(pairs, pair, &assembly.displacements);
+            let (ends, reach) = ((pairs.first[pair], pairs.second[pair]), reach(pair));
             // Written so that NaN becomes an entry, and is refused there.
-            if overlap <= -reach(pair) {
-                return None;
+            if overlap <= -(reach + spare) {
+                continue;
+            }
+            self.near.push(ends);
+            if overlap <= -reach {
+                continue;
             }
             let force = if overlap < 0.0 { 0.0 } else { law.force(pairs.coefficient[pair], overlap) };
             let stiffness = if overlap.is_nan() { overlap } else { law.stiffness(force, overlap) };
             let across = prestress.across(force, distance);
-            let ends = (pairs.first[pair], pairs.second[pair]);
             let (stiffness, across) = weights(&StiffContact { pair, ends, overlap, stiffness, across });
             let block = contact_block(stiffness, across, apart, distance);
-            Some(Link { ends, block })
-        }));
+            self.links.push(Link { ends, block });
+        }
     }
 
     fn set_members<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
@@ -238,6 +263,7 @@ impl<const D: usize> Hessian<D> {
                 }
                 touched
             }
+            Members::Mobile => vec![true; assembly.len()],
         };
         self.disks.clear();
         self.blocks.clear();

@@ -10,10 +10,10 @@ pub mod damped;
 mod descent;
 pub mod fire;
 mod flat;
-mod line_search;
-mod monitor;
 #[cfg(feature = "linear")]
 pub mod implicit;
+mod line_search;
+mod monitor;
 #[cfg(feature = "linear")]
 pub mod newton;
 pub mod quasi_newton;
@@ -106,6 +106,10 @@ pub enum Stop {
     /// says nothing. (Forces alone do not tell a saddle from a minimum: disks that nothing pushes off a saddle stay there and
     /// count as at rest. The number of negative eigenvalues tells, see `linear`.)
     NoMinimum,
+    /// An implicit motion does not come to rest: for thousands of steps neither its kinetic energy nor its residual has
+    /// fallen by a tenth.
+    #[cfg(feature = "linear")]
+    Restless,
     /// The factors of Newton's matrix do not fit in memory.
     #[cfg(feature = "linear")]
     OutOfMemory,
@@ -160,6 +164,12 @@ pub struct Cost {
     /// Sparse factorisations tried, by the relaxers that make them; not written where there are none.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub factorisation_count: usize,
+    /// Iterations of conjugate gradients on linear systems; not written where there are none.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub iteration_count: usize,
+    /// Time that has passed in the motion, by the relaxers that follow one; not written where there is none \[time\].
+    #[serde(default, skip_serializing_if = "is_no_time")]
+    pub simulated_time: f64,
     /// Wall time \[s\]; never written where two runs must agree to the byte.
     #[serde(skip)]
     pub seconds: f64,
@@ -167,6 +177,10 @@ pub struct Cost {
 
 fn is_zero(count: &usize) -> bool {
     *count == 0
+}
+
+fn is_no_time(time: &f64) -> bool {
+    *time == 0.0
 }
 
 impl Cost {
@@ -178,6 +192,8 @@ impl Cost {
             force_evaluation_count: self.force_evaluation_count + other.force_evaluation_count,
             rebuild_count: self.rebuild_count + other.rebuild_count,
             factorisation_count: self.factorisation_count + other.factorisation_count,
+            iteration_count: self.iteration_count + other.iteration_count,
+            simulated_time: self.simulated_time + other.simulated_time,
             seconds: self.seconds + other.seconds,
         }
     }
@@ -273,6 +289,12 @@ pub enum RelaxerChoice {
     ConjugateGradients(NonlinearConjugateGradients),
     /// [`QuasiNewton`].
     QuasiNewton(QuasiNewton),
+    /// [`ImplicitDynamics`].
+    #[cfg(feature = "linear")]
+    Implicit(ImplicitDynamics),
+    /// [`GradientFlow`].
+    #[cfg(feature = "linear")]
+    GradientFlow(GradientFlow),
     /// [`Newton`].
     #[cfg(feature = "linear")]
     Newton(Newton),
@@ -296,6 +318,10 @@ impl RelaxerChoice {
             RelaxerChoice::ConjugateGradients(conjugate_gradients) => conjugate_gradients.limit,
             RelaxerChoice::QuasiNewton(quasi_newton) => quasi_newton.limit,
             #[cfg(feature = "linear")]
+            RelaxerChoice::Implicit(dynamics) => dynamics.limit,
+            #[cfg(feature = "linear")]
+            RelaxerChoice::GradientFlow(flow) => flow.limit,
+            #[cfg(feature = "linear")]
             RelaxerChoice::Newton(newton) => newton.limit,
             #[cfg(feature = "linear")]
             RelaxerChoice::Staged(staged) => staged.limit,
@@ -312,6 +338,13 @@ impl RelaxerChoice {
             },
             RelaxerChoice::ConjugateGradients(_) => "conjugate gradients",
             RelaxerChoice::QuasiNewton(_) => "L-BFGS",
+            #[cfg(feature = "linear")]
+            RelaxerChoice::Implicit(dynamics) => match dynamics.net_force {
+                NetForce::Elastic => "implicit dynamics",
+                NetForce::Total => "implicit, total force",
+            },
+            #[cfg(feature = "linear")]
+            RelaxerChoice::GradientFlow(_) => "gradient flow",
             #[cfg(feature = "linear")]
             RelaxerChoice::Newton(_) => "Newton",
             #[cfg(feature = "linear")]
@@ -332,6 +365,10 @@ impl Relaxer for RelaxerChoice {
             RelaxerChoice::Damped(damped) => damped.relax(packing, law, trace),
             RelaxerChoice::ConjugateGradients(conjugate_gradients) => conjugate_gradients.relax(packing, law, trace),
             RelaxerChoice::QuasiNewton(quasi_newton) => quasi_newton.relax(packing, law, trace),
+            #[cfg(feature = "linear")]
+            RelaxerChoice::Implicit(dynamics) => dynamics.relax(packing, law, trace),
+            #[cfg(feature = "linear")]
+            RelaxerChoice::GradientFlow(flow) => flow.relax(packing, law, trace),
             #[cfg(feature = "linear")]
             RelaxerChoice::Newton(newton) => newton.relax(packing, law, trace),
             #[cfg(feature = "linear")]

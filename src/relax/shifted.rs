@@ -86,7 +86,7 @@ impl<const D: usize> Shifted<D> {
                 (contact.stiffness / power, 0.0)
             }
         };
-        if !self.hessian.update_with(assembly, |_| 0.0, weights) {
+        if !self.hessian.update_with(assembly, weights) {
             self.analysis = None;
         }
         self.set_rows(assembly);

@@ -18,13 +18,14 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::PairLaw;
+use crate::contact::assembly::Assembly;
 use crate::contact::damping::{ConstantDamping, DampingChoice, DampingLaw};
 use crate::contact::forces::Totals;
 use crate::packing::{Packing, PackingError};
 use crate::relax::monitor::Monitor;
 use crate::relax::newton::{Descent, End, Patience, WATCH};
 use crate::relax::{Cost, ForceLimit, Look, NetForce, Outcome, Relaxer, Stop, Trace};
-use crate::vector::larger;
+use crate::vector::{Vector, difference, larger, norm};
 
 pub use motion::{ImplicitMotion, Inertia, Stepped, Work};
 
@@ -66,8 +67,9 @@ pub struct GradientFlow {
 pub enum Finish {
     /// By its own steps.
     Motion,
-    /// By [`Newton`](super::Newton), from this relative residual on, if the stiffness matrix is definite there and what
-    /// is left of the motion is too slow to leave the minimum; \[1\].
+    /// By [`Newton`](super::Newton) from this relative residual on \[1\], once what is left of the motion is too slow to leave
+    /// the minimum. Where Newton's way is longer than a mean overlap, or does not end at rest, the motion goes on from where
+    /// it was, to a tenth of the residual.
     Newton(f64),
 }
 
@@ -77,8 +79,8 @@ impl Default for Finish {
     }
 }
 
-/// Default of the tolerance.
-const TOLERANCE: f64 = 0.03;
+/// Default of the tolerance: see the book.
+const TOLERANCE: f64 = 0.02;
 
 /// Steps allowed by default.
 const STEP_LIMIT: usize = 100_000;
@@ -164,20 +166,36 @@ const LARGEST_GROWTH: f64 = 5.0;
 /// Smallest one.
 const SMALLEST_GROWTH: f64 = 0.1;
 
-/// Aim of the next step's error over what is allowed.
-const SAFETY: f64 = 0.8;
+/// Ratio after a step whose matrix was not positive definite.
+const INDEFINITE_GROWTH: f64 = 0.5;
 
-/// Error allowed off the backbone over that on it: rattlers and what is not yet held by its neighbours.
-thread_local!{static OFF: f64 = std::env::var("OFF").map_or(3.0, |s| s.parse().unwrap());}
+/// Aim of the next step's error over what is allowed. Contacts come and go, so errors vary from step to step by much, and a
+/// repeated step costs as much as a short one.
+const SAFETY: f64 = 0.5;
+
+/// Error allowed off the backbone over that on it. Rattlers fly and hit; where they hit matters little to the backbone, but an
+/// error there is an overlap, and so energy.
+const OFF_BACKBONE: f64 = 3.0;
 
 /// Overlap over a radius that stands in for the mean one where nothing is pressed \[1\].
 const SMALLEST_OVERLAP: f64 = 1e-6;
 
-/// Step over that of the motion at whose start it would be too short to change any position: nothing is gained any more.
-thread_local!{static MARGIN: f64 = std::env::var("MARGIN").map_or(1.0, |s| s.parse().unwrap());}
-thread_local!{static WAY: f64 = std::env::var("WAY").map_or(10.0, |s| s.parse().unwrap());}
-thread_local!{static SF: f64 = std::env::var("SF").map_or(0.5, |s| s.parse().unwrap());static GG: f64 = std::env::var("GG").map_or(5.0, |s| s.parse().unwrap());static RG: f64 = std::env::var("RG").map_or(5.0, |s| s.parse().unwrap());}
-const SHORTEST_STEP: f64 = 1e-12;
+/// (hγ)² λ, or hγ λ/ζ, of the stiffest contacts beyond which a step grows no more: disks that touch nothing are held by the
+/// mass term alone, and the pivots of the matrix must stay well apart from rounding.
+const LONGEST_STEP: f64 = 1e12;
+
+/// Steps in which neither the kinetic energy nor the residual has fallen by a tenth, after which the motion counts as one
+/// that does not come to rest.
+const RESTLESS_AFTER: usize = 3000;
+
+/// Factorisations in which Newton must bring the residual down to a tenth.
+const PATIENCE: usize = 12;
+
+/// Longest way of a disk in one of Newton's steps over its radius \[1\], as is [`Newton`](super::Newton)'s default.
+const LONGEST_NEWTON_STEP: f64 = 0.1;
+
+/// Newton's factorisations at most.
+const NEWTON_LIMIT: usize = 100;
 
 impl Integration {
     fn relax<const D: usize, L: PairLaw, C: DampingLaw>(
@@ -194,14 +212,12 @@ impl Integration {
         let mut cost = Cost::default();
         let stop = self.run(&mut motion, &mut monitor, &mut cost, trace)?;
         let assembly = &motion.assembly;
-        let mobile = assembly.mobile_count();
-        let net_forces = match self.net_force {
-            NetForce::Elastic => &assembly.forces[..mobile],
-            NetForce::Total => motion.net_forces(),
-        };
+        let net_forces = self.judged(&motion);
         let (residual, rounding_floor) = monitor.finish(assembly, net_forces);
         cost.force_evaluation_count += motion.work.evaluation_count;
         cost.factorisation_count += motion.work.factorisation_count;
+        cost.iteration_count += motion.work.iteration_count;
+        cost.simulated_time = motion.time;
         cost.rebuild_count = assembly.rebuild_count();
         cost.seconds = start.elapsed().as_secs_f64();
         Ok(Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost })
@@ -214,112 +230,177 @@ impl Integration {
         cost: &mut Cost,
         trace: &mut impl Trace,
     ) -> Result<Stop, PackingError> {
-        let mobile = motion.assembly.mobile_count();
         let mut totals = motion.evaluate();
         let mut hand_over = match self.finish {
             Finish::Motion => 0.0,
             Finish::Newton(residual) => residual,
         };
         let mut time_step = 0.0;
-        let mut rejected = false;
+        let mut restless = Restless::default();
         loop {
+            let kinetic_energy = motion.kinetic_energy();
             let look = Look {
                 step_count: cost.step_count,
                 energy: totals.energy,
-                kinetic_energy: motion.kinetic_energy(),
+                kinetic_energy,
                 residual: 0.0,
                 time_step,
                 restart: false,
             };
-            let net_forces = match self.net_force {
-                NetForce::Elastic => &motion.assembly.forces[..mobile],
-                NetForce::Total => motion.net_forces(),
-            };
-            if let Some(stop) = monitor.look(&motion.assembly, net_forces, &totals, look, trace) {
+            if let Some(stop) = monitor.look(&motion.assembly, self.judged(motion), &totals, look, trace) {
                 return Ok(stop);
+            }
+            let residual = monitor.residual().relative();
+            if restless.after(cost.step_count, kinetic_energy, residual) {
+                return Ok(Stop::Restless);
             }
             if monitor.takes_new_anchors() {
                 motion.reanchor()?;
             }
-            if monitor.residual().relative() <= hand_over {
-                // TODO kinetic
-                let mut descent = Descent::new(0.1, 50, Patience::Factorisations(12));
-                motion.assembly.set_checkpoint();
-                let end = descent.run(&mut motion.assembly, monitor, trace)?;
-                *cost = cost.plus(descent.cost);
-                match end {
-                    End::Stop(Stop::Converged(criterion)) => return Ok(Stop::Converged(criterion)),
-                    End::Stop(Stop::RoundingFloor) => return Ok(Stop::RoundingFloor),
-                    _ => {}
+            let overlap = mean_overlap(&motion.assembly, &totals);
+            let slow = kinetic_energy <= hand_over * hand_over * totals.energy_scale();
+            if residual <= hand_over && slow {
+                if let Some(stop) = finish(motion, monitor, cost, overlap, trace)? {
+                    return Ok(stop);
                 }
                 hand_over *= 0.1;
-                motion.velocities.fill([0.0; D]);
-                totals = motion.evaluate();
-                continue;
             }
-            let scale = self.length(&motion.assembly, &totals);
             if time_step == 0.0 {
-                time_step = first_step(motion, self.tolerance * scale);
+                time_step = first_step(motion, self.tolerance * overlap);
             }
-            loop {
-                if cost.step_count >= self.step_limit {
-                    return Ok(Stop::StepLimit);
-                }
-                cost.step_count += 1;
-                motion.prestressed.copy_from_slice(monitor.backbone());
-                motion.margin = MARGIN.with(|m| *m) * scale;motion.factor=WAY.with(|m| *m);
-                let error = match motion.step(time_step)? {
-                    Stepped::Moved(reached) => {
-                        totals = reached;
-                        let mut error = 0.0;
-                        for disk in 0..mobile {
-                            let share = if monitor.backbone()[disk] { 1.0 } else { 1.0 / OFF.with(|m| *m) };
-                            error = larger(share * motion.error(time_step, disk), error);
-                        }
-                        error / (self.tolerance * scale)
-                    }
-                    Stepped::OutOfMemory => return Ok(Stop::OutOfMemory),
-                    Stepped::Indefinite => f64::INFINITY,
-                };
-                if std::env::var("DBG").is_ok() {
-                    let (mut e, mut w) = (0.0, 0); let (mut f, mut wf) = (0.0, 0);
-                    for disk in 0..mobile { let x = motion.error(time_step, disk); if x > e { e = x; w = disk; } let g = crate::vector::norm(motion.assembly.forces[disk]); if g > f { f = g; wf = disk; } }
-                    println!("      h {time_step:.2e} err {error:.2e} worst {w} bb {} force worst {wf} bb {} {f:.2e} mean {:.2e} scale {scale:.2e} ndisk {mobile} v {:?}", monitor.backbone()[w], monitor.backbone()[wf], monitor.residual().mean_contact_force, motion.velocities[w]);
-                }
-                // The embedded solution is of second order: the error of a step grows as its third power. NaN rejects.
-                let growth = if error.is_finite() { (SF.with(|m| *m) / error).cbrt() } else if error.is_nan() { SMALLEST_GROWTH } else { 0.5 };
-                let growth = growth.clamp(SMALLEST_GROWTH, LARGEST_GROWTH);
-                if error <= 1.0 {
-                    time_step *= if rejected { growth.min(RG.with(|m| *m)) } else { growth.min(GG.with(|m| *m)) };
-                    rejected = false;
-                    break;
-                }
-                cost.rejected_count += 1;
-                rejected = true;
-                motion.take_back()?;
-                time_step *= growth.min(0.9);
+            match self.advance(motion, monitor, cost, &mut time_step, overlap)? {
+                Ok(reached) => totals = reached,
+                Err(stop) => return Ok(stop),
             }
         }
     }
 
-    /// The overlap of a contact, in the mean over contacts by their force: α Σu / ΣF.
-    fn length<const D: usize, L: PairLaw>(
+    /// One step, repeated with shorter ones until its error is small enough; `time_step` is that of the next afterwards.
+    fn advance<const D: usize, L: PairLaw, C: DampingLaw>(
         &self,
-        assembly: &crate::contact::assembly::Assembly<D, L>,
-        totals: &Totals<D>,
+        motion: &mut ImplicitMotion<D, L, C>,
+        monitor: &Monitor,
+        cost: &mut Cost,
+        time_step: &mut f64,
+        overlap: f64,
+    ) -> Result<Result<Totals<D>, Stop>, PackingError> {
+        motion.prestressed.copy_from_slice(monitor.backbone());
+        motion.margin = overlap;
+        *time_step = time_step.min(motion.longest_step(LONGEST_STEP));
+        loop {
+            if cost.step_count >= self.step_limit {
+                return Ok(Err(Stop::StepLimit));
+            }
+            cost.step_count += 1;
+            let growth = match motion.step(*time_step)? {
+                Stepped::OutOfMemory => return Ok(Err(Stop::OutOfMemory)),
+                Stepped::Indefinite => INDEFINITE_GROWTH,
+                Stepped::Moved(reached) => {
+                    let error = self.error(motion, monitor.backbone(), *time_step) / (self.tolerance * overlap);
+                    // The embedded solution is of second order: its error in a step grows as the third power of h.
+                    let growth = (SAFETY / error).cbrt().clamp(SMALLEST_GROWTH, LARGEST_GROWTH);
+                    if error <= 1.0 {
+                        *time_step *= growth;
+                        return Ok(Ok(reached));
+                    }
+                    if growth.is_nan() { SMALLEST_GROWTH } else { growth }
+                }
+            };
+            cost.rejected_count += 1;
+            motion.take_back()?;
+            *time_step *= growth;
+        }
+    }
+
+    /// Largest error of a disk in the last step \[length\]; NaN if one is.
+    fn error<const D: usize, L: PairLaw, C: DampingLaw>(
+        &self,
+        motion: &ImplicitMotion<D, L, C>,
+        backbone: &[bool],
+        time_step: f64,
     ) -> f64 {
-        let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
-        let contacts = totals.energy - totals.on_site_energy;
-        let overlap =
-            if totals.force_sum > 0.0 { assembly.law().exponent() * contacts / totals.force_sum } else { 0.0 };
-        larger(overlap, SMALLEST_OVERLAP * radius)
+        let of_disk =
+            |disk: usize| motion.error(time_step, disk) * if backbone[disk] { 1.0 } else { 1.0 / OFF_BACKBONE };
+        (0..motion.assembly.mobile_count()).map(of_disk).fold(0.0, |most, error| larger(error, most))
+    }
+
+    /// The net forces the limit is on.
+    fn judged<'a, const D: usize, L: PairLaw, C: DampingLaw>(
+        &self,
+        motion: &'a ImplicitMotion<D, L, C>,
+    ) -> &'a [Vector<D>] {
+        match self.net_force {
+            NetForce::Elastic => &motion.assembly.forces[..motion.assembly.mobile_count()],
+            NetForce::Total => motion.net_forces(),
+        }
     }
 }
 
-/// The step in which the largest force moves a disk by an allowed error.
+/// Leaves the last part of the way to Newton. None if that is not where the motion leads: everything is as before then.
+fn finish<const D: usize, L: PairLaw, C: DampingLaw>(
+    motion: &mut ImplicitMotion<D, L, C>,
+    monitor: &mut Monitor,
+    cost: &mut Cost,
+    overlap: f64,
+    trace: &mut impl Trace,
+) -> Result<Option<Stop>, PackingError> {
+    let before = motion.assembly.clone();
+    let mut descent = Descent::new(LONGEST_NEWTON_STEP, NEWTON_LIMIT, Patience::Factorisations(PATIENCE));
+    let end = descent.run(&mut motion.assembly, monitor, trace)?;
+    *cost = cost.plus(descent.cost);
+    let far = |disk: usize| {
+        let way = difference(motion.assembly.place(disk), before.place(disk));
+        monitor.backbone()[disk] && norm(way) > overlap
+    };
+    let here = !(0..before.mobile_count()).any(far);
+    match end {
+        End::Stop(stop @ (Stop::Converged(_) | Stop::RoundingFloor)) if here => Ok(Some(stop)),
+        _ => {
+            motion.assembly = before;
+            motion.put_back()?;
+            Ok(None)
+        }
+    }
+}
+
+/// Watches for a motion that does not come to rest.
+struct Restless {
+    kinetic_energy: f64,
+    residual: f64,
+    step_count: usize,
+}
+
+impl Default for Restless {
+    fn default() -> Self {
+        Restless { kinetic_energy: f64::INFINITY, residual: f64::INFINITY, step_count: 0 }
+    }
+}
+
+impl Restless {
+    /// Whether neither has fallen by a tenth for too long.
+    fn after(&mut self, step_count: usize, kinetic_energy: f64, residual: f64) -> bool {
+        let progress = kinetic_energy < 0.9 * self.kinetic_energy || residual < 0.9 * self.residual;
+        if progress {
+            self.kinetic_energy = self.kinetic_energy.min(kinetic_energy);
+            self.residual = self.residual.min(residual);
+            self.step_count = step_count;
+        }
+        step_count - self.step_count >= RESTLESS_AFTER
+    }
+}
+
+/// The overlap of a contact, in the mean over contacts by their force: α Σu / ΣF.
+fn mean_overlap<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, totals: &Totals<D>) -> f64 {
+    let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
+    let contacts = totals.energy - totals.on_site_energy;
+    let overlap = if totals.force_sum > 0.0 { assembly.law().exponent() * contacts / totals.force_sum } else { 0.0 };
+    larger(overlap, SMALLEST_OVERLAP * radius)
+}
+
+/// The step in which the largest force moves a disk by as much as an error may be.
 fn first_step<const D: usize, L: PairLaw, C: DampingLaw>(motion: &ImplicitMotion<D, L, C>, allowed: f64) -> f64 {
-    let forces = motion.net_forces().iter();
-    let largest = forces.fold(0.0, |most, &force| larger(crate::vector::norm(force), most));
-    let row = motion.assembly.stiffness_bound(&mut Vec::new());
-    if largest > 0.0 { (2.0 * allowed / largest).sqrt() } else { 1.0 / row.sqrt() }
+    let largest = motion.net_forces().iter().fold(0.0, |most, &force| larger(norm(force), most));
+    let step = (2.0 * allowed / largest).sqrt();
+    // Nothing pushes: any step is as good, and the look that follows finds it at rest.
+    if step.is_finite() && step > 0.0 { step } else { 1.0 }
 }

@@ -74,11 +74,15 @@ struct Stage<const D: usize> {
     work: f64,
 }
 
-/// Condition of the matrix, by its rows, up to which conjugate gradients are used.
-thread_local!{static IB: f64 = std::env::var("IB").map_or(10.0, |s| s.parse().unwrap());static IT: f64 = std::env::var("IT").map_or(1e-8, |s| s.parse().unwrap());}
+/// Condition of the matrix, by its rows, up to which conjugate gradients are used: there they need some ten products a stage,
+/// and take less time than a factorisation of any size (5548 disks).
+const ITERATE_BELOW: f64 = 6.0;
 
-/// Accuracy of their solutions: the change of a stage is known to about this, far below any tolerance of a step.
+/// Backward error of their solutions \[1\]: a stage is known to this share of its way, far below any tolerance of a step.
+const ITERATE_TO: f64 = 1e-8;
 
+/// Share of a disk's last way by which it may come nearer in the next step.
+const OUTLOOK: f64 = 10.0;
 
 /// A packing in motion under elastic and damping forces.
 pub struct ImplicitMotion<const D: usize, L, C> {
@@ -95,9 +99,6 @@ pub struct ImplicitMotion<const D: usize, L, C> {
     /// How much nearer disks are taken to be in the matrix of a step than they are at its start \[length\]: contacts that
     /// close on the way are in it then, and no step is unstable for want of them.
     pub margin: f64,
-    /// Ways.
-    pub ways: Vec<f64>,
-    pub factor: f64,
     /// Whether the prestress of contacts between two such disks is in the matrix, one a disk in working order; all at first.
     pub prestressed: Vec<bool>,
     inertia: Inertia,
@@ -109,6 +110,8 @@ pub struct ImplicitMotion<const D: usize, L, C> {
     hessian: Hessian<D>,
     matrix: SymmetricMatrix,
     analysis: Option<Analysis>,
+    /// How far each mobile disk went in the last step; infinite before the first.
+    ways: Vec<f64>,
     pair_damping: Vec<f64>,
     margins: Vec<f64>,
     dampers: Vec<Damper<D>>,
@@ -118,6 +121,7 @@ pub struct ImplicitMotion<const D: usize, L, C> {
     carried: Vec<Vector<D>>,
     right_side: Vec<f64>,
     unknowns: Vec<f64>,
+    row: Vec<f64>,
 }
 
 /// What a step that is taken back has to put back.
@@ -152,16 +156,17 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             time: 0.0,
             work: Work::default(),
             margin: 0.0,
-            ways: vec![f64::INFINITY; mobile], factor: 3.0,
+
             prestressed: vec![true; assembly.len()],
             inertia,
             damping: *damping,
             damping_coefficient: Vec::new(),
             net_forces: zero.clone(),
             dissipation: 0.0,
-            hessian: Hessian::of(&assembly, Members::InContact, Prestress::Included),
+            hessian: Hessian::of(&assembly, Members::Mobile, Prestress::Included),
             matrix: SymmetricMatrix::default(),
             analysis: None,
+            ways: vec![f64::INFINITY; mobile],
             pair_damping: Vec::new(),
             margins: Vec::new(),
             dampers: Vec::new(),
@@ -171,6 +176,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             carried: vec![[0.0; D]; assembly.len()],
             right_side: Vec::new(),
             unknowns: Vec::new(),
+            row: Vec::new(),
             assembly,
         };
         motion.set_damping_coefficients();
@@ -256,6 +262,26 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         Ok(())
     }
 
+    /// The step at which (hγ)² λ or hγ λ/ζ is `limit`, λ a bound on the stiffness of contacts; infinite without one \[time\].
+    pub fn longest_step(&mut self, limit: f64) -> f64 {
+        let stiffness = self.assembly.stiffness_bound(&mut self.row);
+        let ratio = limit / stiffness;
+        match self.inertia {
+            Inertia::Massive => ratio.sqrt() / ROS34PW2.diagonal,
+            Inertia::Friction(friction) => ratio * friction / ROS34PW2.diagonal,
+        }
+    }
+
+    /// Forces anew after the assembly was replaced by one of the same packing.
+    ///
+    /// # Errors
+    /// Two disks with the same centre.
+    pub(super) fn put_back(&mut self) -> Result<(), PackingError> {
+        self.set_damping_coefficients();
+        let _ = self.evaluate();
+        Ok(())
+    }
+
     fn remember(&mut self) {
         self.assembly.set_checkpoint();
         self.before.velocities.clone_from(&self.velocities);
@@ -286,12 +312,17 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         let pair_damping = &self.pair_damping;
         let (law, pairs, prestressed) = (self.assembly.law(), self.assembly.pairs(), &self.prestressed);
         let margins = &self.margins;
-        let same = self.hessian.update_with(&self.assembly, |pair| margins[pair], |contact| {
-            let both = prestressed[contact.ends.0 as usize] && prestressed[contact.ends.1 as usize];
-            let overlap = contact.overlap + margins[contact.pair];
-            let stiffness = law.stiffness(law.force(pairs.coefficient[contact.pair], overlap), overlap);
-            (stiffness + pair_damping[contact.pair] / scale, if both { contact.across } else { 0.0 })
-        });
+        let same = self.hessian.update_within(
+            &self.assembly,
+            |pair| margins[pair],
+            self.margin,
+            |contact| {
+                let both = prestressed[contact.ends.0 as usize] && prestressed[contact.ends.1 as usize];
+                let overlap = contact.overlap + margins[contact.pair];
+                let stiffness = law.stiffness(law.force(pairs.coefficient[contact.pair], overlap), overlap);
+                (stiffness + pair_damping[contact.pair] / scale, if both { contact.across } else { 0.0 })
+            },
+        );
         if !same {
             *analysis = None;
             self.work.contact_change_count += 1;
@@ -303,11 +334,11 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         }
         self.right_side.resize(matrix.dimension(), 0.0);
         self.unknowns.resize(matrix.dimension(), 0.0);
-        if mass > 0.0 && matrix.norm() <= IB.with(|m| *m) * diagonal {
+        if mass > 0.0 && matrix.norm() <= ITERATE_BELOW * diagonal {
             return Ok(Solver::Iterate(IncompleteFactor::new(matrix)?, matrix));
         }
         if analysis.is_none() {
-            *analysis = Some(Analysis::new(matrix)?);
+            *analysis = Some(Analysis::of(&self.hessian)?);
         }
         self.work.factorisation_count += 1;
         match analysis {
@@ -434,7 +465,8 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         self.pair_damping.clear();
         self.pair_damping.resize(pairs.len(), 0.0);
         let way = |disk: u32| self.ways.get(disk as usize).copied().unwrap_or(0.0);
-        let of_pair = |pair: usize| (self.factor * larger(way(pairs.first[pair]), way(pairs.second[pair]))).min(self.margin);
+        let of_pair =
+            |pair: usize| (OUTLOOK * larger(way(pairs.first[pair]), way(pairs.second[pair]))).min(self.margin);
         self.margins.clear();
         self.margins.extend((0..pairs.len()).map(of_pair));
         if let Inertia::Friction(_) = self.inertia {
@@ -469,7 +501,7 @@ impl Solver<'_> {
             }
             Solver::Iterate(factor, matrix) => {
                 unknowns.fill(0.0);
-                let limits = IterationLimits { backward_error: IT.with(|m| *m), iteration_count: 200 };
+                let limits = IterationLimits { backward_error: ITERATE_TO, iteration_count: 200 };
                 match conjugate_gradients(matrix, factor, right_side, unknowns, &limits) {
                     Ok(solution) => solution.iteration_count,
                     // The best so far; the error of the step tells if it is not good enough.

@@ -171,8 +171,10 @@ mod tests {
             let (mut y, mut carried) = ((1.0, 0.0), (0.0, 0.0));
             for j in 0..i {
                 y = (y.0 + ROS34PW2.argument[i][j] * stages[j].0, y.1 + ROS34PW2.argument[i][j] * stages[j].1);
-                carried =
-                    (carried.0 + ROS34PW2.carried[i][j] * stages[j].0, carried.1 + ROS34PW2.carried[i][j] * stages[j].1);
+                carried = (
+                    carried.0 + ROS34PW2.carried[i][j] * stages[j].0,
+                    carried.1 + ROS34PW2.carried[i][j] * stages[j].1,
+                );
             }
             let slope = times(z, y);
             stages[i] = divided((slope.0 + carried.0, slope.1 + carried.1), matrix);
