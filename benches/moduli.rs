@@ -47,25 +47,36 @@ fn of<const D: usize>(criterion: &mut Criterion, name: &str, packing: &Packing<D
             bencher.iter(|| krylov_schur(packing, &law, count))
         });
     }
-    let modes = VibrationalModes::lowest(packing, &law, Prestress::Included, 10).expect("found");
-    let worst = modes.modes.iter().fold(0.0, |most: f64, mode| most.max(mode.residual));
-    let (residual, solutions, found) = krylov_schur(packing, &law, 10);
-    println!(
-        "{name}, 10 modes: {} solutions, residual {worst:.1e}; faer {solutions} solutions, residual {residual:.1e}, {found} found",
-        modes.solution_count
-    );
+    for count in MODE_COUNTS {
+        let modes = VibrationalModes::lowest(packing, &law, Prestress::Included, count).expect("found");
+        let worst = modes.modes.iter().fold(0.0, |most: f64, mode| most.max(mode.residual));
+        let (residual, solutions, found) = krylov_schur(packing, &law, count);
+        println!(
+            "{name}, {count} modes: {} solutions, residual {worst:.1e}; faer {solutions} solutions, residual \
+             {residual:.1e}, {found} found",
+            modes.solution_count
+        );
+    }
 }
 
-/// (K + s)⁻¹ as faer's solvers take it: one solution, refined as ours are.
-struct Inverse<'a>(std::sync::Mutex<(Factorisation<'a>, usize)>, usize);
+/// (K + s)⁻¹ without the translations, as faer's solvers take it: one solution, refined as ours are.
+struct Inverse<'a, const D: usize>(std::sync::Mutex<(Factorisation<'a>, usize)>, usize);
 
-impl std::fmt::Debug for Inverse<'_> {
+/// Takes the mean over the disks out of each coordinate.
+fn without_translations<const D: usize>(vector: &mut [f64]) {
+    for axis in 0..D {
+        let mean = vector.iter().skip(axis).step_by(D).sum::<f64>() / (vector.len() / D) as f64;
+        vector.iter_mut().skip(axis).step_by(D).for_each(|value| *value -= mean);
+    }
+}
+
+impl<const D: usize> std::fmt::Debug for Inverse<'_, D> {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(formatter, "Inverse of {} rows", self.1)
     }
 }
 
-impl LinOp<f64> for Inverse<'_> {
+impl<const D: usize> LinOp<f64> for Inverse<'_, D> {
     fn apply_scratch(&self, _: usize, _: Par) -> StackReq {
         StackReq::EMPTY
     }
@@ -82,9 +93,11 @@ impl LinOp<f64> for Inverse<'_> {
         let mut held = self.0.lock().expect("one thread");
         let mut solution = vec![0.0; self.1];
         for column in 0..right.ncols() {
-            let right: Vec<f64> = (0..self.1).map(|row| right[(row, column)]).collect();
+            let mut right: Vec<f64> = (0..self.1).map(|row| right[(row, column)]).collect();
+            without_translations::<D>(&mut right);
             let _ = held.0.solve(&right, &mut solution).expect("accurate");
             held.1 += 1;
+            without_translations::<D>(&mut solution);
             (0..self.1).for_each(|row| out[(row, column)] = solution[row]);
         }
     }
@@ -94,22 +107,23 @@ impl LinOp<f64> for Inverse<'_> {
     }
 }
 
-/// The lowest modes, translations among them, by faer's restarted Krylov–Schur iteration on the inverse that ours takes: largest
+/// The lowest modes by faer's restarted Krylov–Schur iteration on the inverse that ours takes: largest
 /// residual over ‖K‖, solutions, modes found. Whether any is missing is not looked at.
 fn krylov_schur<const D: usize>(packing: &Packing<D>, law: &Hertzian, count: usize) -> (f64, usize, usize) {
     let hessian = Hessian::new(packing, law, Members::Backbone, Prestress::Included).expect("disks apart");
     let matrix = hessian.matrix();
     let (dimension, norm) = (matrix.dimension(), matrix.norm());
-    // The translations come first.
-    let count = count + D;
     let shifted = matrix.shifted(1e-9 * norm);
     let mut analysis = Analysis::of(&hessian).expect("memory");
     let factorisation = analysis.cholesky(&shifted).expect("definite");
-    let inverse = Inverse(std::sync::Mutex::new((factorisation, 0)), dimension);
-    let parameters = PartialEigenParams::default();
+    let inverse = Inverse::<D>(std::sync::Mutex::new((factorisation, 0)), dimension);
+    let parameters = PartialEigenParams { max_restarts: 40, ..Default::default() };
     let mut memory = MemBuffer::new(partial_self_adjoint_eigen_scratch(&inverse, count, Par::Seq, parameters));
     let (mut vectors, mut values) = (Mat::<f64>::zeros(dimension, count), vec![0.0; count]);
-    let start = Col::<f64>::from_fn(dimension, |row| (1.0 + 1.7 * row as f64 * (1.0 + 0.01 * row as f64)).sin());
+    let mut start: Vec<f64> =
+        (0..dimension).map(|row| (1.0 + 1.7 * row as f64 * (1.0 + 0.01 * row as f64)).sin()).collect();
+    without_translations::<D>(&mut start);
+    let start = Col::<f64>::from_fn(dimension, |row| start[row]);
     let start = &start * (1.0 / start.norm_l2());
     let found = partial_self_adjoint_eigen(
         vectors.as_mut(),

@@ -4,7 +4,7 @@
 //! cargo run --release --example linear_response_cost -- FILE
 //! ```
 //!
-//! 88776 disks at p = 100 are read from FILE; if there is none they are prepared (some minutes) and written there first. The
+//! 88776 disks at p = 100, to 20 %, are read from FILE; if there is none they are prepared (some minutes) and written there first. The
 //! packing is cut to a circle of 0.491 of its side, whose centre grows. Every stage is timed several times: least and median are
 //! printed. One thread. Memory is told where `/proc/self/status` is; a run that has prepared the packing says nothing of it, since
 //! that took more.

@@ -192,6 +192,14 @@ fn inspect_certifies_and_gives_forces_moduli_and_modes() {
 }
 
 #[test]
+fn inspect_of_an_unjammed_packing_has_no_residual_and_says_why() {
+    let output = jamscope(&["inspect", text(&fixture("packings/hertz_N1000_phi082.xyz"))]);
+    let plain = String::from_utf8(output.stdout).expect("Unicode");
+    let line = plain.lines().find(|line| line.starts_with("relative residual")).expect("a line for it");
+    assert!(line.ends_with(" none: there is no backbone"), "{line}");
+}
+
+#[test]
 fn the_law_is_that_of_the_file_then_of_the_command_line_then_of_the_model() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("packing.xyz");

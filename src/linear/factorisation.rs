@@ -1,4 +1,4 @@
-//! [`Analysis`] of where a matrix has entries, and its [`Factorisation`]s.
+//! [`Analysis`] of where a matrix has entries, and how it makes [`Factorisation`]s.
 //!
 //! ```text
 //! definite     P A Pᵀ = L Lᵀ
@@ -7,7 +7,7 @@
 //!
 //! P is an order of elimination from [`ordering`]. The analysis and the buffers of factors are kept, so matrices of one pattern
 //! are factorised one after the other at no cost but that of the numbers. L D Lᵀ is made without pivoting, so it may lose digits; each solution
-//! is refined until its backward error no longer falls, and refused if that ends above [`ACCURACY`].
+//! is refined until its backward error no longer falls, and refused if that ends above [`ACCURACY`](crate::linear::solution::ACCURACY).
 //!
 //! # Source
 //! faer 0.24 (sparse simplicial and supernodal factorisations). Backward error: Rigal, Gaches (1967), J. ACM 14, 543;
@@ -24,19 +24,13 @@ use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
 use crate::contact::Hessian;
-use crate::linear::{LinearError, ordering};
+use crate::linear::{Factorisation, LinearError, ordering};
 use crate::sparse::SymmetricMatrix;
 use crate::vector::larger;
-
-/// Backward error above which a solution is refused \[1\]: a Cholesky factor gives 10⁻¹⁶ to 10⁻¹⁵.
-pub const ACCURACY: f64 = 1e-13;
 
 /// Ratio of pivots below which a matrix counts as singular \[1\]: a pivot that should vanish is left with the rounding of the
 /// some ten to a hundred products it is made of.
 const SINGULAR: f64 = 64.0 * f64::EPSILON;
-
-/// Refinements tried; the first removes what growth of L D Lᵀ has cost, the second shows that nothing is left.
-const REFINEMENT_LIMIT: usize = 5;
 
 /// Where a matrix has entries, in which order it is eliminated, and the buffers of its factors.
 pub struct Analysis {
@@ -45,8 +39,8 @@ pub struct Analysis {
     rows: Vec<usize>,
     factor: Vec<f64>,
     memory: MemBuffer,
-    residual: Vec<f64>,
-    kept: Vec<f64>,
+    pub(super) residual: Vec<f64>,
+    pub(super) kept: Vec<f64>,
 }
 
 impl std::fmt::Debug for Analysis {
@@ -54,27 +48,6 @@ impl std::fmt::Debug for Analysis {
         let (dimension, factor_count) = (self.residual.len(), self.factor.len());
         write!(formatter, "Analysis {{ dimension: {dimension}, factor_count: {factor_count} }}")
     }
-}
-
-/// A factorised matrix.
-#[derive(Debug)]
-pub struct Factorisation<'a> {
-    analysis: &'a mut Analysis,
-    matrix: &'a SymmetricMatrix,
-    definite: bool,
-    negative_count: usize,
-    pivot_ratio: f64,
-    norm: f64,
-}
-
-/// What is known of a solution.
-#[must_use]
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Solution {
-    /// ‖b − A x‖ / (‖A‖ ‖x‖ + ‖b‖), largest norms: x solves a system that is off by this much exactly \[1\].
-    pub backward_error: f64,
-    /// Refinements that lowered it.
-    pub refinement_count: usize,
 }
 
 impl Analysis {
@@ -99,7 +72,7 @@ impl Analysis {
     }
 
     /// As [`Analysis::new`], in an order of elimination given: the row to eliminate in each place. See
-    /// [`ordering`](crate::linear::ordering).
+    /// [`ordering`].
     ///
     /// # Errors
     /// An order that does not name every row once; not enough memory.
@@ -164,22 +137,6 @@ impl Analysis {
             Ok(()) => self.factorised(matrix, true),
             Err(()) => Err(LinearError::NotPositiveDefinite { dimension: matrix.dimension() }),
         }
-    }
-
-    /// Whether a matrix of this pattern has a factor L Lᵀ; it is in the buffer then.
-    pub(crate) fn has_cholesky(&mut self, matrix: &SymmetricMatrix) -> bool {
-        self.check(matrix).is_ok() && self.factorise_definite(matrix).is_ok()
-    }
-
-    /// The factor that [`Analysis::has_cholesky`] has just made of this matrix.
-    ///
-    /// # Errors
-    /// Singular to rounding.
-    pub(crate) fn factorised_cholesky<'a>(
-        &'a mut self,
-        matrix: &'a SymmetricMatrix,
-    ) -> Result<Factorisation<'a>, LinearError> {
-        self.factorised(matrix, true)
     }
 
     /// L D Lᵀ.
@@ -271,6 +228,19 @@ impl Analysis {
         Ok(Factorisation { analysis: self, matrix, definite, negative_count, pivot_ratio, norm })
     }
 
+    /// Solves with the factor in the buffer, once.
+    pub(super) fn solve_in_place(&mut self, definite: bool, x: &mut [f64]) {
+        let dimension = x.len();
+        let stack = MemStack::new(&mut self.memory);
+        let (symbolic, factor) = (&self.symbolic, &self.factor);
+        let x = MatMut::from_column_major_slice_mut(x, dimension, 1);
+        if definite {
+            LltRef::new(symbolic, factor).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
+        } else {
+            LdltRef::new(symbolic, factor).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
+        }
+    }
+
     /// The diagonal of L (L Lᵀ) or D (L D Lᵀ).
     fn for_each_pivot(&self, mut take: impl FnMut(f64)) {
         match self.symbolic.raw() {
@@ -296,93 +266,4 @@ fn view(matrix: &SymmetricMatrix) -> SparseColMatRef<'_, usize, f64> {
     let dimension = matrix.dimension();
     let pattern = SymbolicSparseColMatRef::new_checked(dimension, dimension, &matrix.starts, None, &matrix.rows);
     SparseColMatRef::new(pattern, &matrix.values)
-}
-
-impl Factorisation<'_> {
-    /// Whether the matrix is positive definite, as told by a Cholesky factor; [`Analysis::indefinite`] makes none.
-    pub fn is_cholesky(&self) -> bool {
-        self.definite
-    }
-
-    /// Number of negative eigenvalues: that of the negative pivots.
-    pub fn negative_eigenvalue_count(&self) -> usize {
-        self.negative_count
-    }
-
-    /// Smallest over largest size of a pivot \[1\]. The inverse condition number of a definite matrix lies below it.
-    pub fn pivot_ratio(&self) -> f64 {
-        self.pivot_ratio
-    }
-
-    /// Solves A x = b; `solution` holds x afterwards, whatever it held.
-    ///
-    /// # Errors
-    /// The backward error stays above [`ACCURACY`].
-    ///
-    /// # Panics
-    /// If a length differs from the dimension.
-    pub fn solve(&mut self, right_side: &[f64], solution: &mut [f64]) -> Result<Solution, LinearError> {
-        let dimension = self.matrix.dimension();
-        assert!(right_side.len() == dimension && solution.len() == dimension, "one number a row");
-        solution.copy_from_slice(right_side);
-        self.solve_once(solution);
-        let mut residual = std::mem::take(&mut self.analysis.residual);
-        let mut kept = std::mem::take(&mut self.analysis.kept);
-        let mut backward_error = self.residual(right_side, solution, &mut residual);
-        let mut refinement_count = 0;
-        while backward_error > f64::EPSILON && refinement_count < REFINEMENT_LIMIT {
-            self.solve_once(&mut residual);
-            kept.clone_from_slice(solution);
-            solution.iter_mut().zip(&residual).for_each(|(x, step)| *x += step);
-            let refined = self.residual(right_side, solution, &mut residual);
-            if refined.is_nan() || refined >= backward_error {
-                solution.clone_from_slice(&kept);
-                break;
-            }
-            // More than half of it is left: from here on it is rounding.
-            let last = refined > 0.5 * backward_error;
-            (backward_error, refinement_count) = (refined, refinement_count + 1);
-            if last {
-                break;
-            }
-        }
-        self.analysis.kept = kept;
-        self.analysis.residual = residual;
-        // Written so that NaN is refused.
-        if backward_error <= ACCURACY {
-            Ok(Solution { backward_error, refinement_count })
-        } else {
-            Err(LinearError::NotAccurate { backward_error, refinement_count })
-        }
-    }
-
-    /// Solves A x = b with the factor alone: backward error of a Cholesky factor, not told.
-    ///
-    /// # Panics
-    /// If a length differs from the dimension.
-    pub(crate) fn solve_unrefined(&mut self, right_side: &[f64], solution: &mut [f64]) {
-        solution.copy_from_slice(right_side);
-        self.solve_once(solution);
-    }
-
-    fn solve_once(&mut self, x: &mut [f64]) {
-        let dimension = x.len();
-        let stack = MemStack::new(&mut self.analysis.memory);
-        let (symbolic, factor) = (&self.analysis.symbolic, &self.analysis.factor);
-        let x = MatMut::from_column_major_slice_mut(x, dimension, 1);
-        if self.definite {
-            LltRef::new(symbolic, factor).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
-        } else {
-            LdltRef::new(symbolic, factor).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
-        }
-    }
-
-    /// b − A x, and the backward error; 0 for x = b = 0.
-    fn residual(&self, right_side: &[f64], solution: &[f64], residual: &mut [f64]) -> f64 {
-        self.matrix.multiply(solution, residual);
-        residual.iter_mut().zip(right_side).for_each(|(r, b)| *r = b - *r);
-        let largest = |column: &[f64]| column.iter().fold(0.0, |most, value| larger(value.abs(), most));
-        let scale = self.norm * largest(solution) + largest(right_side);
-        if scale == 0.0 { 0.0 } else { largest(residual) / scale }
-    }
 }

@@ -34,12 +34,14 @@ pub mod modes;
 pub mod moduli;
 pub mod ordering;
 pub mod response;
+pub mod solution;
 
 pub use contact_changes::ContactChange;
-pub use factorisation::{Analysis, Factorisation, Solution};
+pub use factorisation::Analysis;
 pub use modes::VibrationalModes;
 pub use moduli::ElasticModuli;
 pub use response::LinearResponse;
+pub use solution::{Factorisation, Solution};
 
 use crate::contact::ContactNetwork;
 use crate::packing::{Packing, PackingError};

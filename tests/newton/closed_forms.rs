@@ -115,6 +115,26 @@ fn a_rattler_is_pushed_off_in_a_step() {
     assert!(outcome.cost.factorisation_count <= 8, "{:?}", outcome.cost);
 }
 
+/// A rattler that overlaps a held disk by 10⁻²⁰ has a 10⁹th of the stiffness of the others along its contact, and 10⁻¹⁰ of that
+/// across: far below what counts as singular. It must not cost a factorisation of the disk that has to move.
+#[test]
+fn a_rattler_that_is_almost_free_costs_no_factorisation() {
+    let law = Hertzian::default();
+    let alone = cross([0.02, -0.013]);
+    let positions = [alone.positions(), &[[2.0, 0.0]]].concat();
+    let radii = [alone.radii(), &[0.5]].concat();
+    let held = [alone.held(), &[false]].concat();
+    let leaning = Packing::new(Domain::Open, positions, radii)
+        .and_then(|packing| packing.with_held(held))
+        .and_then(|packing| packing.with_corrections([vec![[0.0; 2]; 5], vec![[-1e-20, 0.0]]].concat()))
+        .expect("valid");
+    let network = ContactNetwork::new(&leaning, &law).expect("no coincidence");
+    assert!(network.contacts.iter().any(|contact| contact.second == 5 && contact.overlap > 0.0), "it leans on nothing");
+    let [one, two] = [alone, leaning].map(|packing| relax(&newton(1e-12), packing, &law));
+    assert!(matches!(two.stop, Stop::Converged(_)), "{:?}", two.stop);
+    assert_eq!(one.cost.factorisation_count, two.cost.factorisation_count);
+}
+
 #[test]
 fn assemblies_are_left_where_they_were_found_when_nothing_is_to_do() {
     let packing = cross([0.0; 2]);
