@@ -89,6 +89,15 @@ impl Factorisation<'_> {
         }
     }
 
+    /// Solves A x = b with the factor alone: backward error of a Cholesky factor, not told.
+    ///
+    /// # Panics
+    /// If a length differs from the dimension.
+    pub(crate) fn solve_unrefined(&mut self, right_side: &[f64], solution: &mut [f64]) {
+        solution.copy_from_slice(right_side);
+        self.analysis.solve_in_place(self.definite, solution);
+    }
+
     /// b − A x, and the backward error; 0 for x = b = 0.
     fn residual(&self, right_side: &[f64], solution: &[f64], residual: &mut [f64]) -> f64 {
         self.matrix.multiply(solution, residual);
