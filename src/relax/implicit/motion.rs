@@ -22,7 +22,7 @@ use crate::packing::{Packing, PackingError};
 use crate::relax::flat::products;
 use crate::relax::implicit::tableau::{ROS34PW2, STAGE_COUNT};
 use crate::sparse::SymmetricMatrix;
-use crate::vector::{Vector, difference, dot, larger, scaled, sum};
+use crate::vector::{Vector, difference, dot, larger, norm, scaled, sum};
 
 /// What resists motion beside the contacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,11 +58,12 @@ pub struct Work {
     pub contact_change_count: usize,
 }
 
-/// A touching pair that dissipates.
+/// A pair in the matrix of a step.
 #[derive(Debug, Clone, Copy)]
-struct Damper<const D: usize> {
+struct Link<const D: usize> {
     ends: (u32, u32),
     normal: Vector<D>,
+    /// c of its damping in the matrix.
     damping: f64,
 }
 
@@ -110,11 +111,15 @@ pub struct ImplicitMotion<const D: usize, L, C> {
     hessian: Hessian<D>,
     matrix: SymmetricMatrix,
     analysis: Option<Analysis>,
-    /// How far each mobile disk went in the last step; infinite before the first.
+    /// How far each mobile disk went in the last step that was not taken back; infinite before the first.
     ways: Vec<f64>,
-    pair_damping: Vec<f64>,
     margins: Vec<f64>,
-    dampers: Vec<Damper<D>>,
+    /// Stiffness of each pair in the matrix, with its damping over hγ.
+    along: Vec<f64>,
+    links: Vec<Link<D>>,
+    /// Where the disks are, less where they were at the start of the step.
+    moved: Vec<Vector<D>>,
+    taken_back: bool,
     stages: [Stage<D>; STAGE_COUNT],
     before: Before<D>,
     all_velocities: Vec<Vector<D>>,
@@ -167,9 +172,11 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             matrix: SymmetricMatrix::default(),
             analysis: None,
             ways: vec![f64::INFINITY; mobile],
-            pair_damping: Vec::new(),
             margins: Vec::new(),
-            dampers: Vec::new(),
+            along: Vec::new(),
+            links: Vec::new(),
+            moved: vec![[f64::INFINITY; D]; mobile],
+            taken_back: false,
             stages: std::array::from_fn(|_| Stage { way: zero.clone(), kick: zero.clone(), work: 0.0 }),
             before: Before::default(),
             all_velocities: vec![[0.0; D]; assembly.len()],
@@ -196,6 +203,10 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     /// # Errors
     /// Two disks with the same centre.
     pub fn step(&mut self, time_step: f64) -> Result<Stepped<D>, PackingError> {
+        if !self.taken_back {
+            self.ways.iter_mut().zip(&self.moved).for_each(|(way, &moved)| *way = norm(moved));
+        }
+        self.taken_back = false;
         self.remember();
         let scale = time_step * ROS34PW2.diagonal;
         let mut analysis = self.analysis.take();
@@ -215,6 +226,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     /// # Errors
     /// Two disks with the same centre.
     pub fn take_back(&mut self) -> Result<(), PackingError> {
+        self.taken_back = true;
         self.assembly.restore()?;
         self.velocities.clone_from(&self.before.velocities);
         self.net_forces.clone_from(&self.before.net_forces);
@@ -306,21 +318,17 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         matrix: &'a mut SymmetricMatrix,
         analysis: &'a mut Option<Analysis>,
     ) -> Result<Solver<'a>, LinearError> {
-        self.set_dampers();
+        self.set_links(scale);
         let (mass, friction) = self.resistance();
         let diagonal = mass / (scale * scale) + friction / scale;
-        let pair_damping = &self.pair_damping;
-        let (law, pairs, prestressed) = (self.assembly.law(), self.assembly.pairs(), &self.prestressed);
-        let margins = &self.margins;
+        let (margins, along, prestressed) = (&self.margins, &self.along, &self.prestressed);
         let same = self.hessian.update_within(
             &self.assembly,
             |pair| margins[pair],
             self.margin,
             |contact| {
                 let both = prestressed[contact.ends.0 as usize] && prestressed[contact.ends.1 as usize];
-                let overlap = contact.overlap + margins[contact.pair];
-                let stiffness = law.stiffness(law.force(pairs.coefficient[contact.pair], overlap), overlap);
-                (stiffness + pair_damping[contact.pair] / scale, if both { contact.across } else { 0.0 })
+                (along[contact.pair], if both { contact.across } else { 0.0 })
             },
         );
         if !same {
@@ -371,10 +379,10 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             }
             let kept: f64 = done.iter().zip(carried).map(|(past, factor)| factor * past.work).sum();
             stage.work = scale * (self.dissipation + kept / time_step);
-            for damper in &self.dampers {
-                let (i, j) = (damper.ends.0 as usize, damper.ends.1 as usize);
-                let along = dot(difference(self.carried[i], self.carried[j]), damper.normal);
-                let force = scaled(damper.damping * along, damper.normal);
+            for link in &self.links {
+                let (i, j) = (link.ends.0 as usize, link.ends.1 as usize);
+                let along = dot(difference(self.carried[i], self.carried[j]), link.normal);
+                let force = scaled(link.damping * along, link.normal);
                 stage.way[i] = sum(stage.way[i], force);
                 if j < mobile {
                     stage.way[j] = difference(stage.way[j], force);
@@ -421,7 +429,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             self.assembly.displacements[disk] = sum(self.assembly.displacements[disk], way);
             self.velocities[disk] = velocity;
             longest = larger(dot(way, way), longest);
-            self.ways[disk] = dot(way, way).sqrt();
+            self.moved[disk] = way;
         }
         // A restored assembly may have a new list as well.
         let _ = self.assembly.keep_listed(longest.sqrt())?;
@@ -458,28 +466,30 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         }
     }
 
-    /// The touching pairs with their damping at the present positions.
-    fn set_dampers(&mut self) {
-        let pairs = self.assembly.pairs();
-        self.dampers.clear();
-        self.pair_damping.clear();
-        self.pair_damping.resize(pairs.len(), 0.0);
+    /// The pairs in the matrix: those that touch, and those that may come to on the way.
+    fn set_links(&mut self, scale: f64) {
+        let (pairs, law) = (self.assembly.pairs(), self.assembly.law());
         let way = |disk: u32| self.ways.get(disk as usize).copied().unwrap_or(0.0);
-        let of_pair =
-            |pair: usize| (OUTLOOK * larger(way(pairs.first[pair]), way(pairs.second[pair]))).min(self.margin);
+        self.links.clear();
         self.margins.clear();
-        self.margins.extend((0..pairs.len()).map(of_pair));
-        if let Inertia::Friction(_) = self.inertia {
-            return;
-        }
+        self.along.clear();
         for pair in 0..pairs.len() {
+            let ends = (pairs.first[pair], pairs.second[pair]);
+            let margin = (OUTLOOK * larger(way(ends.0), way(ends.1))).min(self.margin);
             let (apart, distance, overlap) = geometry(pairs, pair, &self.assembly.displacements);
-            if overlap > -self.margins[pair] {
-                let damping = self.damping.damping(self.damping_coefficient[pair], overlap + self.margins[pair]);
-                self.pair_damping[pair] = damping;
-                let ends = (pairs.first[pair], pairs.second[pair]);
-                self.dampers.push(Damper { ends, normal: scaled(1.0 / distance, apart), damping });
+            self.margins.push(margin);
+            if overlap <= -margin {
+                self.along.push(0.0);
+                continue;
             }
+            let wide = overlap + margin;
+            let damping = match self.inertia {
+                Inertia::Massive => self.damping.damping(self.damping_coefficient[pair], wide),
+                Inertia::Friction(_) => 0.0,
+            };
+            let along = law.stiffness(law.force(pairs.coefficient[pair], wide), wide) + damping / scale;
+            self.along.push(along);
+            self.links.push(Link { ends, normal: scaled(1.0 / distance, apart), damping });
         }
     }
 
