@@ -80,6 +80,35 @@ fn minimisers(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// Implicit dynamics and gradient flow at their default tolerance, to a limit and to the rounding floor.
+#[cfg(feature = "linear")]
+fn implicit(criterion: &mut Criterion) {
+    use jamscope::relax::{GradientFlow, ImplicitDynamics};
+    let law = Hertzian::default();
+    let mut group = criterion.benchmark_group("relax");
+    group.sample_size(10);
+    for name in ["hertz_N1000_p10", "hertz_N1000_p100", "hertz_N1000_p800", "hertz_N5548_p100"] {
+        let start = inflated(name);
+        let limit = ForceLimit::Relative(1e-12);
+        for (what, relaxer) in [
+            ("implicit", RelaxerChoice::Implicit(ImplicitDynamics { limit, ..Default::default() })),
+            ("gradient-flow", RelaxerChoice::GradientFlow(GradientFlow { limit, ..Default::default() })),
+        ] {
+            let outcome = relaxer.relax(start.clone(), &law, &mut ()).expect("disks apart");
+            let cost = outcome.cost;
+            let (steps, rejected, factorisations) = (cost.step_count, cost.rejected_count, cost.factorisation_count);
+            println!(
+                "{what} {name}: {steps} steps, {rejected} rejected, {factorisations} factorisations, {:?}",
+                outcome.stop
+            );
+            group.bench_function(BenchmarkId::new(format!("{what}/{name}"), 1e-12), |bencher| {
+                bencher.iter(|| relaxer.relax(start.clone(), &law, &mut ()));
+            });
+        }
+    }
+    group.finish();
+}
+
 /// FIRE until Newton pays, then Newton, to limits that FIRE alone reaches and to one near the rounding floor.
 #[cfg(feature = "linear")]
 fn staged(criterion: &mut Criterion) {
@@ -104,7 +133,7 @@ fn staged(criterion: &mut Criterion) {
 }
 
 #[cfg(feature = "linear")]
-criterion_group!(benches, relaxers, minimisers, staged);
+criterion_group!(benches, relaxers, minimisers, implicit, staged);
 #[cfg(not(feature = "linear"))]
 criterion_group!(benches, relaxers, minimisers);
 criterion_main!(benches);

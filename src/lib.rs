@@ -159,6 +159,9 @@ mod book {
     #[doc = include_str!("../book/src/relax/damped.md")]
     mod relax_damped {}
     #[cfg(feature = "linear")]
+    #[doc = include_str!("../book/src/relax/implicit.md")]
+    mod relax_implicit {}
+    #[cfg(feature = "linear")]
     #[doc = include_str!("../book/src/relax/newton.md")]
     mod relax_newton {}
     #[doc = include_str!("../book/src/relax/others.md")]

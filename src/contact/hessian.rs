@@ -81,8 +81,6 @@ pub(crate) struct StiffContact {
     pub pair: usize,
     /// Its disks in working order.
     pub ends: (u32, u32),
-    /// δ, negative for a gap \[length\].
-    pub overlap: f64,
     /// F', along the line of centres \[force / length\].
     pub stiffness: f64,
     /// −F/r, across it; 0 without prestress \[force / length\].
@@ -241,7 +239,7 @@ impl<const D: usize> Hessian<D> {
             let force = if overlap < 0.0 { 0.0 } else { law.force(pairs.coefficient[pair], overlap) };
             let stiffness = if overlap.is_nan() { overlap } else { law.stiffness(force, overlap) };
             let across = prestress.across(force, distance);
-            let (stiffness, across) = weights(&StiffContact { pair, ends, overlap, stiffness, across });
+            let (stiffness, across) = weights(&StiffContact { pair, ends, stiffness, across });
             let block = contact_block(stiffness, across, apart, distance);
             self.links.push(Link { ends, block });
         }

@@ -24,16 +24,20 @@ fn fire(limit: f64) -> Fire {
 }
 
 /// Every relaxer that goes by forces alone and knows no time.
-fn relaxers(limit: f64) -> [RelaxerChoice; 4] {
+fn relaxers(limit: f64) -> Vec<RelaxerChoice> {
     let (fire, limit) = (fire(limit), ForceLimit::Relative(limit));
     let gradients =
         NonlinearConjugateGradients { limit, step_limit: 200_000, ..NonlinearConjugateGradients::default() };
     let quasi_newton = QuasiNewton { limit, step_limit: 200_000, ..QuasiNewton::default() };
-    [
+    vec![
         RelaxerChoice::Fire(fire),
         RelaxerChoice::Fire(Fire { uphill: Uphill::StepBack(StepBack::default()), ..fire }),
         RelaxerChoice::ConjugateGradients(gradients),
         RelaxerChoice::QuasiNewton(quasi_newton),
+        #[cfg(feature = "linear")]
+        RelaxerChoice::GradientFlow(jamscope::relax::GradientFlow { limit, ..Default::default() }),
+        #[cfg(feature = "linear")]
+        RelaxerChoice::Implicit(jamscope::relax::ImplicitDynamics { limit, ..Default::default() }),
     ]
 }
 

@@ -80,7 +80,7 @@ impl Default for Finish {
 }
 
 /// Default of the tolerance: see the book.
-const TOLERANCE: f64 = 0.02;
+const TOLERANCE: f64 = 0.01;
 
 /// Steps allowed by default.
 const STEP_LIMIT: usize = 100_000;
