@@ -36,8 +36,6 @@ fn relaxers(limit: f64) -> Vec<RelaxerChoice> {
         RelaxerChoice::QuasiNewton(quasi_newton),
         #[cfg(feature = "linear")]
         RelaxerChoice::GradientFlow(jamscope::relax::GradientFlow { limit, ..Default::default() }),
-        #[cfg(feature = "linear")]
-        RelaxerChoice::Implicit(jamscope::relax::ImplicitDynamics { limit, ..Default::default() }),
     ]
 }
 

@@ -28,6 +28,31 @@ fn stiffness_constants_over_forty_decades_give_one_packing() {
     }
 }
 
+#[cfg(feature = "linear")]
+#[test]
+fn implicit_dynamics_does_too_with_its_rate_in_the_same_unit() {
+    let start = points(64, 1.0, 5);
+    let energy = |stiffness: f64| {
+        let law = Hookean { stiffness };
+        let rate = 500.0 * (stiffness / 2e5).sqrt();
+        let relaxer = jamscope::relax::ImplicitDynamics {
+            damping: DampingChoice::Constant(ConstantDamping { rate }),
+            limit: ForceLimit::Relative(1e-9),
+            ..Default::default()
+        };
+        let outcome = relaxer.relax(start.clone(), &law, &mut ()).expect("no coincidence");
+        assert!(matches!(outcome.stop, Stop::Converged(_)), "{stiffness:e}: {:?}", outcome.stop);
+        ContactNetwork::new(&outcome.state, &law).expect("no coincidence").energy() / stiffness
+    };
+    let reference = energy(2e5);
+    for stiffness in [1e-20, 1e20] {
+        // Powers of ten are not powers of two: the way differs in its rounding, and ends in the minimum to the limit asked,
+        // 10⁻⁹ of a force, whose square is the energy's.
+        let found = energy(stiffness);
+        assert!((found / reference - 1.0).abs() < 1e-12, "{stiffness:e}: {found}, not {reference}");
+    }
+}
+
 #[test]
 fn damped_dynamics_does_too_with_its_rate_in_the_same_unit() {
     let start = points(64, 1.0, 5);

@@ -295,6 +295,7 @@ impl Integration {
             let growth = match motion.step(*time_step)? {
                 Stepped::OutOfMemory => return Ok(Err(Stop::OutOfMemory)),
                 Stepped::Indefinite => INDEFINITE_GROWTH,
+                Stepped::TooFar => SMALLEST_GROWTH,
                 Stepped::Moved(reached) => {
                     let error = self.error(motion, monitor.backbone(), *time_step) / (self.tolerance * overlap);
                     // The embedded solution is of second order: its error in a step grows as the third power of h.

@@ -43,6 +43,8 @@ pub enum Stepped<const D: usize> {
     /// The matrix is not positive definite: the step is so long that it would pass over a motion that grows, away from a
     /// saddle; nothing has moved.
     Indefinite,
+    /// A disk would go farther than the smallest radius: to be taken back.
+    TooFar,
 }
 
 /// Work of a motion so far.
@@ -127,6 +129,7 @@ pub struct ImplicitMotion<const D: usize, L, C> {
     right_side: Vec<f64>,
     unknowns: Vec<f64>,
     row: Vec<f64>,
+    smallest_radius: f64,
 }
 
 /// What a step that is taken back has to put back.
@@ -184,6 +187,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             right_side: Vec::new(),
             unknowns: Vec::new(),
             row: Vec::new(),
+            smallest_radius: assembly.radii().iter().copied().fold(f64::INFINITY, f64::min),
             assembly,
         };
         motion.set_damping_coefficients();
@@ -213,7 +217,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         let mut matrix = std::mem::take(&mut self.matrix);
         let made = self.set_matrix(scale, &mut matrix, &mut analysis);
         let stepped = match made {
-            Ok(mut solver) => self.stages(time_step, &mut solver).map(Stepped::Moved),
+            Ok(mut solver) => self.stages(time_step, &mut solver),
             Err(LinearError::OutOfMemory { .. }) => Ok(Stepped::OutOfMemory),
             Err(_) => Ok(Stepped::Indefinite),
         };
@@ -356,13 +360,15 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     }
 
     /// All stages; the disks are where the step ends afterwards.
-    fn stages(&mut self, time_step: f64, solver: &mut Solver<'_>) -> Result<Totals<D>, PackingError> {
+    fn stages(&mut self, time_step: f64, solver: &mut Solver<'_>) -> Result<Stepped<D>, PackingError> {
         let scale = time_step * ROS34PW2.diagonal;
         let (mass, friction) = self.resistance();
         let mobile = self.assembly.mobile_count();
         for index in 0..STAGE_COUNT {
             if index > 0 {
-                let _ = self.go(&ROS34PW2.argument[index][..index])?;
+                if self.go(&ROS34PW2.argument[index][..index])?.is_none() {
+                    return Ok(Stepped::TooFar);
+                }
             }
             let (done, rest) = self.stages.split_at_mut(index);
             let stage = &mut rest[0];
@@ -409,32 +415,38 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         // Stiffly accurate: the end is the argument of the last stage and its U.
         let mut weights = ROS34PW2.argument[STAGE_COUNT - 1];
         weights[STAGE_COUNT - 1] = 1.0;
-        let totals = self.go(&weights)?;
+        let Some(totals) = self.go(&weights)? else { return Ok(Stepped::TooFar) };
         self.dissipated =
             self.before.dissipated + self.stages.iter().zip(weights).map(|(stage, m)| m * stage.work).sum::<f64>();
         self.time = self.before.time + time_step;
-        Ok(totals)
+        Ok(Stepped::Moved(totals))
     }
 
-    /// Disks and velocities at the start of the step plus this sum of stages, and the forces there.
-    fn go(&mut self, weights: &[f64]) -> Result<Totals<D>, PackingError> {
-        self.assembly.restore()?;
+    /// Disks and velocities at the start of the step plus this sum of stages, and the forces there. None if a disk would go
+    /// farther than the smallest radius, or nowhere that is a place.
+    fn go(&mut self, weights: &[f64]) -> Result<Option<Totals<D>>, PackingError> {
         let mut longest = 0.0;
-        for disk in 0..self.assembly.mobile_count() {
-            let (mut way, mut velocity) = ([0.0; D], self.before.velocities[disk]);
-            for (stage, &weight) in self.stages.iter().zip(weights) {
-                way = sum(way, scaled(weight, stage.way[disk]));
-                velocity = sum(velocity, scaled(weight, stage.kick[disk]));
-            }
-            self.assembly.displacements[disk] = sum(self.assembly.displacements[disk], way);
-            self.velocities[disk] = velocity;
-            longest = larger(dot(way, way), longest);
-            self.moved[disk] = way;
+        for (disk, moved) in self.moved.iter_mut().enumerate() {
+            let summed = self.stages.iter().zip(weights);
+            *moved = summed.fold([0.0; D], |way, (stage, &weight)| sum(way, scaled(weight, stage.way[disk])));
+            longest = larger(dot(*moved, *moved), longest);
+        }
+        let longest = longest.sqrt();
+        if longest.is_nan() || longest > self.smallest_radius {
+            return Ok(None);
+        }
+        self.assembly.restore()?;
+        for (disk, &moved) in self.moved.iter().enumerate() {
+            let summed = self.stages.iter().zip(weights);
+            self.velocities[disk] = summed.fold(self.before.velocities[disk], |velocity, (stage, &weight)| {
+                sum(velocity, scaled(weight, stage.kick[disk]))
+            });
+            self.assembly.displacements[disk] = sum(self.assembly.displacements[disk], moved);
         }
         // A restored assembly may have a new list as well.
-        let _ = self.assembly.keep_listed(longest.sqrt())?;
+        let _ = self.assembly.keep_listed(longest)?;
         self.set_damping_coefficients();
-        Ok(self.evaluate())
+        Ok(Some(self.evaluate()))
     }
 
     /// Adds the damping forces to the elastic ones just evaluated.
