@@ -365,10 +365,8 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         let (mass, friction) = self.resistance();
         let mobile = self.assembly.mobile_count();
         for index in 0..STAGE_COUNT {
-            if index > 0 {
-                if self.go(&ROS34PW2.argument[index][..index])?.is_none() {
-                    return Ok(Stepped::TooFar);
-                }
+            if index > 0 && self.go(&ROS34PW2.argument[index][..index])?.is_none() {
+                return Ok(Stepped::TooFar);
             }
             let (done, rest) = self.stages.split_at_mut(index);
             let stage = &mut rest[0];
