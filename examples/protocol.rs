@@ -34,7 +34,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{}", listed.join(" | "));
     println!(
         "{:<17} {:>4} {:>7} {:>9} {:>8} {:>6} {:>6} {:>17} {:>17} {:>9} {:>9} {:>6}",
-        "packing", "seed", "minima", "which", "apart/δ", "disks", "cont.", "Δp", "d_0^eff", "within/δ", "between/δ", "s"
+        "packing",
+        "seed",
+        "minima",
+        "which",
+        "apart/δ",
+        "disks",
+        "cont.",
+        "Δp",
+        "d_0^eff",
+        "within/δ",
+        "between/δ",
+        "s"
     );
     for name in names {
         let packing = read_packing::<2>(format!("{}/fixtures/packings/{name}.xyz", env!("CARGO_MANIFEST_DIR")))?;

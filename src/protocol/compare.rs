@@ -36,8 +36,7 @@ pub(super) fn compare<const D: usize>(
             ways.retain(|&(_, way)| way > settings.differing * mean_overlap);
             ways.sort_by(|one, two| two.1.total_cmp(&one.1));
             ending.differing = ways.iter().map(|&(disk, _)| rest.packing.get().labels()[disk]).collect();
-            ending.contact_difference_count =
-                Some(links(first_network).symmetric_difference(&links(network)).count());
+            ending.contact_difference_count = Some(links(first_network).symmetric_difference(&links(network)).count());
         }
         let apart = |first: usize| pressed(first).map(|(other, _)| apart(other, rest, floating));
         let found = minima.iter().enumerate().find_map(|(place, &first)| {

@@ -75,10 +75,8 @@ pub(super) fn descend<const D: usize, L: PairLaw>(
 ) -> Result<Landing<D>, PackingError> {
     let first = protocol.relaxer.relax(start.clone(), law, trace)?;
     let (stop, cost) = (first.stop, first.cost);
-    let pressed = matches!(
-        stop,
-        Stop::RoundingFloor | Stop::Converged(Criterion::RelativeForce | Criterion::AbsoluteForce)
-    );
+    let pressed =
+        matches!(stop, Stop::RoundingFloor | Stop::Converged(Criterion::RelativeForce | Criterion::AbsoluteForce));
     let (mut outcome, finish, finish_way) = if pressed {
         let residual = settings.residual.max(4.0 * first.rounding_floor);
         let newton = Newton { limit: ForceLimit::Relative(residual), ..Newton::default() };

@@ -51,7 +51,11 @@ impl<'a> Rows<'a> {
     }
 
     /// Adds a row, unless no sample has the quantity.
-    pub(crate) fn add(&mut self, label: impl Into<String>, cell: impl Fn(&SampleResult) -> Option<String>) -> &mut Self {
+    pub(crate) fn add(
+        &mut self,
+        label: impl Into<String>,
+        cell: impl Fn(&SampleResult) -> Option<String>,
+    ) -> &mut Self {
         let cells: Vec<Option<String>> = self.samples.iter().map(|sample| done(sample).and_then(&cell)).collect();
         if cells.iter().any(Option::is_some) {
             let cells = cells.into_iter().map(|cell| cell.unwrap_or_else(|| "–".into())).collect();
