@@ -83,7 +83,7 @@
 //! | feature | adds | with |
 //! |---|---|---|
 //! | `fit` | fits of a measured profile | argmin, statrs |
-//! | `linear` | Hessian, factorisations, Newton, linear response, plastic part, moduli, modes | faer |
+//! | `linear` | Hessian, factorisations, Newton, linear response, plastic part, moduli, modes, protocol sensitivity | faer |
 //! | `parallel` | the samples of a scene side by side; never changes a bit of a result | rayon |
 //! | `plot` | figures and the HTML page of a report | plotters |
 //! | `cli` | the program `jamscope`, scenes from TOML | clap, toml, indicatif |
