@@ -60,13 +60,15 @@ pub(crate) fn summary(report: &Report) -> Option<String> {
         significant(all.mean_minimum_count, 3),
         significant(all.largest_distance, 3),
     );
-    let mut bars = vec![("Δp", all.pressure_change)];
-    #[cfg(feature = "fit")]
-    bars.extend([
+    let bars = [
+        ("Δp", all.pressure_change),
+        #[cfg(feature = "fit")]
         ("elastic d_0^eff", all.elastic_amplitude),
+        #[cfg(feature = "fit")]
         ("screened d_0^eff", all.screened_amplitude),
+        #[cfg(feature = "fit")]
         ("κ", all.wavenumber),
-    ]);
+    ];
     for (name, deviation) in bars {
         if let Some(deviation) = deviation {
             let _ = write!(text, "; {name} ± {}", significant(deviation, 2));
