@@ -14,7 +14,7 @@ use jamscope::report::table::terminal_table;
 use jamscope::report::write;
 use jamscope::run::{Report, SampleOutcome, run};
 use jamscope::scene::{Observables, Sample, Scene, Source};
-use jamscope::vector::Vector;
+use jamscope::vector::{Vector, norm};
 
 const STIFF: Hookean = Hookean { stiffness: 1.0 };
 
@@ -238,6 +238,39 @@ fn a_fraction_takes_the_same_samples_whatever_their_order_and_a_larger_one_those
         assert!(before.iter().all(|name| taken.contains(name)));
         before = taken;
     }
+    let others: Vec<(String, u64)> = samples.iter().map(|(name, seed)| (name.clone(), seed + 10)).collect();
+    assert_ne!(named(&samples, 0.5), named(&others, 0.5), "seeds count");
+}
+
+/// A triangular lattice in a periodic box, pressed by 0.03, with a small disk in a vacancy, pressed into a neighbour: it is pushed
+/// away and ends anywhere in its cage, and the lattice, whose centre of mass moves against it, elsewhere by a 36th of that.
+#[test]
+fn where_nothing_is_held_a_rattler_does_not_make_a_minimum() {
+    let (spacing, side) = (0.97, 6usize);
+    let row = spacing * 0.75f64.sqrt();
+    let lattice = (0..side * side).map(|index| {
+        let (i, j) = ((index % side) as f64, index / side);
+        [spacing * (i + 0.5 * (j % 2) as f64), row * j as f64]
+    });
+    let mut positions: Vec<Vector<2>> = lattice.collect();
+    let mut radii = vec![0.5; side * side];
+    positions[0] = [0.25, 0.05];
+    radii[0] = 0.3;
+    let domain = Domain::Periodic { corner: [0.0; 2], lengths: [spacing * side as f64, row * side as f64] };
+    let start = Packing::new(domain, positions, radii).expect("a packing");
+    let protocols = [Protocol::new(RelaxerChoice::GradientFlow(GradientFlow::default())), implicit(0.2)];
+    let compared = compare(&start, &protocols);
+    let states: Vec<_> = compared.states.iter().map(|state| state.as_ref().expect("at rest")).collect();
+    assert!(states.iter().all(|state| !state.backbone[0]), "a rattler");
+    // The premise: the rattlers are apart, and with them the lattices.
+    let apart = |disk: usize| {
+        let [one, two] = [states[0], states[1]].map(|state| state.packing.get());
+        norm(domain.separation(one.centre(disk), two.centre(disk)))
+    };
+    assert!(apart(0) > 0.01 && apart(20) > 1e-4, "{} {}", apart(0), apart(20));
+    let found = &compared.sensitivity;
+    assert_eq!(found.minimum_count, 1);
+    assert!(found.farthest_within < 1e-7, "{}", found.farthest_within);
 }
 
 /// Four small dense packings.
