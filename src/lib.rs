@@ -70,6 +70,7 @@
 //! | [`observe`] | radial and angular profile, contact forces | [`RadialProfile`](observe::RadialProfile) |
 //! | [`reference`](mod@reference) | exact solutions, elastic and screened | [`Annulus`](reference::Annulus) |
 //! | `fit` (feature `fit`) | a profile against both solutions, with errors and a decision | `fit::profile::fit_radial_profile` |
+//! | `protocol` (feature `linear`) | whether relaxers end in the same minimum | `protocol::ProtocolSensitivity` |
 //! | [`scene`] | everything a run needs, as plain data | [`Scene`](scene::Scene) |
 //! | [`run`] | scene to report, one line a stage | [`run::run`] |
 //! | [`report`] | table, data files, figures, one page | [`report::write`] |
@@ -82,7 +83,7 @@
 //! | feature | adds | with |
 //! |---|---|---|
 //! | `fit` | fits of a measured profile | argmin, statrs |
-//! | `linear` | Hessian, factorisations, Newton, linear response, plastic part, moduli, modes | faer |
+//! | `linear` | Hessian, factorisations, Newton, linear response, plastic part, moduli, modes, protocol sensitivity | faer |
 //! | `parallel` | the samples of a scene side by side; never changes a bit of a result | rayon |
 //! | `plot` | figures and the HTML page of a report | plotters |
 //! | `cli` | the program `jamscope`, scenes from TOML | clap, toml, indicatif |
@@ -109,6 +110,8 @@ pub mod packing;
 #[cfg(feature = "linear")]
 pub mod plastic;
 pub mod preparation;
+#[cfg(feature = "linear")]
+pub mod protocol;
 pub mod reference;
 pub mod relax;
 pub mod report;
@@ -194,6 +197,9 @@ mod book {
     #[cfg(feature = "fit")]
     #[doc = include_str!("../book/src/fit.md")]
     mod fit {}
+    #[cfg(feature = "linear")]
+    #[doc = include_str!("../book/src/protocol.md")]
+    mod protocol {}
     #[doc = include_str!("../book/src/scene.md")]
     mod scene {}
     #[doc = include_str!("../book/src/exact.md")]

@@ -98,6 +98,10 @@ pub struct Observables {
     #[cfg(feature = "linear")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plastic_part: Option<PlasticPartSettings>,
+    /// Whether other relaxers end in the same minimum; absent by default.
+    #[cfg(feature = "linear")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub protocol: Option<ProtocolSettings>,
     /// The packing before and after the inflation, with its displacement field, as files; the map of r d_r.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub displacement_field: Option<DisplacementFieldSettings>,
@@ -112,6 +116,8 @@ impl Default for Observables {
             angular_profiles: Some(AngularProfileSettings::default()),
             #[cfg(feature = "linear")]
             plastic_part: Some(PlasticPartSettings::default()),
+            #[cfg(feature = "linear")]
+            protocol: None,
             displacement_field: Some(DisplacementFieldSettings::default()),
         }
     }
@@ -167,6 +173,10 @@ impl Default for PlasticPartSettings {
         PlasticPartSettings { ring_width: RadialProfileSettings::default().ring_width }
     }
 }
+
+/// The comparison of protocols.
+#[cfg(feature = "linear")]
+pub type ProtocolSettings = crate::protocol::ProtocolSettings;
 
 /// The displacement field has nothing to set.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -314,6 +324,16 @@ impl Observables {
         #[cfg(feature = "linear")]
         if let Some(plastic) = &self.plastic_part {
             positive("observables.plastic_part.ring_width", plastic.ring_width)?;
+        }
+        #[cfg(feature = "linear")]
+        if let Some(protocol) = &self.protocol {
+            let (field, fraction) = ("observables.protocol.fraction", protocol.fraction);
+            within(field, fraction, "above 0 and at most 1", fraction > 0.0 && fraction <= 1.0)?;
+            let (field, same) = ("observables.protocol.same_minimum", protocol.same_minimum);
+            within(field, same, "above 0 and below 1", same > 0.0 && same < 1.0)?;
+            positive("observables.protocol.differing", protocol.differing)?;
+            let (field, residual) = ("observables.protocol.residual", protocol.residual);
+            within(field, residual, "a finite number, not negative", residual.is_finite() && residual >= 0.0)?;
         }
         if let Some(profiles) = &self.angular_profiles {
             for &radius in &profiles.relative_radii {

@@ -95,6 +95,8 @@ fn the_files_are_those_asked_for() {
         angular_profiles: None,
         #[cfg(feature = "linear")]
         plastic_part: None,
+        #[cfg(feature = "linear")]
+        protocol: None,
         displacement_field: None,
     };
     let all = Observables::default();

@@ -385,7 +385,7 @@ impl<const D: usize> Experiment<D> {
 }
 
 /// The second packing moved as a whole so that its disks have moved by nothing on average.
-fn with_centre_of_mass_of<const D: usize>(before: &Packing<D>, mut after: Packing<D>) -> Packing<D> {
+pub(crate) fn with_centre_of_mass_of<const D: usize>(before: &Packing<D>, mut after: Packing<D>) -> Packing<D> {
     let mut mean = [0.0; D];
     for disk in 0..before.len() {
         mean = sum(mean, displacement(before, &after, disk));

@@ -12,6 +12,8 @@ pub(crate) enum DataFile {
     AngularProfiles,
     #[cfg(feature = "linear")]
     PlasticProfile,
+    #[cfg(feature = "linear")]
+    Protocol,
 }
 
 impl DataFile {
@@ -25,6 +27,8 @@ impl DataFile {
             DataFile::AngularProfiles => result.angular_profiles.is_some(),
             #[cfg(feature = "linear")]
             DataFile::PlasticProfile => matches!(result.plastic_part, Some(crate::run::PlasticResult::Measured(_))),
+            #[cfg(feature = "linear")]
+            DataFile::Protocol => crate::report::protocol::measured(result).is_some(),
         };
         let all = [
             DataFile::Packing,
@@ -34,6 +38,8 @@ impl DataFile {
             DataFile::AngularProfiles,
             #[cfg(feature = "linear")]
             DataFile::PlasticProfile,
+            #[cfg(feature = "linear")]
+            DataFile::Protocol,
         ];
         all.into_iter().filter(wanted).collect()
     }
@@ -48,6 +54,8 @@ impl DataFile {
             DataFile::AngularProfiles => "angular_profiles.csv",
             #[cfg(feature = "linear")]
             DataFile::PlasticProfile => "plastic_profile.csv",
+            #[cfg(feature = "linear")]
+            DataFile::Protocol => "protocol.csv",
         };
         format!("{sample}.{ending}")
     }

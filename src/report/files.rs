@@ -99,6 +99,12 @@ impl Files<'_> {
                         self.text(&path, &csv::plastic_profile(&plastic.radial_profile))?;
                     }
                 }
+                #[cfg(feature = "linear")]
+                DataFile::Protocol => {
+                    if let Some(sensitivity) = crate::report::protocol::measured(result) {
+                        self.text(&path, &crate::report::protocol::csv(sensitivity))?;
+                    }
+                }
             }
         }
         Ok(())
@@ -200,6 +206,10 @@ struct Timing<'a> {
     after_inflation_seconds: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     after_deflation_seconds: Option<f64>,
+    /// Of the relaxers compared, their finish left out.
+    #[cfg(feature = "linear")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    protocols_seconds: Option<f64>,
 }
 
 /// Wall times of the relaxations of all samples that came to a result.
@@ -212,6 +222,9 @@ fn timings(report: &Report) -> Vec<Timing<'_>> {
             before_inflation_seconds: result.inflation.before.rest.cost.seconds,
             after_inflation_seconds: result.inflation.after.rest.cost.seconds,
             after_deflation_seconds: result.inflation.deflated.as_ref().map(|state| state.rest.cost.seconds),
+            #[cfg(feature = "linear")]
+            protocols_seconds: crate::report::protocol::measured(result)
+                .map(|it| it.endings.iter().map(|ending| ending.cost.seconds).sum()),
         })
     };
     report.samples.iter().filter_map(timing).collect()

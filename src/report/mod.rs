@@ -15,6 +15,7 @@
 //! | `NAME.radial_profile.csv` | mean radial displacement, ring by ring, and the fitted solutions |
 //! | `NAME.angular_profiles.csv` | radial displacement against angle |
 //! | `NAME.plastic_profile.csv` | radial part of what is not in the linear response |
+//! | `NAME.protocol.csv` | where every relaxer ended, if the scene compares them |
 //! | `report.html` | all of it on one page (feature `plot`) |
 
 pub mod csv;
@@ -26,6 +27,8 @@ mod files;
 mod number;
 #[cfg(feature = "plot")]
 pub mod page;
+#[cfg(feature = "linear")]
+mod protocol;
 mod rows;
 pub mod table;
 

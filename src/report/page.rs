@@ -101,6 +101,10 @@ fn section(report: &Report, sample: &SampleReport) -> Result<String, FigureError
         }
         html.push_str("</div>\n");
     }
+    #[cfg(feature = "linear")]
+    if let Some(sensitivity) = crate::report::protocol::measured(result) {
+        html.push_str(&crate::report::protocol::html(sensitivity));
+    }
     html.push_str("<p class=\"files\">Data:");
     for (place, file) in DataFile::of(report, result).into_iter().enumerate() {
         let file = escaped(&file.name(&sample.name));
@@ -194,6 +198,11 @@ fn numbers(report: &Report) -> String {
         }
         html.push_str("</tbody>\n");
     }
-    html.push_str("</table>\n</div>\n</section>\n");
+    html.push_str("</table>\n</div>\n");
+    #[cfg(feature = "linear")]
+    if let Some(text) = crate::report::protocol::summary(report) {
+        let _ = writeln!(html, "<p>{}</p>", escaped(&text));
+    }
+    html.push_str("</section>\n");
     html
 }

@@ -38,14 +38,24 @@ pub(crate) enum Times {
 }
 
 /// Collects the rows of some samples.
-struct Rows<'a> {
+pub(crate) struct Rows<'a> {
     samples: &'a [SampleReport],
     rows: Vec<Row>,
 }
 
-impl Rows<'_> {
+impl<'a> Rows<'a> {
+    /// No row yet.
+    #[cfg(feature = "linear")]
+    pub(crate) fn new(samples: &'a [SampleReport]) -> Self {
+        Rows { samples, rows: Vec::new() }
+    }
+
     /// Adds a row, unless no sample has the quantity.
-    fn add(&mut self, label: impl Into<String>, cell: impl Fn(&SampleResult) -> Option<String>) -> &mut Self {
+    pub(crate) fn add(
+        &mut self,
+        label: impl Into<String>,
+        cell: impl Fn(&SampleResult) -> Option<String>,
+    ) -> &mut Self {
         let cells: Vec<Option<String>> = self.samples.iter().map(|sample| done(sample).and_then(&cell)).collect();
         if cells.iter().any(Option::is_some) {
             let cells = cells.into_iter().map(|cell| cell.unwrap_or_else(|| "–".into())).collect();
@@ -59,7 +69,7 @@ impl Rows<'_> {
         self.rows.push(Row { label: label.into(), cells: self.samples.iter().map(cell).collect() });
     }
 
-    fn section(self, title: &'static str) -> Section {
+    pub(crate) fn section(self, title: &'static str) -> Section {
         Section { title, rows: self.rows }
     }
 }
@@ -97,6 +107,10 @@ pub(crate) fn refusals(samples: &[SampleReport]) -> Vec<(&str, &'static str, &st
         if let Some(crate::run::PlasticResult::Refused(reason)) = &result.plastic_part {
             refused.push((sample.name.as_str(), "no linear response", reason.as_str()));
         }
+        #[cfg(feature = "linear")]
+        if let Some(crate::run::ProtocolResult::Refused(reason)) = &result.protocol {
+            refused.push((sample.name.as_str(), "no protocols compared", reason.as_str()));
+        }
     }
     refused
 }
@@ -112,6 +126,8 @@ pub(crate) fn sections(report: &Report, samples: &[SampleReport], times: Times) 
         fit(samples),
         #[cfg(feature = "linear")]
         plastic(samples),
+        #[cfg(feature = "linear")]
+        crate::report::protocol::section(samples),
     ];
     all.into_iter().filter(|section| !section.rows.is_empty()).collect()
 }

@@ -28,6 +28,11 @@ pub fn terminal_table(report: &Report) -> String {
             section_lines(&section, &mut lines);
         }
     }
+    #[cfg(feature = "linear")]
+    if let Some(text) = crate::report::protocol::summary(report) {
+        lines.push(String::new());
+        lines.extend(wrapped(&text));
+    }
     failure_lines(&report.samples, &mut lines);
     lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
 }

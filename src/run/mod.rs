@@ -16,6 +16,8 @@ use crate::io::{ReadError, read_packing};
 use crate::observe::{AngularProfile, RadialProfile};
 use crate::packing::{Packing, PackingError};
 use crate::preparation::{Preparation, PreparationError, Target, prepare};
+#[cfg(feature = "linear")]
+use crate::protocol::{Compared, Protocol, ProtocolSensitivity, ProtocolSettings, ProtocolSummary, chosen};
 #[cfg(feature = "fit")]
 use crate::reference::Annulus;
 use crate::relax::{Criterion, Look, Outcome, Relaxer, RelaxerChoice, Stop, Trace};
@@ -27,7 +29,7 @@ pub use report_data::{
     InflationSummary, PackingSummary, Report, RestSummary, SampleOutcome, SampleReport, SampleResult, StateSummary,
 };
 #[cfg(feature = "linear")]
-pub use report_data::{PlasticResult, PlasticSummary};
+pub use report_data::{PlasticResult, PlasticSummary, ProtocolResult};
 
 /// Why a run, or one sample of it, came to nothing.
 #[derive(Debug, thiserror::Error)]
@@ -126,14 +128,32 @@ pub fn run(scene: &Scene, progress: &impl Progress) -> Result<Report, RunError> 
         SampleReport { name: sample.name.clone(), seed: sample.seed, result }
     };
     #[cfg(feature = "parallel")]
-    let samples = {
+    let samples: Vec<SampleReport> = {
         use rayon::prelude::*;
         // One at a time from the front: the order of the results is that of the scene.
         scene.sample.par_iter().enumerate().with_max_len(1).map(one).collect()
     };
     #[cfg(not(feature = "parallel"))]
-    let samples = scene.sample.iter().enumerate().map(one).collect();
-    Ok(Report { jamscope_version: env!("CARGO_PKG_VERSION"), scene: scene.clone(), samples })
+    let samples: Vec<SampleReport> = scene.sample.iter().enumerate().map(one).collect();
+    #[cfg(feature = "linear")]
+    let protocol = protocol_summary(&samples);
+    Ok(Report {
+        jamscope_version: env!("CARGO_PKG_VERSION"),
+        scene: scene.clone(),
+        samples,
+        #[cfg(feature = "linear")]
+        protocol,
+    })
+}
+
+/// What the samples say together of the protocols, where any was compared.
+#[cfg(feature = "linear")]
+fn protocol_summary(samples: &[SampleReport]) -> Option<ProtocolSummary> {
+    let compared = samples.iter().filter_map(|sample| match &sample.result {
+        SampleOutcome::Done(result) => result.protocol.as_ref()?.measured(),
+        SampleOutcome::Failed(_) => None,
+    });
+    ProtocolSummary::of(samples.len(), &compared.collect::<Vec<_>>())
 }
 
 /// Runs one sample of a scene: the one place where the law is looked at.
@@ -185,6 +205,11 @@ fn run_with<L: PairLaw>(
     let plastic_part = observables
         .plastic_part
         .map(|settings| plastic_summary::of(&inflated, &scene.inflation, law, settings.ring_width).into());
+    #[cfg(feature = "linear")]
+    let protocol = observables.protocol.filter(|settings| takes(scene, sample, settings)).map(|settings| {
+        let trace = &mut watch("protocols", &sample.relaxer);
+        protocol_of(scene, sample, &inflated, law, &settings, trace).into()
+    });
     Ok(SampleResult {
         packing,
         inflation: summary(&inflated, law, scene.inflation.on_site_coupling)?,
@@ -195,11 +220,40 @@ fn run_with<L: PairLaw>(
         angular_profiles,
         #[cfg(feature = "linear")]
         plastic_part,
+        #[cfg(feature = "linear")]
+        protocol,
         cycle_field: DisplacementField::of_cycle(&inflated),
         field,
         inflated,
         prepared,
     })
+}
+
+/// Whether the sample is one of the fraction whose protocols are compared.
+#[cfg(feature = "linear")]
+fn takes(scene: &Scene, sample: &Sample, settings: &ProtocolSettings) -> bool {
+    let names: Vec<(&str, u64)> = scene.sample.iter().map(|other| (other.name.as_str(), other.seed)).collect();
+    chosen(&names, settings.fraction).into_iter().zip(&names).any(|(taken, (name, _))| taken && *name == sample.name)
+}
+
+/// The sample's own relaxer and the others from the state it set out from.
+#[cfg(feature = "linear")]
+fn protocol_of<L: PairLaw>(
+    scene: &Scene,
+    sample: &Sample,
+    inflated: &Inflated<2>,
+    law: &L,
+    settings: &ProtocolSettings,
+    trace: &mut impl Trace,
+) -> Result<ProtocolSensitivity, PackingError> {
+    let protocols = Protocol::all(&sample.relaxer);
+    #[cfg_attr(not(feature = "fit"), allow(unused_mut, reason = "only fits are added"))]
+    let mut compared = Compared::of_inflation(inflated, &scene.inflation, law, &protocols, settings, trace)?;
+    #[cfg(feature = "fit")]
+    if let (Some(profile), Some(fit)) = (scene.observables.radial_profile, scene.observables.profile_fit) {
+        compared.fit(inflated, profile.ring_width, &fit);
+    }
+    Ok(compared.sensitivity)
 }
 
 /// The packing of a sample, made or read, at rest.

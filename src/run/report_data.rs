@@ -11,6 +11,10 @@ use crate::fit::profile::ProfileFit;
 use crate::inflation::Inflated;
 use crate::observe::{AngularProfile, RadialProfile};
 use crate::packing::Packing;
+#[cfg(feature = "linear")]
+use crate::packing::PackingError;
+#[cfg(feature = "linear")]
+use crate::protocol::{ProtocolSensitivity, ProtocolSummary};
 use crate::relax::{Cost, Criterion};
 use crate::scene::Scene;
 
@@ -23,6 +27,10 @@ pub struct Report {
     pub scene: Scene,
     /// One entry a sample, in the order of the scene.
     pub samples: Vec<SampleReport>,
+    /// What the samples whose protocols were compared say together.
+    #[cfg(feature = "linear")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub protocol: Option<ProtocolSummary>,
 }
 
 /// One sample of a run.
@@ -70,6 +78,10 @@ pub struct SampleResult {
     #[cfg(feature = "linear")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plastic_part: Option<PlasticResult>,
+    /// Whether other relaxers end in the same minimum.
+    #[cfg(feature = "linear")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub protocol: Option<ProtocolResult>,
     /// The displacement field.
     #[serde(skip)]
     pub field: DisplacementField<2>,
@@ -111,6 +123,38 @@ pub enum PlasticResult {
     Measured(PlasticSummary),
     /// Why there is none: no linear response.
     Refused(String),
+}
+
+/// Where the protocols ended, or why that is not known.
+#[cfg(feature = "linear")]
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ProtocolResult {
+    /// Where they ended.
+    Measured(Box<ProtocolSensitivity>),
+    /// Why that is not known.
+    Refused(String),
+}
+
+#[cfg(feature = "linear")]
+impl ProtocolResult {
+    /// Where they ended, if known.
+    pub fn measured(&self) -> Option<&ProtocolSensitivity> {
+        match self {
+            ProtocolResult::Measured(sensitivity) => Some(sensitivity),
+            ProtocolResult::Refused(_) => None,
+        }
+    }
+}
+
+#[cfg(feature = "linear")]
+impl From<Result<ProtocolSensitivity, PackingError>> for ProtocolResult {
+    fn from(result: Result<ProtocolSensitivity, PackingError>) -> Self {
+        result.map_or_else(
+            |error| ProtocolResult::Refused(error.to_string()),
+            |sensitivity| ProtocolResult::Measured(Box::new(sensitivity)),
+        )
+    }
 }
 
 /// The plastic part in numbers: what of the response is not in the linear one.

@@ -1,0 +1,83 @@
+//! Which samples of an ensemble are compared, and what the comparisons say together.
+
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64;
+use serde::Serialize;
+
+use crate::protocol::{ProtocolSensitivity, Spread};
+
+/// Which of these samples, by name and seed, the comparison is done to: fraction × number of them, to the nearest, at least one.
+///
+/// The choice is a draw that depends on names and seeds only, not on the order or on threads; what a fraction takes, a larger
+/// one takes too.
+pub fn chosen(samples: &[(&str, u64)], fraction: f64) -> Vec<bool> {
+    let count = ((fraction * samples.len() as f64).round() as usize).clamp(1, samples.len().max(1));
+    let keys: Vec<(u64, &str)> = samples.iter().map(|&(name, seed)| (lot(name, seed), name)).collect();
+    keys.iter().map(|key| keys.iter().filter(|other| *other < key).count() < count).collect()
+}
+
+/// What a sample draws. Source of the mixing of the name: FNV-1a, 64 bits.
+fn lot(name: &str, seed: u64) -> u64 {
+    let hash = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+    let name = name.bytes().fold(0xcbf2_9ce4_8422_2325, hash);
+    Pcg64::seed_from_u64(seed ^ name).next_u64()
+}
+
+/// What the comparisons of an ensemble say together.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ProtocolSummary {
+    /// Samples of the scene.
+    pub sample_count: usize,
+    /// Samples compared.
+    pub compared_count: usize,
+    /// Those among them that ended in more than one minimum.
+    pub several_minima_count: usize,
+    /// Mean number of minima of a sample.
+    pub mean_minimum_count: f64,
+    /// Largest distance of all \[length\].
+    pub largest_distance: f64,
+    /// Root mean square over the samples of the standard deviation of Δp \[force / length\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pressure_change: Option<f64>,
+    /// The same of d_0^eff of the elastic solution \[length\].
+    #[cfg(feature = "fit")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elastic_amplitude: Option<f64>,
+    /// The same of d_0^eff of the screened solution \[length\].
+    #[cfg(feature = "fit")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub screened_amplitude: Option<f64>,
+    /// The same of κ \[1/length\].
+    #[cfg(feature = "fit")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wavenumber: Option<f64>,
+}
+
+impl ProtocolSummary {
+    /// That of these comparisons, of a scene with so many samples; none of no comparison.
+    pub fn of(sample_count: usize, compared: &[&ProtocolSensitivity]) -> Option<Self> {
+        if compared.is_empty() {
+            return None;
+        }
+        let rms = |spread: &dyn Fn(&ProtocolSensitivity) -> Option<Spread>| {
+            // One ending says nothing of a spread.
+            let spreads = compared.iter().filter_map(|it| spread(it)).filter(|spread| spread.count > 1);
+            Spread::of(spreads.map(|spread| spread.standard_deviation.powi(2))).map(|squares| squares.mean.sqrt())
+        };
+        let minima: usize = compared.iter().map(|it| it.minimum_count).sum();
+        Some(ProtocolSummary {
+            sample_count,
+            compared_count: compared.len(),
+            several_minima_count: compared.iter().filter(|it| it.minimum_count > 1).count(),
+            mean_minimum_count: minima as f64 / compared.len() as f64,
+            largest_distance: compared.iter().map(|it| it.largest_distance).fold(0.0, f64::max),
+            pressure_change: rms(&|it| it.spreads.pressure_change),
+            #[cfg(feature = "fit")]
+            elastic_amplitude: rms(&|it| it.spreads.elastic_amplitude),
+            #[cfg(feature = "fit")]
+            screened_amplitude: rms(&|it| it.spreads.screened_amplitude),
+            #[cfg(feature = "fit")]
+            wavenumber: rms(&|it| it.spreads.wavenumber),
+        })
+    }
+}

@@ -1,0 +1,72 @@
+//! [`Spread`]: how much a quantity varies over endings.
+
+use serde::Serialize;
+
+use crate::protocol::Ending;
+
+/// Mean and standard deviation of a quantity over some endings.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Spread {
+    /// Number of endings that have the quantity.
+    pub count: usize,
+    /// Their mean.
+    pub mean: f64,
+    /// Standard deviation, Σ(x − mean)²/(n − 1) under the root; 0 for one ending.
+    pub standard_deviation: f64,
+}
+
+impl Spread {
+    /// That of these values; none of no value.
+    pub fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
+        let values: Vec<f64> = values.collect();
+        let count = values.len();
+        if count == 0 {
+            return None;
+        }
+        let mean = values.iter().sum::<f64>() / count as f64;
+        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+        Some(Spread { count, mean, standard_deviation: (squares / count.saturating_sub(1).max(1) as f64).sqrt() })
+    }
+}
+
+/// The spreads of what an experiment reports, over the endings at rest: its error bars for "which minimum".
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Spreads {
+    /// Of the energy \[energy\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy: Option<Spread>,
+    /// Of Δp \[force / length^(D−1)\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pressure_change: Option<Spread>,
+    /// Of d_0^eff of the elastic solution \[length\].
+    #[cfg(feature = "fit")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elastic_amplitude: Option<Spread>,
+    /// Of d_0^eff of the screened solution, over the endings that have one \[length\].
+    #[cfg(feature = "fit")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub screened_amplitude: Option<Spread>,
+    /// Of κ, over the same \[1/length\].
+    #[cfg(feature = "fit")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wavenumber: Option<Spread>,
+}
+
+impl Spreads {
+    /// Those of some endings; the ones not at rest are left out.
+    pub fn of(endings: &[Ending]) -> Self {
+        let at_rest = || endings.iter().filter(|ending| ending.at_rest());
+        #[cfg(feature = "fit")]
+        let screened = || at_rest().filter_map(|ending| ending.fit?.screened);
+        Spreads {
+            energy: Spread::of(at_rest().map(|ending| ending.energy)),
+            pressure_change: Spread::of(at_rest().filter_map(|ending| ending.pressure_change)),
+            #[cfg(feature = "fit")]
+            elastic_amplitude: Spread::of(at_rest().filter_map(|ending| Some(ending.fit?.elastic_amplitude))),
+            #[cfg(feature = "fit")]
+            screened_amplitude: Spread::of(screened().map(|screened| screened.amplitude)),
+            #[cfg(feature = "fit")]
+            wavenumber: Spread::of(screened().map(|screened| screened.wavenumber)),
+        }
+    }
+}
