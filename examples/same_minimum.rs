@@ -18,9 +18,7 @@ use jamscope::contact::{ContactNetwork, Hertzian};
 use jamscope::inflation::{Centre, Circle, choose_centre};
 use jamscope::io::read_packing;
 use jamscope::packing::Packing;
-use jamscope::relax::{
-    Cost, DampedDynamics, ForceLimit, ImplicitDynamics, Newton, Outcome, Relaxer, Stop, TimeStep,
-};
+use jamscope::relax::{Cost, DampedDynamics, ForceLimit, ImplicitDynamics, Newton, Outcome, Relaxer, Stop, TimeStep};
 use jamscope::vector::norm;
 
 /// Stored packings if none is named.
@@ -88,7 +86,8 @@ fn table(
         let mut apart = vec![distance(&whole, &half)?];
         for (tolerance, cost) in tolerances.iter().zip(&mut costs[2..]) {
             let dynamics = ImplicitDynamics { damping, limit: LIMIT, tolerance: *tolerance, ..Default::default() };
-            apart.push(distance(&at_rest(dynamics.relax(start.clone(), &Hertzian::default(), &mut ())?, cost)?, &half)?);
+            apart
+                .push(distance(&at_rest(dynamics.relax(start.clone(), &Hertzian::default(), &mut ())?, cost)?, &half)?);
         }
         print!("{seed:>8} {:>13.1e}", apart[0]);
         apart[1..].iter().for_each(|apart| print!(" {apart:>14.1e}"));
