@@ -1,7 +1,7 @@
 """CPU time of LAMMPS's damped dynamics from an inflated start to a residual: one JSON line a run.
 
     . FOLDER/activate-lammps                       (see setup.sh)
-    python benches/peers/lammps/dynamics.py START [--limit R] [--steps N] [--check-every N] [--show]
+    python benches/peers/lammps/dynamics.py START [--limits A,B,...] [--most-steps N] [--check-every N] [--show]
 
 START has a line a disk: x, y, radius, 1 if held. `dynamics.sh` has jamscope write it. Mass 1, Hertzian contacts of stiffness
 2e5, constant damping 500 (`damping velocity`), velocity Verlet (`fix nve`) with a time step of 5e-4 (6e-4 is stable, 7e-4 is
@@ -9,8 +9,9 @@ not), neighbour skin 0.1.
 
 The residual is jamscope's: the largest net elastic force on a mobile disk of the backbone over the mean contact force of the
 backbone. It is computed here from the positions, every --check-every steps. CPU seconds are those of the process (one
-thread) in LAMMPS's `run` only, set-up of the first run included; the checks are not in them. With --steps the run ends after
-that many steps whatever the residual: for the time of a step.
+thread) in LAMMPS's `run` only, set-up of the first run included; the checks are not in them. `first_steps` are those after
+which the residual was first below each limit; rattlers that fly undamped may raise it again later. The run ends at the last
+limit or after --most-steps.
 """
 
 import argparse
@@ -88,7 +89,7 @@ class Residual:
 def set_up(disks):
     """LAMMPS with the disks, in an open plane."""
     position, radius, held = disks[:, :2], disks[:, 2], disks[:, 3] > 0
-    low, high = position.min(axis=0) - 2.0, position.max(axis=0) + 2.0
+    low, high = (position.min(axis=0) - 2.0).tolist(), (position.max(axis=0) + 2.0).tolist()
     lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
     lmp.commands_string(
         f"""
@@ -101,7 +102,7 @@ def set_up(disks):
         newton on
         region box block {low[0]!r} {high[0]!r} {low[1]!r} {high[1]!r} -0.5 0.5
         create_box 1 box
-        """.replace("np.float64(", "").replace(")", "")
+        """
     )
     count = len(disks)
     flat = np.column_stack([position, np.zeros(count)]).ravel().tolist()
@@ -109,7 +110,7 @@ def set_up(disks):
     assert lmp.get_natoms() == count
     of_atom, identifier = lmp.numpy.extract_atom("radius"), lmp.numpy.extract_atom("id")
     of_atom[:count] = radius[identifier[:count] - 1]
-    # Held disks are another group by a variable of their identifiers: a run of a million words is too long for a command.
+    # The groups by their bits: a command cannot name thousands of disks.
     kind = lmp.numpy.extract_atom("mask")
     lmp.command("group held empty")
     lmp.command("group moving empty")
@@ -117,7 +118,6 @@ def set_up(disks):
     is_held = held[identifier[:count] - 1]
     kind[:count][is_held] |= 1 << groups.index("held")
     kind[:count][~is_held] |= 1 << groups.index("moving")
-    assert lmp.extract_variable is not None
     lmp.commands_string(
         f"""
         set group all mass 1.0
@@ -145,25 +145,28 @@ def positions(lmp, count):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("start")
-    parser.add_argument("--limit", type=float, default=1e-5)
-    parser.add_argument("--steps", type=int)
+    parser.add_argument("--limits", default="1e-5")
+    parser.add_argument("--most-steps", type=int, default=10**9)
     parser.add_argument("--check-every", type=int, default=1000)
     parser.add_argument("--show", action="store_true", help="every residual, on standard error")
     arguments = parser.parse_args()
+    limits = [float(limit) for limit in arguments.limits.split(",")]
     disks = np.loadtxt(arguments.start)
     lmp, radius, held = set_up(disks)
     residual = Residual(radius, held)
     start = value = residual.of(disks[:, :2])
-    seconds, steps = 0.0, 0
-    while value > arguments.limit if arguments.steps is None else steps < arguments.steps:
-        some = arguments.check_every if arguments.steps is None else arguments.steps
+    seconds, steps, first_steps = 0.0, 0, {}
+    while len(first_steps) < len(limits) and steps < arguments.most_steps:
         # Without `pre no` LAMMPS would make its lists and first forces anew each time.
         again = "pre no post no" if steps else "post no"
         begin = time.process_time()
-        lmp.command(f"run {some} {again}")
+        lmp.command(f"run {arguments.check_every} {again}")
         seconds += time.process_time() - begin
-        steps += some
+        steps += arguments.check_every
         value = residual.of(positions(lmp, len(disks)))
+        for limit in limits:
+            if value <= limit:
+                first_steps.setdefault(f"{limit:.0e}", steps)
         if arguments.show:
             print(steps, value, file=sys.stderr, flush=True)
     lmp.close()
@@ -176,6 +179,7 @@ def main():
         "ns_per_particle_step": round(1e9 * seconds / (steps * mobile), 2),
         "residual_at_start": start,
         "residual": value,
+        "first_steps": first_steps,
     }
     print(json.dumps(line), flush=True)
 
