@@ -165,6 +165,9 @@ mod book {
     #[doc = include_str!("../book/src/relax/implicit.md")]
     mod relax_implicit {}
     #[cfg(feature = "linear")]
+    #[doc = include_str!("../book/src/relax/stability.md")]
+    mod relax_stability {}
+    #[cfg(feature = "linear")]
     #[doc = include_str!("../book/src/relax/newton.md")]
     mod relax_newton {}
     #[doc = include_str!("../book/src/relax/others.md")]
