@@ -203,7 +203,7 @@ fn run_with<L: PairLaw>(
 }
 
 /// The packing of a sample, made or read, at rest.
-fn packing_of<L: PairLaw>(
+pub(crate) fn packing_of<L: PairLaw>(
     scene: &Scene,
     sample: &Sample,
     law: &L,
