@@ -73,6 +73,7 @@
 //! | [`scene`] | everything a run needs, as plain data | [`Scene`](scene::Scene) |
 //! | [`run`] | scene to report, one line a stage | [`run::run`] |
 //! | [`report`] | table, data files, figures, one page | [`report::write`] |
+//! | `precision` (feature `linear`) | error against cost of relaxers and other numerical choices | `precision::measure` |
 //!
 //! What a stage gives has a type that says what is known of it: only a converged relaxation makes a
 //! [`Relaxed`](relax::Relaxed) packing, and only two of those make a displacement field.
@@ -108,6 +109,8 @@ pub mod observe;
 pub mod packing;
 #[cfg(feature = "linear")]
 pub mod plastic;
+#[cfg(feature = "linear")]
+pub mod precision;
 pub mod preparation;
 pub mod reference;
 pub mod relax;
