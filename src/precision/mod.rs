@@ -12,9 +12,17 @@
 //!
 //! The relaxations are timed one after the other, each on one thread.
 
+pub mod choices;
+pub mod csv;
+#[cfg(feature = "plot")]
+pub mod figure;
+mod files;
 pub mod ladder;
 pub mod minima;
+#[cfg(feature = "plot")]
+pub mod page;
 pub mod state;
+pub mod table;
 
 use serde::{Deserialize, Serialize};
 
@@ -22,10 +30,13 @@ use crate::contact::damping::DampingChoice;
 use crate::contact::{LawChoice, OnSite, PairLaw};
 use crate::inflation::{Grown, InflationError};
 use crate::packing::{Packing, PackingError};
-use crate::relax::{Cost, RelaxerChoice, Stop};
+use crate::relax::{Cost, Criterion, RelaxerChoice, Stop};
 use crate::run::{RunError, packing_of};
 use crate::scene::{Sample, Scene, SceneError};
 
+pub use files::write;
+
+use choices::{ChoiceTable, choice_tables};
 use ladder::{Method, Rung, Varied, rungs};
 use minima::{Disagreement, End, Minima, Minimum};
 use state::Errors;
@@ -54,7 +65,7 @@ impl Default for PrecisionSettings {
             force_limits: vec![1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10, 1e-12],
             time_steps: vec![0.45, 0.225],
             tolerances: vec![0.3, 0.1, 0.03, 0.01, 0.003],
-            explicit_step_limit: 100_000,
+            explicit_step_limit: 50_000,
             implicit_step_limit: 5000,
             reference_limit: 1e-13,
         }
@@ -150,6 +161,8 @@ pub struct SamplePrecision {
     pub minima: Vec<Minimum>,
     /// One entry a run.
     pub runs: Vec<Run>,
+    /// What other numerical choices move.
+    pub choices: Vec<ChoiceTable>,
 }
 
 /// One run.
@@ -278,6 +291,8 @@ fn with_law<L: PairLaw>(
         };
         runs.push(run);
     }
+    progress.begins(rungs.len(), "other choices");
+    let choices = choice_tables(minima.first(), &grown, law, damping, &scene.observables)?;
     Ok(SamplePrecision {
         name: sample.name.clone(),
         mobile_count: grown.mobile_count,
@@ -286,7 +301,20 @@ fn with_law<L: PairLaw>(
         references: minima.disagreement,
         minima: minima.known,
         runs,
+        choices,
     })
+}
+
+/// Why a run stopped, in words.
+fn stop_name(stop: Stop) -> String {
+    match stop {
+        Stop::Converged(Criterion::Unjammed) => "unjammed".into(),
+        Stop::Converged(_) => "force limit".into(),
+        Stop::StepLimit => "step limit".into(),
+        Stop::RoundingFloor => "rounding".into(),
+        Stop::NoDescent => "no descent".into(),
+        other => format!("{other:?}"),
+    }
 }
 
 /// The damping of the sample's own dynamics, the default where it is not relaxed by one.

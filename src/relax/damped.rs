@@ -285,7 +285,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
     }
 
     /// The longest step the bound allows: `h λ_Γ + h² λ_K / 4 = 1` \[time\].
-    fn stable_step(&mut self) -> f64 {
+    pub(crate) fn stable_step(&mut self) -> f64 {
         let stiffness = self.assembly.stiffness_bound(&mut self.row);
         let (law, coefficient) = (&self.damping, &self.damping_coefficient);
         let damping =
