@@ -137,11 +137,7 @@ const FEWEST_STEPS: usize = 200;
 /// Longest step over the bound on a stable one at the start \[1\].
 const LONGEST_STEP: f64 = 0.5;
 
-fn time_steps<L: PairLaw, C: DampingLaw>(
-    grown: &Grown<2>,
-    law: &L,
-    damping: &C,
-) -> Result<ChoiceTable, PackingError> {
+fn time_steps<L: PairLaw, C: DampingLaw>(grown: &Grown<2>, law: &L, damping: &C) -> Result<ChoiceTable, PackingError> {
     let longest = LONGEST_STEP * Motion::new(&grown.packing, law, damping)?.stable_step();
     let place = |division: usize| -> Result<(Packing<2>, f64), PackingError> {
         let start = Instant::now();
@@ -208,11 +204,8 @@ fn routes(grown: &Grown<2>, wavenumber: f64) -> Option<ChoiceTable> {
         let closed = |radius: f64| bracket(radius) / at_disk;
         let most = radii.iter().map(|&radius| medium.value(radius).abs()).fold(0.0, larger);
         let errors = radii.iter().map(|&radius| (closed(radius) - medium.value(radius)).abs() / most);
-        let values = vec![
-            Some(errors.fold(0.0, larger)),
-            Some(timed(&closed)),
-            Some(timed(&|radius| medium.value(radius))),
-        ];
+        let values =
+            vec![Some(errors.fold(0.0, larger)), Some(timed(&closed)), Some(timed(&|radius| medium.value(radius)))];
         rows.push(ChoiceRow { setting: format!("{wavenumber:.3e}"), values });
     }
     (!rows.is_empty()).then(|| ChoiceTable {

@@ -74,8 +74,7 @@ pub fn choices(report: &PrecisionReport) -> String {
             for row in &table.rows {
                 for (quantity, value) in table.columns[1..].iter().zip(&row.values) {
                     let value = value.map_or(String::new(), |value| format!("{value:e}"));
-                    let _ =
-                        writeln!(text, "{},{},{},\"{quantity}\",{value}", sample.name, table.name, row.setting);
+                    let _ = writeln!(text, "{},{},{},\"{quantity}\",{value}", sample.name, table.name, row.setting);
                 }
             }
         }

@@ -54,11 +54,8 @@ const QUANTITIES: [Quantity; 5] = [
 ];
 
 const SECONDS: Price = Price { name: "seconds", label: "wall time on one core (s)", of: |run| run.seconds };
-const EVALUATIONS: Price = Price {
-    name: "force_evaluations",
-    label: "force evaluations",
-    of: |run| run.cost.force_evaluation_count as f64,
-};
+const EVALUATIONS: Price =
+    Price { name: "force_evaluations", label: "force evaluations", of: |run| run.cost.force_evaluation_count as f64 };
 const FACTORISATIONS: Price = Price {
     name: "factorisations",
     label: "factorisations (runs without any left out)",
@@ -278,8 +275,7 @@ fn legend(unjammed: bool) -> String {
     let cross = format!("<path d=\"M{:.1} {:.1}l10 10m0 -10l-10 10\" stroke=\"{INK}\"/>", x - 5.0, y - 5.0);
     entry(first + 1, cross, "step limit");
     let (x, y) = cell(first + 2);
-    let dotted =
-        format!("<path d=\"M{:.1} {y:.1}h14\" stroke=\"{INK}\" stroke-dasharray=\"2 3\"/>", x - 8.0);
+    let dotted = format!("<path d=\"M{:.1} {y:.1}h14\" stroke=\"{INK}\" stroke-dasharray=\"2 3\"/>", x - 8.0);
     entry(first + 2, dotted, "time step, tolerance");
     svg + "</g>\n"
 }

@@ -16,8 +16,7 @@ use crate::report::ReportError;
 pub fn write(report: &PrecisionReport, folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
     std::fs::create_dir_all(folder).map_err(|source| ReportError::Folder { folder: folder.into(), source })?;
     let json_path = folder.join("precision.json");
-    let json = serde_json::to_string_pretty(report)
-        .map_err(|source| ReportError::Json { path: json_path, source })?;
+    let json = serde_json::to_string_pretty(report).map_err(|source| ReportError::Json { path: json_path, source })?;
     #[cfg_attr(not(feature = "plot"), allow(unused_mut, reason = "figures are of the feature `plot`"))]
     let mut texts = vec![
         ("precision.csv".to_string(), csv::runs(report)),

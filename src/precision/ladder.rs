@@ -125,13 +125,17 @@ pub fn rungs(settings: &PrecisionSettings, damping: DampingChoice) -> Vec<Rung> 
             }));
         }
         rungs.extend(settings.tolerances.iter().filter_map(|&tolerance| {
-            let limit = ForceLimit::Relative(tightest);
+            let (limit, step_limit) = (ForceLimit::Relative(tightest), settings.implicit_step_limit);
             let relaxer = match method {
-                Method::Implicit => {
-                    RelaxerChoice::Implicit(ImplicitDynamics { limit, tolerance, damping, ..Default::default() })
-                }
+                Method::Implicit => RelaxerChoice::Implicit(ImplicitDynamics {
+                    limit,
+                    tolerance,
+                    damping,
+                    step_limit,
+                    ..Default::default()
+                }),
                 Method::GradientFlow => {
-                    RelaxerChoice::GradientFlow(GradientFlow { limit, tolerance, ..Default::default() })
+                    RelaxerChoice::GradientFlow(GradientFlow { limit, tolerance, step_limit, ..Default::default() })
                 }
                 _ => return None,
             };
@@ -146,20 +150,13 @@ fn damped(limit: f64, settings: &PrecisionSettings, damping: DampingChoice) -> D
     DampedDynamics { limit: ForceLimit::Relative(limit), damping, step_limit, ..DampedDynamics::default() }
 }
 
-fn at_limit(
-    method: Method,
-    limit: f64,
-    settings: &PrecisionSettings,
-    damping: DampingChoice,
-) -> Option<RelaxerChoice> {
+fn at_limit(method: Method, limit: f64, settings: &PrecisionSettings, damping: DampingChoice) -> Option<RelaxerChoice> {
     let force_limit = ForceLimit::Relative(limit);
     let step_limit = settings.explicit_step_limit;
     let fire = Fire { limit: force_limit, step_limit, ..Fire::default() };
     Some(match method {
         Method::Fire => RelaxerChoice::Fire(fire),
-        Method::FireStepBack => {
-            RelaxerChoice::Fire(Fire { uphill: Uphill::StepBack(StepBack::default()), ..fire })
-        }
+        Method::FireStepBack => RelaxerChoice::Fire(Fire { uphill: Uphill::StepBack(StepBack::default()), ..fire }),
         Method::ConjugateGradients => RelaxerChoice::ConjugateGradients(NonlinearConjugateGradients {
             limit: force_limit,
             step_limit,

@@ -9,7 +9,7 @@ use crate::packing::{Packing, PackingError};
 use crate::precision::state::{Errors, Measured, State};
 use crate::relax::implicit::Finish;
 use crate::relax::{
-    Criterion, ForceLimit, GradientFlow, ImplicitDynamics, Outcome, RelaxerChoice, Staged, Stop,
+    Criterion, ForceLimit, GradientFlow, ImplicitDynamics, Outcome, QuasiNewton, RelaxerChoice, Staged, Stop,
 };
 use crate::scene::Observables;
 
@@ -72,16 +72,17 @@ impl<'a, L: PairLaw> Minima<'a, L> {
         limit: f64,
     ) -> Result<Self, PackingError> {
         let limit = ForceLimit::Relative(limit);
-        let methods = ["implicit dynamics at tolerance 10⁻³, finished by Newton", "FIRE, then Newton"];
-        let relaxers = [
-            RelaxerChoice::Implicit(ImplicitDynamics {
-                limit,
-                damping,
-                tolerance: REFERENCE_TOLERANCE,
-                ..ImplicitDynamics::default()
-            }),
-            RelaxerChoice::Staged(Staged { limit, ..Staged::default() }),
-        ];
+        let staged = RelaxerChoice::Staged(Staged { limit, ..Staged::default() });
+        // Nothing presses: the motion of the disks would go on for long, and there is nothing for it to find.
+        let (methods, relaxers) = if grown.before.criterion == Criterion::Unjammed {
+            let quasi_newton = QuasiNewton { limit, ..QuasiNewton::default() };
+            (["L-BFGS", "FIRE, then Newton"], [RelaxerChoice::QuasiNewton(quasi_newton), staged])
+        } else {
+            let dynamics =
+                ImplicitDynamics { limit, damping, tolerance: REFERENCE_TOLERANCE, ..ImplicitDynamics::default() };
+            let name = "implicit dynamics at tolerance 10⁻³, finished by Newton";
+            ([name, "FIRE, then Newton"], [RelaxerChoice::Implicit(dynamics), staged])
+        };
         let relax = |relaxer| grown.relax(grown.packing.clone(), law, relaxer, &mut ());
         let [one, two] = [relax(&relaxers[0])?, relax(&relaxers[1])?];
         let (first, second) = (End::new(one, grown, law, observables)?, End::new(two, grown, law, observables)?);
@@ -118,6 +119,7 @@ impl<'a, L: PairLaw> Minima<'a, L> {
         }
         let flow = GradientFlow {
             limit: ForceLimit::Relative(FLOW_LIMIT),
+            tolerance: FLOW_TOLERANCE,
             finish: Finish::Newton(FLOW_HAND_OVER),
             ..GradientFlow::default()
         };
@@ -158,6 +160,9 @@ impl<'a, L: PairLaw> Minima<'a, L> {
 
 /// Force limit of the gradient flow that tells basins \[1\].
 const FLOW_LIMIT: f64 = 1e-12;
+
+/// Its tolerance \[1\]: the ways from a nearly relaxed state are short.
+const FLOW_TOLERANCE: f64 = 0.1;
 
 /// Residual from which Newton finishes it \[1\].
 const FLOW_HAND_OVER: f64 = 1e-4;

@@ -103,17 +103,28 @@ pub enum PrecisionError {
     },
 }
 
+/// Steps allowed to an implicit motion of an unjammed packing, whose disks fly until they hit nothing any more.
+const FLIGHT_LIMIT: usize = 100;
+
 impl PrecisionSettings {
+    /// The ladders of an unjammed packing: there every limit relative to contact forces is met at once, when these are gone.
+    fn where_nothing_presses(&self) -> Self {
+        PrecisionSettings {
+            force_limits: vec![self.force_limits.iter().copied().fold(f64::INFINITY, f64::min)],
+            time_steps: Vec::new(),
+            tolerances: self.tolerances.iter().copied().take(1).collect(),
+            implicit_step_limit: self.implicit_step_limit.min(FLIGHT_LIMIT),
+            ..self.clone()
+        }
+    }
+
     /// Whether every number makes sense.
     ///
     /// # Errors
     /// [`PrecisionError`] names the field and the value.
     pub fn check(&self) -> Result<(), PrecisionError> {
-        let ladders = [
-            ("force_limits", &self.force_limits),
-            ("time_steps", &self.time_steps),
-            ("tolerances", &self.tolerances),
-        ];
+        let ladders =
+            [("force_limits", &self.force_limits), ("time_steps", &self.time_steps), ("tolerances", &self.tolerances)];
         for (field, ladder) in ladders {
             if let Some(&value) = ladder.iter().find(|&&value| !(value.is_finite() && value > 0.0)) {
                 return Err(PrecisionError::NotPositive { field, value });
@@ -276,10 +287,14 @@ fn with_law<L: PairLaw>(
     progress: &impl Progress,
 ) -> Result<SamplePrecision, RunError> {
     let damping = damping_of(&sample.relaxer);
-    let rungs = rungs(settings, damping);
+    let grown = Grown::new(&scene.inflation, packing, law, &sample.relaxer, sample.seed, &mut ())?;
+    let rungs = if grown.before.criterion == Criterion::Unjammed {
+        rungs(&settings.where_nothing_presses(), damping)
+    } else {
+        rungs(settings, damping)
+    };
     progress.sample(&sample.name, rungs.len());
     progress.begins(0, "references");
-    let grown = Grown::new(&scene.inflation, packing, law, &sample.relaxer, sample.seed, &mut ())?;
     let mut minima = Minima::new(&grown, law, &scene.observables, damping, settings.reference_limit)?;
     let mut runs: Vec<Run> = Vec::new();
     for (done, rung) in rungs.iter().enumerate() {

@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
+use crate::precision::choices::ChoiceTable;
 use crate::precision::figure::figures;
 use crate::precision::state::Measured;
 use crate::precision::table::facts;
-use crate::precision::choices::ChoiceTable;
-use crate::precision::{ PrecisionReport, SamplePrecision, stop_name};
+use crate::precision::{PrecisionReport, SamplePrecision, stop_name};
 use crate::report::figures::escaped;
 use crate::report::number::{count, significant};
 use crate::report::page::STYLE;
@@ -70,11 +70,8 @@ fn row(html: &mut String, cells: &[String]) {
     html.push_str("<tr>");
     for (place, cell) in cells.iter().enumerate() {
         let cell = escaped(cell);
-        let _ = if place == 0 {
-            write!(html, "<th scope=\"row\">{cell}</th>")
-        } else {
-            write!(html, "<td>{cell}</td>")
-        };
+        let _ =
+            if place == 0 { write!(html, "<th scope=\"row\">{cell}</th>") } else { write!(html, "<td>{cell}</td>") };
     }
     html.push_str("</tr>\n");
 }
@@ -86,7 +83,8 @@ fn short(value: Option<f64>) -> String {
 }
 
 fn minima(sample: &SamplePrecision, html: &mut String) {
-    let columns = ["minimum", "found by", "from a reference (length)", "energy", "p", "κ (1/length)", "d_0^eff (length)"];
+    let columns =
+        ["minimum", "found by", "from a reference (length)", "energy", "p", "κ (1/length)", "d_0^eff (length)"];
     head(html, "Minima", &columns);
     for minimum in &sample.minima {
         let Measured { energy, pressure, fitted, .. } = minimum.measured;

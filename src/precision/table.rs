@@ -74,7 +74,8 @@ pub(super) fn facts(sample: &SamplePrecision) -> Vec<String> {
     ];
     let others = sample.minima.iter().filter(|minimum| minimum.distance > 0.0).count();
     if !sample.unjammed {
-        let runs = |reference: bool| sample.runs.iter().filter(|run| (run.minimum_distance == 0.0) == reference).count();
+        let runs =
+            |reference: bool| sample.runs.iter().filter(|run| (run.minimum_distance == 0.0) == reference).count();
         lines.push(format!(
             "{} of {} runs ended in a reference minimum, {} in {others} others",
             runs(true),
