@@ -202,6 +202,9 @@ mod book {
     mod report {}
     #[doc = include_str!("../book/src/validation.md")]
     mod validation {}
+    #[cfg(feature = "linear")]
+    #[doc = include_str!("../book/src/precision.md")]
+    mod precision {}
     #[doc = include_str!("../book/src/performance.md")]
     mod performance {}
     #[doc = include_str!("../book/src/figures.md")]
