@@ -70,13 +70,13 @@ mod fits {
     use crate::fit::profile::ProfileFitSettings;
     use crate::inflation::Grown;
     use crate::precision::state::{State, fit};
-    use crate::scene::{Observables, RadialProfileSettings};
+    use crate::scene::Observables;
 
     /// Widths of a ring \[length\].
     const RING_WIDTHS: [f64; 8] = [0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0];
 
     pub(super) fn tables(state: &State, grown: &Grown<2>, observables: &Observables) -> Vec<ChoiceTable> {
-        let width = observables.radial_profile.unwrap_or(RadialProfileSettings::default()).ring_width;
+        let width = observables.radial_profile.unwrap_or_default().ring_width;
         let settings = observables.profile_fit.unwrap_or_default();
         let field = state.field(grown);
         let row = |setting: String, width: f64, settings: &ProfileFitSettings| {

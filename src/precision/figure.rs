@@ -13,7 +13,7 @@ use crate::report::number::superscript;
 /// Ends of the axes \[px\].
 const LEFT: f64 = 66.0;
 const RIGHT: f64 = WIDTH as f64 - 14.0;
-const TOP: f64 = 112.0;
+const TOP: f64 = 96.0;
 const BOTTOM: f64 = HEIGHT as f64 - 50.0;
 
 /// Font size of all text \[px\].
@@ -146,19 +146,19 @@ impl Axis {
 fn axes(x_axis: &Axis, y_axis: &Axis, x_label: &str, y_label: &str) -> String {
     let mut svg = format!("<g font-size=\"{FONT_SIZE}\" stroke-width=\"1\">\n");
     for (power, x) in x_axis.labels() {
-        let _ = write!(
+        let _ = writeln!(
             svg,
             "<path d=\"M{x:.1} {TOP}V{BOTTOM}\" stroke=\"#e2e2e2\"/><path d=\"M{x:.1} {BOTTOM}v5\" stroke=\"{INK}\"/>\
-             <text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">10{}</text>\n",
+             <text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">10{}</text>",
             BOTTOM + 19.0,
             superscript(power)
         );
     }
     for (power, y) in y_axis.labels() {
-        let _ = write!(
+        let _ = writeln!(
             svg,
             "<path d=\"M{LEFT} {y:.1}H{RIGHT}\" stroke=\"#e2e2e2\"/><path d=\"M{LEFT} {y:.1}h-5\" stroke=\"{INK}\"/>\
-             <text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">10{}</text>\n",
+             <text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">10{}</text>",
             LEFT - 8.0,
             y + 4.5,
             superscript(power)
