@@ -1,4 +1,4 @@
-//! [`choice_tables`]: what other numerical choices move, measured on one sample.
+//! [`ChoiceTable`]: what other numerical choices move, measured on one sample.
 //!
 //! Ring widths and the range and search of the fit are varied on the first reference; the time step on one explicit trajectory
 //! from the inflated start, whose reference is the same trajectory at a quarter of the shortest step; the routes to the screened

@@ -1,4 +1,4 @@
-//! [`Minima`]: the minima in which runs from one start end, two of them references found by different methods.
+//! [`Minimum`]: the minima in which runs from one start end, two of them references found by different methods.
 
 use serde::Serialize;
 
