@@ -52,6 +52,7 @@ pub struct Figure {
 
 impl Figure {
     /// A picture of these SVG elements.
+    #[cfg(feature = "linear")]
     pub(crate) fn new(title: String, description: String, elements: String) -> Self {
         Figure { title, description, elements }
     }
