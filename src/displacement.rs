@@ -103,12 +103,22 @@ impl<const D: usize> DisplacementField<D> {
 
     fn between(inflated: &Inflated<D>, before: &Rest<D>, after: &Rest<D>) -> Self {
         let unjammed = [before, after].iter().any(|rest| rest.criterion == Criterion::Unjammed);
+        let states = [(before.packing.get(), before.backbone.as_slice()), (after.packing.get(), &after.backbone)];
+        Self::of_states(states, unjammed, inflated.centre, inflated.inner_radius, inflated.outer_radius)
+    }
+
+    /// From two states, each with its backbone; whoever calls this answers for their being at rest, or says that they are not.
+    pub(crate) fn of_states(
+        [(first, first_backbone), (second, second_backbone)]: [(&Packing<D>, &[bool]); 2],
+        unjammed: bool,
+        centre: usize,
+        inner_radius: f64,
+        outer_radius: f64,
+    ) -> Self {
         let measured_on = if unjammed { MeasuredOn::AllDisks } else { MeasuredOn::Backbone };
         let counted: Vec<bool> =
-            before.backbone.iter().zip(&after.backbone).map(|(&a, &b)| unjammed || (a && b)).collect();
-        let (first, second) = (before.packing.get(), after.packing.get());
-        let disks = moved(first, inflated.centre, &counted, |disk| displacement(first, second, disk));
-        let (inner_radius, outer_radius) = (inflated.inner_radius, inflated.outer_radius);
+            first_backbone.iter().zip(second_backbone).map(|(&a, &b)| unjammed || (a && b)).collect();
+        let disks = moved(first, centre, &counted, |disk| displacement(first, second, disk));
         DisplacementField { disks, inner_radius, outer_radius, measured_on }
     }
 

@@ -74,6 +74,7 @@
 //! | [`scene`] | everything a run needs, as plain data | [`Scene`](scene::Scene) |
 //! | [`run`] | scene to report, one line a stage | [`run::run`] |
 //! | [`report`] | table, data files, figures, one page | [`report::write`] |
+//! | `precision` (feature `linear`) | error against cost of relaxers and other numerical choices | `precision::measure` |
 //!
 //! What a stage gives has a type that says what is known of it: only a converged relaxation makes a
 //! [`Relaxed`](relax::Relaxed) packing, and only two of those make a displacement field.
@@ -109,6 +110,8 @@ pub mod observe;
 pub mod packing;
 #[cfg(feature = "linear")]
 pub mod plastic;
+#[cfg(feature = "linear")]
+pub mod precision;
 pub mod preparation;
 #[cfg(feature = "linear")]
 pub mod protocol;
@@ -211,6 +214,9 @@ mod book {
     mod report {}
     #[doc = include_str!("../book/src/validation.md")]
     mod validation {}
+    #[cfg(feature = "linear")]
+    #[doc = include_str!("../book/src/precision.md")]
+    mod precision {}
     #[doc = include_str!("../book/src/performance.md")]
     mod performance {}
     #[doc = include_str!("../book/src/figures.md")]

@@ -9,6 +9,9 @@ mod exact;
 mod inspect;
 #[path = "cli/law_of_file.rs"]
 mod law_of_file;
+#[cfg(feature = "linear")]
+#[path = "cli/precision.rs"]
+mod precision;
 #[path = "cli/progress.rs"]
 mod progress;
 #[path = "cli/scene_file.rs"]
@@ -43,6 +46,9 @@ enum Command {
     Inspect(InspectArguments),
     /// Print an exact solution as a table, 17 significant digits.
     Exact(exact::ExactArguments),
+    /// Measure error against cost: every relaxer from one inflated start, at a ladder of settings.
+    #[cfg(feature = "linear")]
+    Precision(precision::PrecisionArguments),
 }
 
 #[derive(Args, Default)]
@@ -95,6 +101,8 @@ fn main() -> ExitCode {
         Some(Command::Scene) => print(&scene_file::commented_scene()),
         Some(Command::Inspect(arguments)) => inspect_packing(&arguments),
         Some(Command::Exact(arguments)) => exact::print(&arguments).map(|()| ExitCode::SUCCESS),
+        #[cfg(feature = "linear")]
+        Some(Command::Precision(arguments)) => precision::run(&arguments),
     };
     result.unwrap_or_else(|error| {
         eprintln!("jamscope: {error}");

@@ -284,3 +284,14 @@ fn a_run_certifies_its_states_and_writes_packings_that_inspect_takes_as_they_are
     assert_eq!(found["certificate"]["contacts"], done["packing"]["certificate"]["contacts"]);
     assert_eq!(found["certificate"]["relative_residual"], done["packing"]["certificate"]["relative_residual"]);
 }
+
+#[cfg(feature = "linear")]
+#[test]
+fn precision_refuses_a_sample_that_is_not_there_and_no_steps() {
+    let said = complaint(&["precision", "--sample", "nothing"]);
+    assert!(said.contains("--sample nothing: the scene has \"unjammed\", \"plastic\", \"quasielastic\""), "{said}");
+    let said = complaint(&["precision", "--steps", "0"]);
+    assert!(said.contains("at least one step"), "{said}");
+    let said = complaint(&["precision", "no-such-scene.toml"]);
+    assert!(said.contains("no-such-scene.toml"), "{said}");
+}

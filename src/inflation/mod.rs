@@ -5,17 +5,18 @@
 //! inflated state, gives the disk its first radius back and relaxes again.
 
 pub mod circle;
+pub(crate) mod grown;
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
 pub use circle::Circle;
+pub use grown::Grown;
 
 use crate::contact::{ContactNetwork, OnSite, PairLaw};
 use crate::packing::{Packing, PackingError};
-use crate::relax::{Cost, Criterion, Outcome, Relaxed, Relaxer, Residual, Stop, Trace};
-use crate::vector::{norm, scaled, sum};
+use crate::relax::{Cost, Criterion, Relaxed, Relaxer, Residual, Stop, Trace};
 
 /// What keeps the packing in place while a disk is inflated.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -270,131 +271,16 @@ fn inflate_with<const D: usize, L: PairLaw>(
     seed: u64,
     trace: &mut impl Trace,
 ) -> Result<Inflated<D>, InflationError> {
-    let chosen = choose_centre(packing, law, inflation.centre, seed)?;
-    let inner_radius = packing.radii()[chosen];
-    let increase = inflation.increase;
-    if !(increase.is_finite() && inner_radius + increase > 0.0) {
-        return Err(InflationError::IncreaseNotPossible { increase, radius: inner_radius });
-    }
-    let nearest = (0..packing.len())
-        .filter(|&disk| disk != chosen)
-        .map(|disk| norm(packing.separation(disk, chosen)))
-        .fold(f64::INFINITY, f64::min);
-    if inner_radius + increase >= nearest {
-        return Err(InflationError::IncreaseTooLarge { increase, radius: inner_radius, nearest });
-    }
-    let experiment = Experiment::new(inflation.boundary, packing, chosen)?;
-    let start = experiment.start();
-    let centre = experiment.centre();
-    let before = experiment.rest(Stage::Before, start, law, relaxer, trace)?;
-    let grown = before.packing.get().clone().with_radius(centre, inner_radius + increase)?;
-    let after = experiment.rest(Stage::Inflated, grown, law, relaxer, trace)?;
+    let grown = Grown::new(inflation, packing, law, relaxer, seed, trace)?;
+    let after = grown.rest(Stage::Inflated, grown.packing.clone(), law, relaxer, trace)?;
     let deflated = if inflation.deflate {
-        let shrunk = after.packing.get().clone().with_radius(centre, inner_radius)?;
-        Some(experiment.rest(Stage::Deflated, shrunk, law, relaxer, trace)?)
+        let shrunk = after.packing.get().clone().with_radius(grown.centre, grown.inner_radius)?;
+        Some(grown.rest(Stage::Deflated, shrunk, law, relaxer, trace)?)
     } else {
         None
     };
-    let (outer_radius, mobile_count) = experiment.extent();
+    let Grown { centre, inner_radius, outer_radius, mobile_count, before, .. } = grown;
     Ok(Inflated { centre, inner_radius, outer_radius, mobile_count, before, after, deflated })
-}
-
-/// The geometry of an inflation.
-enum Experiment<const D: usize> {
-    HeldRim(Circle<D>),
-    Periodic { packing: Packing<D>, centre: usize },
-}
-
-impl<const D: usize> Experiment<D> {
-    fn new(boundary: Boundary, packing: &Packing<D>, chosen: usize) -> Result<Self, InflationError> {
-        let lengths = packing.domain().lengths().ok_or(InflationError::NotPeriodic)?;
-        match boundary {
-            Boundary::HeldRim { outer_radius_over_side } => {
-                let side = lengths.iter().copied().fold(f64::INFINITY, f64::min);
-                Ok(Experiment::HeldRim(Circle::cut(packing, chosen, outer_radius_over_side * side)?))
-            }
-            Boundary::Periodic => Ok(Experiment::Periodic { packing: packing.clone(), centre: chosen }),
-        }
-    }
-
-    fn start(&self) -> Packing<D> {
-        match self {
-            Experiment::HeldRim(circle) => circle.packing.clone(),
-            // Sites of an earlier relaxation are not those of this one.
-            Experiment::Periodic { packing, .. } => packing.clone().without_sites(),
-        }
-    }
-
-    fn centre(&self) -> usize {
-        match self {
-            Experiment::HeldRim(circle) => circle.centre,
-            Experiment::Periodic { centre, .. } => *centre,
-        }
-    }
-
-    /// r_out and the number of mobile disks.
-    fn extent(&self) -> (f64, usize) {
-        match self {
-            Experiment::HeldRim(circle) => (circle.outer_radius, circle.mobile_count()),
-            Experiment::Periodic { packing, .. } => {
-                let lengths = packing.domain().lengths().unwrap_or([f64::INFINITY; D]);
-                (0.5 * lengths.iter().copied().fold(f64::INFINITY, f64::min), packing.len())
-            }
-        }
-    }
-
-    fn rest<L: PairLaw>(
-        &self,
-        stage: Stage,
-        packing: Packing<D>,
-        law: &L,
-        relaxer: &impl Relaxer,
-        trace: &mut impl Trace,
-    ) -> Result<Rest<D>, InflationError> {
-        let mut outcome = relaxer.relax(packing.clone(), law, trace)?;
-        // Contact forces add up to nothing, so sites are at rest only where the centre of mass has not moved: nothing to undo.
-        if let (Experiment::Periodic { .. }, false) = (self, L::ON_SITE) {
-            outcome.state = with_centre_of_mass_of(&packing, outcome.state);
-        }
-        let Outcome { stop, residual, rounding_floor, cost, .. } = outcome;
-        let (Stop::Converged(criterion), Ok(packing)) = (stop, outcome.converged()) else {
-            let residual = residual.relative();
-            return Err(InflationError::NotAtRest { stage, stop, step_count: cost.step_count, residual });
-        };
-        let network = ContactNetwork::new(packing.get(), law)?;
-        let pressure = match (self, criterion) {
-            (_, Criterion::Unjammed) => 0.0,
-            (Experiment::HeldRim(circle), _) => circle.pressure_of(&network),
-            (Experiment::Periodic { packing, .. }, _) => {
-                network.pressure(packing.domain().volume().unwrap_or(f64::INFINITY))
-            }
-        };
-        Ok(Rest {
-            pressure,
-            energy: network.energy() + network.on_site_energy(),
-            contact_count: network.contacts.len(),
-            rattler_count: network.rattlers().count(),
-            packing,
-            backbone: network.backbone,
-            residual,
-            rounding_floor,
-            criterion,
-            cost,
-        })
-    }
-}
-
-/// The second packing moved as a whole so that its disks have moved by nothing on average.
-pub(crate) fn with_centre_of_mass_of<const D: usize>(before: &Packing<D>, mut after: Packing<D>) -> Packing<D> {
-    let mut mean = [0.0; D];
-    for disk in 0..before.len() {
-        mean = sum(mean, displacement(before, &after, disk));
-    }
-    let shift = scaled(-1.0 / before.len() as f64, mean);
-    for disk in 0..before.len() {
-        after.displace(disk, shift);
-    }
-    after
 }
 
 /// How far a disk moved, to the rounding of that distance (positions are sums of two numbers).

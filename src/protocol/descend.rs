@@ -2,7 +2,8 @@
 
 use crate::contact::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
 use crate::contact::{ContactNetwork, PairLaw};
-use crate::inflation::{Rest, displacement, with_centre_of_mass_of};
+use crate::inflation::grown::with_centre_of_mass_of;
+use crate::inflation::{Rest, displacement};
 use crate::packing::{Packing, PackingError};
 use crate::protocol::{Ending, ProtocolSettings};
 use crate::relax::{

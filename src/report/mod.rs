@@ -24,7 +24,7 @@ mod data_file;
 #[cfg(feature = "plot")]
 pub mod figures;
 mod files;
-mod number;
+pub(crate) mod number;
 #[cfg(feature = "plot")]
 pub mod page;
 #[cfg(feature = "linear")]

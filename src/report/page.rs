@@ -13,7 +13,7 @@ use crate::report::rows::{Times, done, law, sections, settings};
 use crate::run::{Report, SampleOutcome, SampleReport, SampleResult};
 use crate::scene::Source;
 
-const STYLE: &str = include_str!("page.css");
+pub(crate) const STYLE: &str = include_str!("page.css");
 
 /// The page of a report. Two runs of one scene give the same bytes: wall times are left out.
 ///

@@ -257,7 +257,7 @@ fn protocol_of<L: PairLaw>(
 }
 
 /// The packing of a sample, made or read, at rest.
-fn packing_of<L: PairLaw>(
+pub(crate) fn packing_of<L: PairLaw>(
     scene: &Scene,
     sample: &Sample,
     law: &L,

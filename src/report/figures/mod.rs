@@ -51,6 +51,12 @@ pub struct Figure {
 }
 
 impl Figure {
+    /// A picture of these SVG elements.
+    #[cfg(feature = "linear")]
+    pub(crate) fn new(title: String, description: String, elements: String) -> Self {
+        Figure { title, description, elements }
+    }
+
     /// A file of its own.
     pub fn to_svg(&self) -> String {
         self.markup(r#" xmlns="http://www.w3.org/2000/svg""#)

@@ -1,0 +1,88 @@
+//! `jamscope precision`: error against cost, with one bar of progress.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use jamscope::precision::table::terminal_table;
+use jamscope::precision::{PrecisionSettings, Progress, measure, write};
+use jamscope::scene::Scene;
+
+use crate::{Failure, print, sample_of_file, scene_file};
+
+#[derive(Args)]
+pub struct PrecisionArguments {
+    /// Scene file (TOML); without one the built-in scene.
+    scene: Option<PathBuf>,
+    /// Only the sample of this name.
+    #[arg(long, value_name = "NAME", conflicts_with = "packing")]
+    sample: Option<String>,
+    /// Use this packing (extended XYZ, LAMMPS data or dump) instead of the samples of the scene.
+    #[arg(long, value_name = "FILE")]
+    packing: Option<PathBuf>,
+    /// Folder for tables, plots and the page.
+    #[arg(long, value_name = "DIR", default_value = "precision")]
+    out: PathBuf,
+    /// Steps allowed to the relaxers that take one or two force evaluations a step.
+    #[arg(long, value_name = "N", default_value_t = PrecisionSettings::default().explicit_step_limit)]
+    steps: usize,
+}
+
+/// Measures, prints the table and writes the files.
+pub fn run(arguments: &PrecisionArguments) -> Result<ExitCode, Failure> {
+    let mut scene = match &arguments.scene {
+        Some(path) => scene_file::read_scene(path)?,
+        None => Scene::default(),
+    };
+    if let Some(path) = &arguments.packing {
+        scene.sample = vec![sample_of_file(path, &scene)];
+    }
+    if let Some(name) = &arguments.sample {
+        let known: Vec<String> = scene.sample.iter().map(|sample| format!("\"{}\"", sample.name)).collect();
+        scene.sample.retain(|sample| sample.name == *name);
+        if scene.sample.is_empty() {
+            return Err(format!("--sample {name}: the scene has {}", known.join(", ")).into());
+        }
+    }
+    if arguments.steps == 0 {
+        return Err("--steps 0: at least one step is needed".into());
+    }
+    let settings = PrecisionSettings { explicit_step_limit: arguments.steps, ..PrecisionSettings::default() };
+    let bar = Bar::new();
+    let measured = measure(&scene, &settings, &bar);
+    bar.0.finish_and_clear();
+    let report = measured?;
+    print(&terminal_table(&report))?;
+    let files = write(&report, &arguments.out)?;
+    let page = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
+    let shown = page.unwrap_or(&arguments.out);
+    print(&format!("{} files in {}, start from {}\n", files.len(), arguments.out.display(), shown.display()))
+}
+
+/// One bar for the runs of a sample, on the standard error stream; indicatif hides it where that is no terminal.
+struct Bar(ProgressBar);
+
+impl Bar {
+    fn new() -> Self {
+        let style = ProgressStyle::with_template("{prefix:>14} {bar:30} {pos}/{len} {elapsed} {msg}")
+            .unwrap_or_else(|_| ProgressStyle::default_bar());
+        let bar = ProgressBar::new(1).with_style(style).with_prefix("packings").with_message("preparation");
+        // A run of dynamics may take a minute: the time that has passed shows that it works.
+        bar.enable_steady_tick(Duration::from_millis(250));
+        Bar(bar)
+    }
+}
+
+impl Progress for Bar {
+    fn sample(&self, name: &str, run_count: usize) {
+        self.0.set_prefix(name.to_string());
+        self.0.set_length(run_count as u64);
+    }
+
+    fn begins(&self, done: usize, what: &str) {
+        self.0.set_position(done as u64);
+        self.0.set_message(what.to_string());
+    }
+}

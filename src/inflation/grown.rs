@@ -1,0 +1,209 @@
+//! [`Grown`]: the moment of an inflation at which the disk has grown and nothing has moved yet.
+
+use crate::contact::{ContactNetwork, PairLaw};
+use crate::inflation::{Boundary, Circle, Inflation, InflationError, Rest, Stage, choose_centre, displacement};
+use crate::packing::{Packing, PackingError};
+use crate::relax::{Criterion, Outcome, Relaxer, Stop, Trace};
+use crate::vector::{norm, scaled, sum};
+
+/// A packing at rest whose disk has grown: what any relaxer can start from.
+///
+/// Where disks have sites the law is one with them ([`OnSite`](crate::contact::OnSite)), here and below.
+#[derive(Debug, Clone)]
+pub struct Grown<const D: usize> {
+    experiment: Experiment<D>,
+    /// Index of the inflated disk in the packings below.
+    pub centre: usize,
+    /// Radius of the inflated disk before \[length\].
+    pub inner_radius: f64,
+    /// r_out, half the shortest side in the periodic variant \[length\].
+    pub outer_radius: f64,
+    /// Number of mobile disks.
+    pub mobile_count: usize,
+    /// At rest before.
+    pub before: Rest<D>,
+    /// The same disks in the same places, one of them larger.
+    pub packing: Packing<D>,
+}
+
+impl<const D: usize> Grown<D> {
+    /// Chooses the disk, cuts the circle if there is one, brings that to rest and lets the disk grow.
+    ///
+    /// # Errors
+    /// [`InflationError`] says what cannot be done, with numbers.
+    pub fn new<L: PairLaw>(
+        inflation: &Inflation,
+        packing: &Packing<D>,
+        law: &L,
+        relaxer: &impl Relaxer,
+        seed: u64,
+        trace: &mut impl Trace,
+    ) -> Result<Self, InflationError> {
+        let chosen = choose_centre(packing, law, inflation.centre, seed)?;
+        let inner_radius = packing.radii()[chosen];
+        let increase = inflation.increase;
+        if !(increase.is_finite() && inner_radius + increase > 0.0) {
+            return Err(InflationError::IncreaseNotPossible { increase, radius: inner_radius });
+        }
+        let nearest = (0..packing.len())
+            .filter(|&disk| disk != chosen)
+            .map(|disk| norm(packing.separation(disk, chosen)))
+            .fold(f64::INFINITY, f64::min);
+        if inner_radius + increase >= nearest {
+            return Err(InflationError::IncreaseTooLarge { increase, radius: inner_radius, nearest });
+        }
+        let experiment = Experiment::new(inflation.boundary, packing, chosen)?;
+        let start = experiment.start();
+        let centre = experiment.centre();
+        let before = experiment.rest(Stage::Before, start, law, relaxer, trace)?;
+        let grown = before.packing.get().clone().with_radius(centre, inner_radius + increase)?;
+        let (outer_radius, mobile_count) = experiment.extent();
+        Ok(Grown { experiment, centre, inner_radius, outer_radius, mobile_count, before, packing: grown })
+    }
+
+    /// Relaxes disks in the geometry of this inflation, wherever that ends.
+    ///
+    /// # Errors
+    /// Only what makes forces undefined.
+    pub fn relax<L: PairLaw>(
+        &self,
+        packing: Packing<D>,
+        law: &L,
+        relaxer: &impl Relaxer,
+        trace: &mut impl Trace,
+    ) -> Result<Outcome<Packing<D>>, PackingError> {
+        self.experiment.relax(packing, law, relaxer, trace)
+    }
+
+    /// Pressure of the circle or the box from all contacts of a state \[force / length^(D−1)\].
+    pub fn pressure_of(&self, network: &ContactNetwork<D>) -> f64 {
+        self.experiment.pressure_of(network)
+    }
+
+    pub(super) fn rest<L: PairLaw>(
+        &self,
+        stage: Stage,
+        packing: Packing<D>,
+        law: &L,
+        relaxer: &impl Relaxer,
+        trace: &mut impl Trace,
+    ) -> Result<Rest<D>, InflationError> {
+        self.experiment.rest(stage, packing, law, relaxer, trace)
+    }
+}
+
+/// The geometry of an inflation.
+#[derive(Debug, Clone)]
+enum Experiment<const D: usize> {
+    HeldRim(Circle<D>),
+    Periodic { packing: Packing<D>, centre: usize },
+}
+
+impl<const D: usize> Experiment<D> {
+    fn new(boundary: Boundary, packing: &Packing<D>, chosen: usize) -> Result<Self, InflationError> {
+        let lengths = packing.domain().lengths().ok_or(InflationError::NotPeriodic)?;
+        match boundary {
+            Boundary::HeldRim { outer_radius_over_side } => {
+                let side = lengths.iter().copied().fold(f64::INFINITY, f64::min);
+                Ok(Experiment::HeldRim(Circle::cut(packing, chosen, outer_radius_over_side * side)?))
+            }
+            Boundary::Periodic => Ok(Experiment::Periodic { packing: packing.clone(), centre: chosen }),
+        }
+    }
+
+    fn start(&self) -> Packing<D> {
+        match self {
+            Experiment::HeldRim(circle) => circle.packing.clone(),
+            // Sites of an earlier relaxation are not those of this one.
+            Experiment::Periodic { packing, .. } => packing.clone().without_sites(),
+        }
+    }
+
+    fn centre(&self) -> usize {
+        match self {
+            Experiment::HeldRim(circle) => circle.centre,
+            Experiment::Periodic { centre, .. } => *centre,
+        }
+    }
+
+    /// r_out and the number of mobile disks.
+    fn extent(&self) -> (f64, usize) {
+        match self {
+            Experiment::HeldRim(circle) => (circle.outer_radius, circle.mobile_count()),
+            Experiment::Periodic { packing, .. } => {
+                let lengths = packing.domain().lengths().unwrap_or([f64::INFINITY; D]);
+                (0.5 * lengths.iter().copied().fold(f64::INFINITY, f64::min), packing.len())
+            }
+        }
+    }
+
+    fn relax<L: PairLaw>(
+        &self,
+        packing: Packing<D>,
+        law: &L,
+        relaxer: &impl Relaxer,
+        trace: &mut impl Trace,
+    ) -> Result<Outcome<Packing<D>>, PackingError> {
+        match self {
+            // Contact forces add up to nothing, so sites are at rest only where the centre of mass has not moved: nothing to
+            // undo.
+            Experiment::Periodic { .. } if !L::ON_SITE => {
+                let mut outcome = relaxer.relax(packing.clone(), law, trace)?;
+                outcome.state = with_centre_of_mass_of(&packing, outcome.state);
+                Ok(outcome)
+            }
+            _ => relaxer.relax(packing, law, trace),
+        }
+    }
+
+    fn pressure_of(&self, network: &ContactNetwork<D>) -> f64 {
+        match self {
+            Experiment::HeldRim(circle) => circle.pressure_of(network),
+            Experiment::Periodic { packing, .. } => {
+                network.pressure(packing.domain().volume().unwrap_or(f64::INFINITY))
+            }
+        }
+    }
+
+    fn rest<L: PairLaw>(
+        &self,
+        stage: Stage,
+        packing: Packing<D>,
+        law: &L,
+        relaxer: &impl Relaxer,
+        trace: &mut impl Trace,
+    ) -> Result<Rest<D>, InflationError> {
+        let outcome = self.relax(packing, law, relaxer, trace)?;
+        let Outcome { stop, residual, rounding_floor, cost, .. } = outcome;
+        let (Stop::Converged(criterion), Ok(packing)) = (stop, outcome.converged()) else {
+            let residual = residual.relative();
+            return Err(InflationError::NotAtRest { stage, stop, step_count: cost.step_count, residual });
+        };
+        let network = ContactNetwork::new(packing.get(), law)?;
+        Ok(Rest {
+            pressure: if criterion == Criterion::Unjammed { 0.0 } else { self.pressure_of(&network) },
+            energy: network.energy() + network.on_site_energy(),
+            contact_count: network.contacts.len(),
+            rattler_count: network.rattlers().count(),
+            packing,
+            backbone: network.backbone,
+            residual,
+            rounding_floor,
+            criterion,
+            cost,
+        })
+    }
+}
+
+/// The second packing moved as a whole so that its disks have moved by nothing on average.
+pub(crate) fn with_centre_of_mass_of<const D: usize>(before: &Packing<D>, mut after: Packing<D>) -> Packing<D> {
+    let mut mean = [0.0; D];
+    for disk in 0..before.len() {
+        mean = sum(mean, displacement(before, &after, disk));
+    }
+    let shift = scaled(-1.0 / before.len() as f64, mean);
+    for disk in 0..before.len() {
+        after.displace(disk, shift);
+    }
+    after
+}

@@ -1,0 +1,197 @@
+//! [`Minimum`]: the minima in which runs from one start end, two of them references found by different methods.
+
+use serde::Serialize;
+
+use crate::contact::PairLaw;
+use crate::contact::damping::DampingChoice;
+use crate::inflation::Grown;
+use crate::packing::{Packing, PackingError};
+use crate::precision::state::{Errors, Measured, State};
+use crate::relax::implicit::Finish;
+use crate::relax::{
+    Criterion, ForceLimit, GradientFlow, ImplicitDynamics, Outcome, QuasiNewton, RelaxerChoice, Staged, Stop,
+};
+use crate::scene::Observables;
+
+/// Distance up to which two states count as one minimum \[length\]: minima that differ do so by far more, states relaxed to
+/// rounding differ by far less.
+pub const SAME: f64 = 1e-6;
+
+/// Tolerance of the implicit dynamics that finds the first reference.
+const REFERENCE_TOLERANCE: f64 = 1e-3;
+
+/// One minimum.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Minimum {
+    /// A and B for the references, then letters in the order in which they were found.
+    pub label: String,
+    /// Who found it.
+    pub found_by: String,
+    /// Distance from the nearest reference, 0 for a reference \[length\].
+    pub distance: f64,
+    /// Relative residual \[1\].
+    pub residual: f64,
+    /// Why its relaxation stopped.
+    pub stop: Stop,
+    /// Its numbers.
+    pub measured: Measured,
+}
+
+/// What both references say of each other.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Disagreement {
+    /// How the references were found, A then B.
+    pub methods: [&'static str; 2],
+    /// Relative residuals reached \[1\].
+    pub residuals: [f64; 2],
+    /// Whether they are one minimum.
+    pub same_minimum: bool,
+    /// B against A.
+    pub errors: Errors,
+}
+
+/// The minima found so far, and what is needed to tell a new one.
+pub(super) struct Minima<'a, L> {
+    grown: &'a Grown<2>,
+    law: &'a L,
+    observables: &'a Observables,
+    states: Vec<State>,
+    /// In the order of the states.
+    pub known: Vec<Minimum>,
+    pub disagreement: Disagreement,
+    reference_count: usize,
+}
+
+impl<'a, L: PairLaw> Minima<'a, L> {
+    /// Finds both references.
+    pub fn new(
+        grown: &'a Grown<2>,
+        law: &'a L,
+        observables: &'a Observables,
+        damping: DampingChoice,
+        limit: f64,
+    ) -> Result<Self, PackingError> {
+        let limit = ForceLimit::Relative(limit);
+        let staged = RelaxerChoice::Staged(Staged { limit, ..Staged::default() });
+        // Nothing presses: the motion of the disks would go on for long, and there is nothing for it to find.
+        let (methods, relaxers) = if grown.before.criterion == Criterion::Unjammed {
+            let quasi_newton = QuasiNewton { limit, ..QuasiNewton::default() };
+            (["L-BFGS", "FIRE, then Newton"], [RelaxerChoice::QuasiNewton(quasi_newton), staged])
+        } else {
+            let dynamics =
+                ImplicitDynamics { limit, damping, tolerance: REFERENCE_TOLERANCE, ..ImplicitDynamics::default() };
+            let name = "implicit dynamics at tolerance 10⁻³, finished by Newton";
+            ([name, "FIRE, then Newton"], [RelaxerChoice::Implicit(dynamics), staged])
+        };
+        let relax = |relaxer| grown.relax(grown.packing.clone(), law, relaxer, &mut ());
+        let [one, two] = [relax(&relaxers[0])?, relax(&relaxers[1])?];
+        let (first, second) = (End::new(one, grown, law, observables)?, End::new(two, grown, law, observables)?);
+        let errors = second.state.errors(&first.state);
+        let same_minimum = errors.displacement <= SAME;
+        let residuals = [first.residual, second.residual];
+        let disagreement = Disagreement { methods, residuals, same_minimum, errors };
+        let mut minima =
+            Minima { grown, law, observables, states: Vec::new(), known: Vec::new(), disagreement, reference_count: 0 };
+        let found_by = if same_minimum { "both references" } else { methods[0] };
+        minima.add(first, found_by, 0.0);
+        if !same_minimum {
+            minima.add(second, methods[1], 0.0);
+        }
+        minima.reference_count = minima.states.len();
+        Ok(minima)
+    }
+
+    /// The first reference.
+    pub fn first(&self) -> &State {
+        &self.states[0]
+    }
+
+    /// Which minimum a state belongs to: where gradient flow leads from it. A new one is added.
+    ///
+    /// In an unjammed packing no disk has a place of its own: all is held against the nearest reference.
+    pub fn of(&mut self, state: &State, found_by: &str) -> Result<usize, PackingError> {
+        let (nearest, distance) = self.nearest(state, self.states.len());
+        if distance <= SAME {
+            return Ok(nearest);
+        }
+        if state.is_unjammed() {
+            return Ok(self.nearest(state, self.reference_count).0);
+        }
+        let flow = GradientFlow {
+            limit: ForceLimit::Relative(FLOW_LIMIT),
+            tolerance: FLOW_TOLERANCE,
+            finish: Finish::Newton(FLOW_HAND_OVER),
+            ..GradientFlow::default()
+        };
+        let outcome = self.grown.relax(state.packing.clone(), self.law, &flow, &mut ())?;
+        let end = End::new(outcome, self.grown, self.law, self.observables)?;
+        let (nearest, distance) = self.nearest(&end.state, self.states.len());
+        if distance <= SAME {
+            return Ok(nearest);
+        }
+        let distance = self.nearest(&end.state, self.reference_count).1;
+        self.add(end, found_by, distance);
+        Ok(self.states.len() - 1)
+    }
+
+    /// The errors of a state against a minimum.
+    pub fn errors(&self, state: &State, minimum: usize) -> Errors {
+        state.errors(&self.states[minimum])
+    }
+
+    /// The nearest of the first `count` states, and its distance.
+    fn nearest(&self, state: &State, count: usize) -> (usize, f64) {
+        let distances = self.states[..count].iter().map(|other| state.distance(other)).enumerate();
+        distances.min_by(|a, b| a.1.total_cmp(&b.1)).expect("there is at least one reference")
+    }
+
+    fn add(&mut self, end: End, found_by: &str, distance: f64) {
+        self.known.push(Minimum {
+            label: label(self.known.len()),
+            found_by: found_by.into(),
+            distance,
+            residual: end.residual,
+            stop: end.stop,
+            measured: end.state.measured,
+        });
+        self.states.push(end.state);
+    }
+}
+
+/// Force limit of the gradient flow that tells basins \[1\].
+const FLOW_LIMIT: f64 = 1e-12;
+
+/// Its tolerance \[1\]: the ways from a nearly relaxed state are short.
+const FLOW_TOLERANCE: f64 = 0.1;
+
+/// Residual from which Newton finishes it \[1\].
+const FLOW_HAND_OVER: f64 = 1e-4;
+
+/// A, B, …, Z, A1, B1, …
+fn label(index: usize) -> String {
+    let letter = char::from(b'A' + (index % 26) as u8);
+    if index < 26 { letter.into() } else { format!("{letter}{}", index / 26) }
+}
+
+/// Where a relaxation ended.
+pub(super) struct End {
+    pub state: State,
+    pub stop: Stop,
+    pub residual: f64,
+}
+
+impl End {
+    pub fn new<L: PairLaw>(
+        outcome: Outcome<Packing<2>>,
+        grown: &Grown<2>,
+        law: &L,
+        observables: &Observables,
+    ) -> Result<Self, PackingError> {
+        let criterion: Option<Criterion> = match outcome.stop {
+            Stop::Converged(criterion) => Some(criterion),
+            _ => None,
+        };
+        let (stop, residual) = (outcome.stop, outcome.residual.relative());
+        Ok(End { state: State::new(outcome.state, criterion, grown, law, observables)?, stop, residual })
+    }
+}
