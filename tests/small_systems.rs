@@ -56,7 +56,7 @@ fn check_row<L: PairLaw>(law: &L, outcome: Outcome<Packing<2>>, radii: &[(f64, f
     }
 }
 
-/// Relaxers to this share of the force that the row will have.
+/// Relaxers that know no time to this share of the force that the row will have.
 fn relaxers<L: PairLaw>(law: &L, radii: &[(f64, f64)], total: f64, limit: f64) -> Vec<RelaxerChoice> {
     let force = law.force(law.coefficient(radii[0].0, radii[0].1), shared(law, radii, total)[0]);
     let limit = ForceLimit::Absolute(limit * force);
@@ -69,8 +69,6 @@ fn relaxers<L: PairLaw>(law: &L, radii: &[(f64, f64)], total: f64, limit: f64) -
         RelaxerChoice::QuasiNewton(QuasiNewton { limit, ..QuasiNewton::default() }),
         #[cfg(feature = "linear")]
         RelaxerChoice::GradientFlow(jamscope::relax::GradientFlow { limit, ..Default::default() }),
-        #[cfg(feature = "linear")]
-        RelaxerChoice::Implicit(jamscope::relax::ImplicitDynamics { limit, ..Default::default() }),
     ]
 }
 
