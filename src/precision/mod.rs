@@ -62,11 +62,11 @@ pub struct PrecisionSettings {
 impl Default for PrecisionSettings {
     fn default() -> Self {
         PrecisionSettings {
-            force_limits: vec![1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10, 1e-12],
+            force_limits: vec![1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12],
             time_steps: vec![0.45, 0.225],
             tolerances: vec![0.3, 0.1, 0.03, 0.01, 0.003],
             explicit_step_limit: 50_000,
-            implicit_step_limit: 5000,
+            implicit_step_limit: 2000,
             reference_limit: 1e-13,
         }
     }
