@@ -11,7 +11,7 @@ use jamscope::relax::implicit::{Finish, ImplicitMotion, Inertia, Stepped};
 use jamscope::relax::{
     DampedDynamics, Fire, ForceLimit, GradientFlow, ImplicitDynamics, Look, Newton, Outcome, Relaxer, Staged, Stop,
 };
-use jamscope::vector::{Vector, difference, norm, sum};
+use jamscope::vector::{Vector, difference, larger, norm, sum};
 
 /// A small disk of a stored packing, of its backbone if there is one, grown by 0.1 in a circle with a held rim.
 fn inflated(name: &str, index: usize) -> Packing<2> {
@@ -121,7 +121,7 @@ fn way(a: &Packing<2>, b: &Packing<2>, disk: usize) -> f64 {
 }
 
 fn distance(a: &Packing<2>, b: &Packing<2>) -> f64 {
-    (0..a.len()).map(|disk| way(a, b, disk)).fold(0.0, f64::max)
+    (0..a.len()).map(|disk| way(a, b, disk)).fold(0.0, larger)
 }
 
 #[test]
@@ -194,7 +194,7 @@ fn apart(a: Packing<2>, b: Packing<2>) -> f64 {
     let newton = Newton { limit: ForceLimit::Relative(1e-12), ..Newton::default() };
     let [a, b] = [a, b].map(|state| newton.relax(state, &law, &mut ()).expect("no coincidence").state);
     let backbone = ContactNetwork::new(&a, &law).expect("no coincidence").backbone;
-    (0..a.len()).filter(|&disk| backbone[disk]).map(|disk| way(&a, &b, disk)).fold(0.0, f64::max)
+    (0..a.len()).filter(|&disk| backbone[disk]).map(|disk| way(&a, &b, disk)).fold(0.0, larger)
 }
 
 fn relaxed(relaxer: &impl Relaxer, start: &Packing<2>) -> Outcome<Packing<2>> {
@@ -269,7 +269,7 @@ fn relabelling_and_shifting_a_packing_changes_nothing_but_rounding() {
                 difference(b.state.positions()[count - 1 - disk], difference([0.0; 2], shift)),
             ))
         })
-        .fold(0.0, f64::max);
+        .fold(0.0, larger);
     // Both end at 10⁻⁸ of the mean force or better, rattlers at 10⁻⁴: an overlap of 10⁻² times that.
     assert!(largest < 1e-5, "{largest}");
 }

@@ -5,6 +5,7 @@ use rand_pcg::Pcg64;
 use serde::Serialize;
 
 use crate::protocol::{ProtocolSensitivity, Spread};
+use crate::vector::larger;
 
 /// Which of these samples, by name and seed, the comparison is done to: fraction × number of them, to the nearest, at least one.
 ///
@@ -70,7 +71,7 @@ impl ProtocolSummary {
             compared_count: compared.len(),
             several_minima_count: compared.iter().filter(|it| it.minimum_count > 1).count(),
             mean_minimum_count: minima as f64 / compared.len() as f64,
-            largest_distance: compared.iter().map(|it| it.largest_distance).fold(0.0, f64::max),
+            largest_distance: compared.iter().map(|it| it.largest_distance).fold(0.0, larger),
             pressure_change: rms(&|it| it.spreads.pressure_change),
             #[cfg(feature = "fit")]
             elastic_amplitude: rms(&|it| it.spreads.elastic_amplitude),
