@@ -83,9 +83,18 @@ impl<'a, L: PairLaw> Minima<'a, L> {
             let name = "implicit dynamics at tolerance 10⁻³, finished by Newton";
             ([name, "FIRE, then Newton"], [RelaxerChoice::Implicit(dynamics), staged])
         };
-        let relax = |relaxer| grown.relax(grown.packing.clone(), law, relaxer, &mut ());
-        let [one, two] = [relax(&relaxers[0])?, relax(&relaxers[1])?];
-        let (first, second) = (End::new(one, grown, law, observables)?, End::new(two, grown, law, observables)?);
+        let relax = |relaxer: &RelaxerChoice| {
+            let outcome = grown.relax(grown.packing.clone(), law, relaxer, &mut ())?;
+            End::new(outcome, grown, law, observables)
+        };
+        let (mut first, second) = (relax(&relaxers[0])?, relax(&relaxers[1])?);
+        let mut methods = methods;
+        if !matches!(first.stop, Stop::Converged(_) | Stop::RoundingFloor) {
+            // A reference is at rest. Steepest descent always comes to rest.
+            let flow = GradientFlow { limit, ..GradientFlow::default() };
+            first = relax(&RelaxerChoice::GradientFlow(flow))?;
+            methods[0] = "gradient flow, finished by Newton (implicit dynamics did not come to rest)";
+        }
         let errors = second.state.errors(&first.state);
         let same_minimum = errors.displacement <= SAME;
         let residuals = [first.residual, second.residual];

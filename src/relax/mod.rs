@@ -106,8 +106,8 @@ pub enum Stop {
     /// says nothing. (Forces alone do not tell a saddle from a minimum: disks that nothing pushes off a saddle stay there and
     /// count as at rest. The number of negative eigenvalues tells, see `linear`.)
     NoMinimum,
-    /// An implicit motion does not come to rest: for thousands of steps neither its kinetic energy nor its residual has
-    /// fallen by a tenth.
+    /// An implicit motion does not come to rest: for thousands of steps its residual has not fallen by a tenth, and damping has
+    /// taken less than half of its kinetic energy.
     #[cfg(feature = "linear")]
     Restless,
     /// The factors of Newton's matrix do not fit in memory.

@@ -184,9 +184,12 @@ const SMALLEST_OVERLAP: f64 = 1e-6;
 /// mass term alone, and the pivots of the matrix must stay well apart from rounding.
 const LONGEST_STEP: f64 = 1e12;
 
-/// Steps in which neither the kinetic energy nor the residual has fallen by a tenth, after which the motion counts as one
-/// that does not come to rest.
+/// Steps in which the residual has not fallen by a tenth and damping has taken less than half of the kinetic energy there was,
+/// after which the motion counts as one that does not come to rest.
 const RESTLESS_AFTER: usize = 3000;
+
+/// Share of the kinetic energy meant there.
+const RESTLESS_LOSS: f64 = 0.5;
 
 /// Factorisations in which Newton must bring the residual down to a tenth.
 const PATIENCE: usize = 12;
@@ -251,7 +254,7 @@ impl Integration {
                 return Ok(stop);
             }
             let residual = monitor.residual().relative();
-            if restless.after(cost.step_count, kinetic_energy, residual) {
+            if restless.after(cost.step_count, (kinetic_energy, motion.dissipated), residual) {
                 return Ok(Stop::Restless);
             }
             if monitor.takes_new_anchors() {
@@ -366,27 +369,34 @@ fn finish<const D: usize, L: PairLaw, C: DampingLaw>(
 
 /// Watches for a motion that does not come to rest.
 struct Restless {
-    kinetic_energy: f64,
+    /// The lowest residual so far.
     residual: f64,
-    step_count: usize,
+    /// Steps, kinetic energy and work of damping when the watch last began anew.
+    since: (usize, f64, f64),
 }
 
 impl Default for Restless {
     fn default() -> Self {
-        Restless { kinetic_energy: f64::INFINITY, residual: f64::INFINITY, step_count: 0 }
+        Restless { residual: f64::INFINITY, since: (0, 0.0, 0.0) }
     }
 }
 
 impl Restless {
-    /// Whether neither has fallen by a tenth for too long.
-    fn after(&mut self, step_count: usize, kinetic_energy: f64, residual: f64) -> bool {
-        let progress = kinetic_energy < 0.9 * self.kinetic_energy || residual < 0.9 * self.residual;
-        if progress {
-            self.kinetic_energy = self.kinetic_energy.min(kinetic_energy);
-            self.residual = self.residual.min(residual);
-            self.step_count = step_count;
+    /// Whether for too long neither the residual has fallen nor damping has taken much of what moves.
+    fn after(&mut self, step_count: usize, (kinetic_energy, dissipated): (f64, f64), residual: f64) -> bool {
+        let (first_step, first_energy, first_work) = self.since;
+        let nearer = residual < 0.9 * self.residual;
+        let over = step_count - first_step >= RESTLESS_AFTER;
+        if over && !nearer && dissipated - first_work < RESTLESS_LOSS * first_energy {
+            return true;
         }
-        step_count - self.step_count >= RESTLESS_AFTER
+        if nearer {
+            self.residual = residual;
+        }
+        if nearer || over {
+            self.since = (step_count, kinetic_energy, dissipated);
+        }
+        false
     }
 }
 
