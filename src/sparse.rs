@@ -87,11 +87,15 @@ impl SymmetricMatrix {
     /// Largest sum of absolute values in a row, ‖A‖_∞: a bound on the size of every eigenvalue. NaN if an entry is.
     pub fn norm(&self) -> f64 {
         let mut sums = vec![0.0; self.dimension()];
-        for (row, column, value) in self.entries() {
-            sums[row] += value.abs();
-            if row != column {
-                sums[column] += value.abs();
+        for column in 0..self.dimension() {
+            let range = self.starts[column]..self.starts[column + 1];
+            let mut own = sums[column];
+            for (&row, value) in self.rows[range.clone()].iter().zip(&self.values[range]) {
+                own += value.abs();
+                sums[row] += value.abs();
             }
+            // The diagonal was added there as well.
+            sums[column] = own;
         }
         sums.into_iter().fold(0.0, |most, sum| larger(sum, most))
     }

@@ -174,6 +174,9 @@ impl Analysis {
         if !self.fits(matrix) {
             return Err(LinearError::PatternDiffers { dimension: matrix.dimension() });
         }
+        if matrix.values.iter().all(|value| value.is_finite()) {
+            return Ok(());
+        }
         match matrix.entries().find(|(_, _, value)| !value.is_finite()) {
             Some((row, column, value)) => Err(LinearError::NotFinite { row, column, value }),
             None => Ok(()),

@@ -124,7 +124,9 @@ pub struct ImplicitMotion<const D: usize, L, C> {
     taken_back: bool,
     stages: [Stage<D>; STAGE_COUNT],
     before: Before<D>,
+    /// Velocities of all disks, and all forces with damping.
     all_velocities: Vec<Vector<D>>,
+    all_forces: Vec<Vector<D>>,
     carried: Vec<Vector<D>>,
     right_side: Vec<f64>,
     unknowns: Vec<f64>,
@@ -164,7 +166,6 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             time: 0.0,
             work: Work::default(),
             margin: 0.0,
-
             prestressed: vec![true; assembly.len()],
             inertia,
             damping: *damping,
@@ -183,6 +184,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             stages: std::array::from_fn(|_| Stage { way: zero.clone(), kick: zero.clone(), work: 0.0 }),
             before: Before::default(),
             all_velocities: vec![[0.0; D]; assembly.len()],
+            all_forces: Vec::new(),
             carried: vec![[0.0; D]; assembly.len()],
             right_side: Vec::new(),
             unknowns: Vec::new(),
@@ -451,24 +453,22 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     fn add_damping_forces(&mut self) {
         self.work.evaluation_count += 1;
         let mobile = self.assembly.mobile_count();
-        self.net_forces.copy_from_slice(&self.assembly.forces[..mobile]);
         match self.inertia {
             Inertia::Massive => {
                 self.all_velocities[..mobile].copy_from_slice(&self.velocities);
-                let mut forces = std::mem::take(&mut self.assembly.forces);
-                let elastic = forces.clone();
+                self.all_forces.clone_from(&self.assembly.forces);
                 self.dissipation = add_damping(
                     &self.damping,
                     self.assembly.pairs(),
                     &self.damping_coefficient,
                     &self.assembly.displacements,
                     &self.all_velocities,
-                    &mut forces,
+                    &mut self.all_forces,
                 );
-                self.net_forces.copy_from_slice(&forces[..mobile]);
-                self.assembly.forces = elastic;
+                self.net_forces.copy_from_slice(&self.all_forces[..mobile]);
             }
             Inertia::Friction(friction) => {
+                self.net_forces.copy_from_slice(&self.assembly.forces[..mobile]);
                 // u̇ = F/ζ.
                 let f = self.net_forces.as_flattened();
                 self.dissipation = products(f, f).force_squared / friction;
