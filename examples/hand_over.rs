@@ -21,6 +21,7 @@ use jamscope::io::{read_packing, write_packing};
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{Cost, Fire, ForceLimit, Outcome, Relaxer, Staged, Stop};
+use jamscope::vector::larger;
 
 /// Stored packings if none is named.
 const STORED: [&str; 7] = [
@@ -130,8 +131,8 @@ fn row(
         assert!(network.backbone_count() > 0, "{name}: the packing is unjammed");
         cost = cost.plus(outcome.cost);
         most = most.max(outcome.cost.factorisation_count);
-        residual = residual.max(outcome.residual.relative());
-        floor = floor.max(outcome.rounding_floor);
+        residual = larger(residual, outcome.residual.relative());
+        floor = larger(floor, outcome.rounding_floor);
         if !matches!(outcome.stop, Stop::Converged(_)) {
             stops.push(format!("{:?}", outcome.stop));
         }

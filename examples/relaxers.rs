@@ -19,7 +19,7 @@ use jamscope::relax::{
     Cost, Fire, ForceLimit, NonlinearConjugateGradients, QuasiNewton, Relaxer, RelaxerChoice, Staged, StepBack, Stop,
     Uphill,
 };
-use jamscope::vector::norm;
+use jamscope::vector::{larger, norm};
 
 /// Stored packings if none is named.
 const STORED: [&str; 7] = [
@@ -103,7 +103,7 @@ fn row(
     for start in starts {
         let outcome = relaxer.relax(start.clone(), &law, &mut ())?;
         cost = cost.plus(outcome.cost);
-        residual = residual.max(outcome.residual.relative());
+        residual = larger(residual, outcome.residual.relative());
         if !matches!(outcome.stop, Stop::Converged(_)) {
             stops.push(format!("{:?}", outcome.stop));
         }
@@ -131,5 +131,5 @@ fn row(
 fn distance(one: &Packing<2>, two: &Packing<2>, law: &Hertzian) -> Result<f64, Box<dyn Error>> {
     let backbone = ContactNetwork::new(two, law)?.backbone;
     let way = |disk: usize| norm(one.domain().separation(one.centre(disk), two.centre(disk)));
-    Ok((0..one.len()).filter(|&disk| backbone[disk]).map(way).fold(0.0, f64::max))
+    Ok((0..one.len()).filter(|&disk| backbone[disk]).map(way).fold(0.0, larger))
 }

@@ -19,7 +19,7 @@ use jamscope::inflation::{Centre, Circle, choose_centre};
 use jamscope::io::read_packing;
 use jamscope::packing::Packing;
 use jamscope::relax::{Cost, DampedDynamics, ForceLimit, ImplicitDynamics, Newton, Outcome, Relaxer, Stop, TimeStep};
-use jamscope::vector::norm;
+use jamscope::vector::{larger, norm};
 
 /// Stored packings if none is named.
 const STORED: [&str; 3] = ["hertz_N1000_p10", "hertz_N1000_p100", "hertz_N1000_p800"];
@@ -148,5 +148,5 @@ fn inflated(packing: &Packing<2>, seed: u64) -> Result<Packing<2>, Box<dyn Error
 fn distance(one: &Packing<2>, two: &Packing<2>) -> Result<f64, Box<dyn Error>> {
     let backbone = ContactNetwork::new(two, &Hertzian::default())?.backbone;
     let way = |disk: usize| norm(one.domain().separation(one.centre(disk), two.centre(disk)));
-    Ok((0..one.len()).filter(|&disk| backbone[disk]).map(way).fold(0.0, f64::max))
+    Ok((0..one.len()).filter(|&disk| backbone[disk]).map(way).fold(0.0, larger))
 }

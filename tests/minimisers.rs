@@ -11,7 +11,7 @@ use jamscope::relax::{
     StepBack, Stop, Uphill,
 };
 use jamscope::scene::Scene;
-use jamscope::vector::{Vector, difference, norm, scaled, sum};
+use jamscope::vector::{Vector, difference, larger, norm, scaled, sum};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -78,7 +78,7 @@ fn shaken(packing: &Packing<2>, length: f64, seed: u64) -> Packing<2> {
 fn apart<L: PairLaw>(one: &Packing<2>, two: &Packing<2>, law: &L) -> f64 {
     let backbone = ContactNetwork::new(one, law).expect("no coincidence").backbone;
     let way = |disk: usize| norm(one.domain().separation(one.centre(disk), two.centre(disk)));
-    (0..one.len()).filter(|&disk| backbone[disk]).map(way).fold(0.0, f64::max)
+    (0..one.len()).filter(|&disk| backbone[disk]).map(way).fold(0.0, larger)
 }
 
 /// A disk between four held ones at the corners of a cross, at rest in the middle.
@@ -283,7 +283,7 @@ fn a_minimum_is_found_wherever_it_lies_and_whatever_its_disks_are_called() {
             let ((a, a_rest), (b, b_rest)) = (one.centre(disk), two.centre(reverse(disk)));
             norm(sum(difference(turned(a), b.map(|x| x - offset)), difference(turned(a_rest), b_rest)))
         };
-        let worst = (0..count).filter(|&disk| backbone[disk]).map(way).fold(0.0, f64::max);
+        let worst = (0..count).filter(|&disk| backbone[disk]).map(way).fold(0.0, larger);
         // Both are at rest to 10⁻¹² of the mean force, which at this pressure the softest mode makes 10⁻¹⁰ of a length at most
         // (p of 800 over a stiffness of 10² for the softest mode of 700 disks, √N for the norm).
         assert!(worst <= 1e-10, "{}: {worst:e} apart", choice.name());

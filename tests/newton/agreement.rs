@@ -5,7 +5,7 @@
 use jamscope::contact::{ContactNetwork, Hertzian, Hookean, OnSite, PairLaw};
 use jamscope::packing::Packing;
 use jamscope::relax::{DampedDynamics, ForceLimit, RelaxerChoice};
-use jamscope::vector::{Vector, difference, norm, sum};
+use jamscope::vector::{Vector, difference, larger, norm, sum};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -50,7 +50,7 @@ proptest! {
             let (a, a_rest) = (place(one.centre(disk).0), place(one.centre(disk).1));
             let (b, b_rest) = two.centre(reverse(disk));
             let b = b.map(|x| x - offset);
-            worst = worst.max(norm(sum(difference(a, b), difference(a_rest, b_rest))));
+            worst = larger(worst, norm(sum(difference(a, b), difference(a_rest, b_rest))));
         }
         // Beside the forces left: centres of the second were made with one rounding of a correction, 2⁻⁵³ of 2⁻⁴⁰.
         let tolerance = allowed(&minimum, &law, limit) + 1e-15;

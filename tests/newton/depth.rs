@@ -2,7 +2,7 @@
 
 use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw, PowerLaw};
 use jamscope::relax::{Criterion, Stop};
-use jamscope::vector::norm;
+use jamscope::vector::{larger, norm};
 
 use crate::{at_rest, fire, inflated, newton, points, relax, staged};
 
@@ -39,7 +39,7 @@ fn inflated_packings_come_to_rest_at_rounding_with_few_factorisations() {
             let largest = (0..outcome.state.len())
                 .filter(|&disk| backbone[disk] && !held[disk])
                 .map(|disk| norm(network.forces()[disk]))
-                .fold(0.0, f64::max);
+                .fold(0.0, larger);
             let anew = largest / network.mean_contact_force();
             assert!(anew <= 1e-12 + 2.0 * outcome.rounding_floor, "{name}, {index}: {anew:e} anew");
         }

@@ -5,7 +5,7 @@
 use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw};
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::{Criterion, Look, Newton, Relaxer, RelaxerChoice, Stop};
-use jamscope::vector::{Vector, difference, dot, norm, scaled, sum};
+use jamscope::vector::{Vector, difference, dot, larger, norm, scaled, sum};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -49,7 +49,7 @@ fn the_residual_is_squared_at_each_step_near_a_minimum() {
         assert_eq!(old.backbone, network.backbone);
         let step: Vec<Vector<2>> = (0..after.len()).map(|disk| moved(after, before, disk)).collect();
         let [one, two] = [&old, &new].map(|network| remainders(network, &law, &step));
-        let allowed: Vec<f64> = one.iter().zip(&two).map(|(one, two)| one.max(*two)).collect();
+        let allowed: Vec<f64> = one.iter().zip(&two).map(|(one, two)| larger(*one, *two)).collect();
         // Disks that touch one off the backbone are left out: there the stiffness is the secant one.
         let mut counts: Vec<bool> =
             (0..after.len()).map(|disk| network.backbone[disk] && !after.held()[disk]).collect();
@@ -61,12 +61,12 @@ fn the_residual_is_squared_at_each_step_near_a_minimum() {
         // Beside that 10⁻¹⁰ of the row times the step (the ground every disk stands on), and rounding.
         let mean = new.mean_contact_force();
         let stiffest =
-            old.contacts.iter().map(|contact| law.stiffness(contact.force, contact.overlap)).fold(0.0, f64::max);
-        let longest = step.iter().map(|&s| norm(s)).fold(0.0, f64::max);
+            old.contacts.iter().map(|contact| law.stiffness(contact.force, contact.overlap)).fold(0.0, larger);
+        let longest = step.iter().map(|&s| norm(s)).fold(0.0, larger);
         let beside = 1e-10 * 12.0 * stiffest * longest + 1e-13 * mean;
         let largest = |network: &ContactNetwork<2>| -> f64 {
             let forces = (0..after.len()).filter(|&disk| counts[disk]).map(|disk| norm(network.forces()[disk]));
-            forces.fold(0.0, f64::max) / mean
+            forces.fold(0.0, larger) / mean
         };
         assert!(counts.iter().filter(|&&counted| counted).count() > 500);
         for disk in (0..after.len()).filter(|&disk| counts[disk]) {

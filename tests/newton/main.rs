@@ -17,7 +17,7 @@ use jamscope::linear::Analysis;
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::random_points;
 use jamscope::relax::{Fire, ForceLimit, Newton, Outcome, Relaxer, Staged};
-use jamscope::vector::{Vector, norm, sum};
+use jamscope::vector::{Vector, larger, norm, sum};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -101,7 +101,7 @@ fn softest<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> f64 {
 /// Largest distance of a backbone disk between two states.
 fn apart<const D: usize, L: PairLaw>(one: &Packing<D>, two: &Packing<D>, law: &L) -> f64 {
     let backbone = ContactNetwork::new(one, law).expect("no coincidence").backbone;
-    (0..one.len()).filter(|&disk| backbone[disk]).map(|disk| norm(moved(one, two, disk))).fold(0.0, f64::max)
+    (0..one.len()).filter(|&disk| backbone[disk]).map(|disk| norm(moved(one, two, disk))).fold(0.0, larger)
 }
 
 /// How far two states at rest to this relative limit may be apart: |u| ≤ |F|/λ_min each, |F| ≤ √N times the largest.
