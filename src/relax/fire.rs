@@ -115,7 +115,7 @@ const BOUND_EVERY: usize = 40;
 const FIRST_STEP: f64 = 0.1;
 
 /// Rounding of an energy summed over blocks, relative \[1\].
-const ENERGY_ROUNDING: f64 = 1e-13;
+pub(super) const ENERGY_ROUNDING: f64 = 1e-13;
 
 impl Relaxer for Fire {
     fn relax<const D: usize, L: PairLaw>(
