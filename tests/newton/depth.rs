@@ -4,7 +4,9 @@ use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw, PowerLaw};
 use jamscope::relax::{Criterion, Stop};
 use jamscope::vector::{larger, norm};
 
-use crate::{at_rest, fire, inflated, newton, points, relax, staged};
+use crate::rest::{at_rest, relax};
+use crate::starts::{inflated, points};
+use crate::{fire, newton, staged};
 
 /// A limit of zero cannot be met: it ends where rounding is all there is, as deep as FIRE gets.
 #[test]
