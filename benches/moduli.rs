@@ -14,6 +14,7 @@ use jamscope::linear::{Analysis, ElasticModuli, Factorisation, VibrationalModes}
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{ForceLimit, Staged};
+use jamscope::vector::larger;
 
 /// Modes asked for.
 const MODE_COUNTS: [usize; 3] = [1, 10, 40];
@@ -49,7 +50,7 @@ fn of<const D: usize>(criterion: &mut Criterion, name: &str, packing: &Packing<D
     }
     for count in MODE_COUNTS {
         let modes = VibrationalModes::lowest(packing, &law, Prestress::Included, count).expect("found");
-        let worst = modes.modes.iter().fold(0.0, |most: f64, mode| most.max(mode.residual));
+        let worst = modes.modes.iter().fold(0.0, |most, mode| larger(most, mode.residual));
         let (residual, solutions, found) = krylov_schur(packing, &law, count);
         println!(
             "{name}, {count} modes: {} solutions, residual {worst:.1e}; faer {solutions} solutions, residual \
@@ -142,7 +143,7 @@ fn krylov_schur<const D: usize>(packing: &Packing<D>, law: &Hertzian, count: usi
         matrix.multiply(&vector, &mut product);
         let value: f64 = vector.iter().zip(&product).map(|(x, y)| x * y).sum();
         let off: f64 = vector.iter().zip(&product).map(|(x, y)| (y - value * x).powi(2)).sum();
-        worst = worst.max(off.sqrt() / norm);
+        worst = larger(worst, off.sqrt() / norm);
     }
     let solutions = inverse.0.lock().expect("one thread").1;
     (worst, solutions, found.n_converged_eigen)

@@ -28,7 +28,7 @@ use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
 use jamscope::packing::Packing;
 use jamscope::relax::{ForceLimit, NonlinearConjugateGradients, QuasiNewton, Relaxer, RelaxerChoice};
-use jamscope::vector::{Vector, norm, scaled};
+use jamscope::vector::{Vector, larger, norm, scaled};
 
 thread_local! {
     /// Vectors made by argmin's operators and clones.
@@ -197,7 +197,7 @@ impl Energy {
         state.energy = totals.energy;
         state.evaluation_count += 1;
         let forces = state.assembly.forces[..mobile].iter().zip(&self.backbone);
-        let largest = forces.filter(|&(_, &member)| member).fold(0.0, |most, (&force, _)| norm(force).max(most));
+        let largest = forces.filter(|&(_, &member)| member).fold(0.0, |most, (&force, _)| larger(norm(force), most));
         // A trial step that blows the packing apart leaves no force and is no result.
         let residual = if largest > 0.0 { largest / totals.mean_contact_force() } else { f64::INFINITY };
         state.lowest = state.lowest.min(residual);

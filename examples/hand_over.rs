@@ -11,27 +11,24 @@
 //! beside them). Times of stored packings are over that of FIRE to 10⁻¹², those of prepared ones in seconds. With `--keep` a
 //! prepared packing is written to a file of the folder, and read from there by the next run.
 
+#[path = "scenes/inflated.rs"]
+mod inflated;
+#[path = "scenes/stored.rs"]
+mod stored;
+
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 
 use jamscope::contact::{ContactNetwork, Hertzian};
-use jamscope::inflation::{Centre, Circle, choose_centre};
 use jamscope::io::{read_packing, write_packing};
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{Cost, Fire, ForceLimit, Outcome, Relaxer, Staged, Stop};
+use jamscope::vector::larger;
 
-/// Stored packings if none is named.
-const STORED: [&str; 7] = [
-    "hertz_N1000_p1",
-    "hertz_N1000_p10",
-    "hertz_N1000_p100",
-    "hertz_N1000_p800",
-    "hertz_N5548_p1",
-    "hertz_N5548_p10",
-    "hertz_N5548_p100",
-];
+use inflated::inflated;
+use stored::{named, starts};
 
 const LIMIT: ForceLimit = ForceLimit::Relative(1e-12);
 
@@ -61,12 +58,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             )?;
         }
     } else {
-        let names: Vec<&str> =
-            if arguments.is_empty() { STORED.to_vec() } else { arguments.iter().map(String::as_str).collect() };
-        for name in names {
-            let packing = read_packing::<2>(format!("{}/fixtures/packings/{name}.xyz", env!("CARGO_MANIFEST_DIR")))?;
-            let starts = (1..=4).map(|seed| inflated(&packing, seed)).collect::<Result<Vec<_>, _>>()?;
-            table(name, &starts, &[1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6], &law)?;
+        for name in named(arguments) {
+            table(name, &starts(name)?, &[1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6], &law)?;
         }
     }
     Ok(())
@@ -95,15 +88,6 @@ fn prepared(
     Ok(prepared.packing.get().clone())
 }
 
-/// The packing cut to a circle around a small disk of its backbone, which has grown by 0.1.
-fn inflated(packing: &Packing<2>, seed: u64) -> Result<Packing<2>, Box<dyn Error>> {
-    let chosen = choose_centre(packing, &Hertzian::default(), Centre::Backbone, seed)?;
-    let side = packing.domain().lengths().ok_or("the packing is not periodic")?[0];
-    let circle = Circle::cut(packing, chosen, 0.48 * side)?;
-    let radius = circle.packing.radii()[circle.centre];
-    Ok(circle.packing.with_radius(circle.centre, radius + 0.1)?)
-}
-
 fn table(name: &str, starts: &[Packing<2>], hand_overs: &[f64], law: &Hertzian) -> Result<(), Box<dyn Error>> {
     let fire = Fire { limit: LIMIT, ..Fire::default() };
     let alone = row(name, "FIRE", starts, &fire, law, None)?;
@@ -130,8 +114,8 @@ fn row(
         assert!(network.backbone_count() > 0, "{name}: the packing is unjammed");
         cost = cost.plus(outcome.cost);
         most = most.max(outcome.cost.factorisation_count);
-        residual = residual.max(outcome.residual.relative());
-        floor = floor.max(outcome.rounding_floor);
+        residual = larger(residual, outcome.residual.relative());
+        floor = larger(floor, outcome.rounding_floor);
         if !matches!(outcome.stop, Stop::Converged(_)) {
             stops.push(format!("{:?}", outcome.stop));
         }

@@ -9,57 +9,42 @@
 //! them. The last columns hold the backbone against that of the staged relaxer to the same limit: in how many of the centres no
 //! disk of it is farther than 10⁻⁶ away, and the largest distance in those.
 
+#[path = "scenes/distance.rs"]
+mod distance;
+#[path = "scenes/inflated.rs"]
+mod inflated;
+#[path = "scenes/stored.rs"]
+mod stored;
+
 use std::error::Error;
 
-use jamscope::contact::{ContactNetwork, Hertzian};
-use jamscope::inflation::{Centre, Circle, choose_centre};
-use jamscope::io::read_packing;
+use jamscope::contact::Hertzian;
 use jamscope::packing::Packing;
 use jamscope::relax::{
     Cost, Fire, ForceLimit, NonlinearConjugateGradients, QuasiNewton, Relaxer, RelaxerChoice, Staged, StepBack, Stop,
     Uphill,
 };
-use jamscope::vector::norm;
+use jamscope::vector::larger;
 
-/// Stored packings if none is named.
-const STORED: [&str; 7] = [
-    "hertz_N1000_p1",
-    "hertz_N1000_p10",
-    "hertz_N1000_p100",
-    "hertz_N1000_p800",
-    "hertz_N5548_p1",
-    "hertz_N5548_p10",
-    "hertz_N5548_p100",
-];
+use distance::distance;
+use stored::{named, starts};
 
 /// Distance up to which two states count as one: minima that differ do so by far more, rounding by far less.
 const SAME: f64 = 1e-6;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let names: Vec<&str> =
-        if arguments.is_empty() { STORED.to_vec() } else { arguments.iter().map(String::as_str).collect() };
     println!(
         "{:<17} {:>6} {:<20} {:>11} {:>7} {:>8} {:>9} {:>5} {:>9}  stop",
         "packing", "limit", "relaxer", "evaluations", "factor.", "seconds", "residual", "same", "apart"
     );
-    for name in names {
-        let packing = read_packing::<2>(format!("{}/fixtures/packings/{name}.xyz", env!("CARGO_MANIFEST_DIR")))?;
-        let starts = (1..=4).map(|seed| inflated(&packing, seed)).collect::<Result<Vec<_>, _>>()?;
+    for name in named(&arguments) {
+        let starts = starts(name)?;
         for limit in [1e-8, 1e-12] {
             table(name, &starts, limit)?;
         }
     }
     Ok(())
-}
-
-/// The packing cut to a circle around a small disk of its backbone, which has grown by 0.1.
-fn inflated(packing: &Packing<2>, seed: u64) -> Result<Packing<2>, Box<dyn Error>> {
-    let chosen = choose_centre(packing, &Hertzian::default(), Centre::Backbone, seed)?;
-    let side = packing.domain().lengths().ok_or("the packing is not periodic")?[0];
-    let circle = Circle::cut(packing, chosen, 0.48 * side)?;
-    let radius = circle.packing.radii()[circle.centre];
-    Ok(circle.packing.with_radius(circle.centre, radius + 0.1)?)
 }
 
 fn relaxers(limit: f64) -> Vec<(String, RelaxerChoice)> {
@@ -103,7 +88,7 @@ fn row(
     for start in starts {
         let outcome = relaxer.relax(start.clone(), &law, &mut ())?;
         cost = cost.plus(outcome.cost);
-        residual = residual.max(outcome.residual.relative());
+        residual = larger(residual, outcome.residual.relative());
         if !matches!(outcome.stop, Stop::Converged(_)) {
             stops.push(format!("{:?}", outcome.stop));
         }
@@ -111,7 +96,7 @@ fn row(
     }
     let mut apart = Vec::new();
     for (end, reference) in ends.iter().zip(references) {
-        apart.push(distance(end, reference, &law)?);
+        apart.push(distance(end, reference)?);
     }
     let same: Vec<f64> = apart.into_iter().filter(|&apart| apart <= SAME).collect();
     let stops = if stops.is_empty() { "all converged".to_string() } else { stops.join(", ") };
@@ -125,11 +110,4 @@ fn row(
         same.iter().copied().fold(0.0, f64::max),
     );
     Ok(ends)
-}
-
-/// Largest distance between the places of a disk of the second one's backbone.
-fn distance(one: &Packing<2>, two: &Packing<2>, law: &Hertzian) -> Result<f64, Box<dyn Error>> {
-    let backbone = ContactNetwork::new(two, law)?.backbone;
-    let way = |disk: usize| norm(one.domain().separation(one.centre(disk), two.centre(disk)));
-    Ok((0..one.len()).filter(|&disk| backbone[disk]).map(way).fold(0.0, f64::max))
 }

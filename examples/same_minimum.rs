@@ -11,15 +11,21 @@
 //! the first tolerance ends elsewhere though the explicit ends agree, the explicit step is halved once more. Then a line for
 //! the packing: in how many of the centres the distances are at most 10⁻⁸, steps and factorisations a centre, seconds a centre.
 
+#[path = "scenes/distance.rs"]
+mod distance;
+#[path = "scenes/inflated.rs"]
+mod inflated;
+
 use std::error::Error;
 
+use jamscope::contact::Hertzian;
 use jamscope::contact::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
-use jamscope::contact::{ContactNetwork, Hertzian};
-use jamscope::inflation::{Centre, Circle, choose_centre};
 use jamscope::io::read_packing;
 use jamscope::packing::Packing;
 use jamscope::relax::{Cost, DampedDynamics, ForceLimit, ImplicitDynamics, Newton, Outcome, Relaxer, Stop, TimeStep};
-use jamscope::vector::norm;
+
+use distance::distance;
+use inflated::inflated;
 
 /// Stored packings if none is named.
 const STORED: [&str; 3] = ["hertz_N1000_p10", "hertz_N1000_p100", "hertz_N1000_p800"];
@@ -133,20 +139,4 @@ fn at_rest(outcome: Outcome<Packing<2>>, cost: &mut Cost) -> Result<Packing<2>, 
         Stop::Converged(_) | Stop::RoundingFloor => Ok(outcome.state),
         stop => Err(format!("stopped by {stop:?} at {:.1e}", outcome.residual.relative()).into()),
     }
-}
-
-/// The packing cut to a circle around a small disk of its backbone, which has grown by 0.1.
-fn inflated(packing: &Packing<2>, seed: u64) -> Result<Packing<2>, Box<dyn Error>> {
-    let chosen = choose_centre(packing, &Hertzian::default(), Centre::Backbone, seed)?;
-    let side = packing.domain().lengths().ok_or("the packing is not periodic")?[0];
-    let circle = Circle::cut(packing, chosen, 0.48 * side)?;
-    let radius = circle.packing.radii()[circle.centre];
-    Ok(circle.packing.with_radius(circle.centre, radius + 0.1)?)
-}
-
-/// Largest distance between the places of a disk of the second one's backbone.
-fn distance(one: &Packing<2>, two: &Packing<2>) -> Result<f64, Box<dyn Error>> {
-    let backbone = ContactNetwork::new(two, &Hertzian::default())?.backbone;
-    let way = |disk: usize| norm(one.domain().separation(one.centre(disk), two.centre(disk)));
-    Ok((0..one.len()).filter(|&disk| backbone[disk]).map(way).fold(0.0, f64::max))
 }

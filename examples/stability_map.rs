@@ -25,7 +25,7 @@ use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::implicit::{ImplicitMotion, Inertia, Stepped};
 use jamscope::relax::{ForceLimit, Motion, Newton, Relaxer, Staged};
-use jamscope::vector::{Vector, difference, norm, scaled, sum};
+use jamscope::vector::{Vector, difference, larger, norm, scaled, sum};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -226,7 +226,7 @@ fn long_steps<C: DampingLaw>(start: &Start, name: &str, damping: C) -> Result<()
         let left = linear.energy(&motion.assembly.displacements, &motion.velocities) / first;
         let rest = &linear.motion.assembly.displacements;
         let way = |disk: usize| norm(difference(motion.assembly.displacements[disk], rest[disk]));
-        let apart = (0..mobile).map(way).fold(0.0, f64::max) / linear.overlap;
+        let apart = (0..mobile).map(way).fold(0.0, larger) / linear.overlap;
         println!(
             "{:>8.3} {name:>13} {times:>8.0e} {step_count:>6} {grew:>6} {refused:>7} {left:>9.1e} {apart:>9.1e}",
             start.pressure

@@ -393,18 +393,13 @@ fn check_relaxer(field: &str, relaxer: &RelaxerChoice) -> Result<(), SceneError>
             }
         }
         RelaxerChoice::ConjugateGradients(gradients) => {
-            let name = |last: &str| format!("{field}.conjugate_gradients.{last}");
-            positive(name("largest_step"), gradients.largest_step)?;
-            let flatness = gradients.flatness;
-            within(name("flatness"), flatness, "between 0 and 1", flatness > 0.0 && flatness < 1.0)
+            check_descent(&format!("{field}.conjugate_gradients"), gradients.largest_step, gradients.flatness)
         }
         RelaxerChoice::QuasiNewton(quasi_newton) => {
-            let name = |last: &str| format!("{field}.quasi_newton.{last}");
-            positive(name("largest_step"), quasi_newton.largest_step)?;
+            let field = format!("{field}.quasi_newton");
+            check_descent(&field, quasi_newton.largest_step, quasi_newton.flatness)?;
             let memory = quasi_newton.memory;
-            within(name("memory"), memory as f64, "at most 1000", memory <= 1000)?;
-            let flatness = quasi_newton.flatness;
-            within(name("flatness"), flatness, "between 0 and 1", flatness > 0.0 && flatness < 1.0)
+            within(format!("{field}.memory"), memory as f64, "at most 1000", memory <= 1000)
         }
         #[cfg(feature = "linear")]
         RelaxerChoice::Implicit(dynamics) => {
@@ -427,6 +422,12 @@ fn check_relaxer(field: &str, relaxer: &RelaxerChoice) -> Result<(), SceneError>
             positive(format!("{field}.staged.largest_step"), staged.largest_step)
         }
     }
+}
+
+/// What nonlinear conjugate gradients and L-BFGS have in common.
+fn check_descent(field: &str, largest_step: f64, flatness: f64) -> Result<(), SceneError> {
+    positive(format!("{field}.largest_step"), largest_step)?;
+    within(format!("{field}.flatness"), flatness, "between 0 and 1", flatness > 0.0 && flatness < 1.0)
 }
 
 #[cfg(feature = "linear")]

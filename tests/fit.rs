@@ -7,6 +7,7 @@ use jamscope::reference::poles::pole;
 use jamscope::reference::rim::RimSolution;
 use jamscope::reference::screened::Screened;
 use jamscope::reference::{Annulus, RadialSolution};
+use jamscope::vector::larger;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -76,7 +77,7 @@ fn fit(profile: &RadialProfile) -> ProfileFit {
 /// d_0 for which r·d_r has 0.025 as its largest size on the rings, as in an elastic sample with d_0^eff = 0.05.
 fn amplitude(wavenumber: f64) -> f64 {
     let solution = RimSolution::<2>::new(annulus(), wavenumber).expect("valid");
-    let largest = (1..41).map(|i| f64::from(i) + 0.5).map(|r| (r * solution.value(r)).abs()).fold(0.0, f64::max);
+    let largest = (1..41).map(|i| f64::from(i) + 0.5).map(|r| (r * solution.value(r)).abs()).fold(0.0, larger);
     0.025 / largest * solution.value(0.5)
 }
 

@@ -10,7 +10,7 @@ use jamscope::inflation::{
 use jamscope::packing::{Domain, Mixture, Packing, PackingError};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{Criterion, Fire, ForceLimit, Outcome, Relaxer, Stop, Trace};
-use jamscope::vector::{Vector, difference, dot, norm, sum};
+use jamscope::vector::{Vector, difference, dot, larger, norm, sum};
 
 const LIMIT: f64 = 1e-12;
 
@@ -153,7 +153,7 @@ fn a_small_inflation_is_undone_by_the_deflation() {
         let run = inflated(&inflation, dense());
         let (there, back) =
             (DisplacementField::of_inflation(&run), DisplacementField::of_cycle(&run).expect("deflated"));
-        let largest = |field: &DisplacementField<2>| field.counted().map(|d| norm(d.displacement)).fold(0.0, f64::max);
+        let largest = |field: &DisplacementField<2>| field.counted().map(|d| norm(d.displacement)).fold(0.0, larger);
         println!("{boundary:?}: there {:e}, back {:e}", largest(&there), largest(&back));
         assert!(largest(&there) > 1e-4);
         // Both ends are at rest to 1e-12 of a contact force of 10³, 1e-9; the softest modes of such a packing have a

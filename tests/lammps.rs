@@ -14,7 +14,7 @@ use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::{DampedDynamics, Fire, ForceLimit, NetForce, Relaxer};
-use jamscope::vector::{Vector, difference, norm};
+use jamscope::vector::{Vector, difference, larger, norm};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde_json::Value;
@@ -71,8 +71,8 @@ fn close(what: &str, ours: f64, theirs: f64, relative: f64) {
 /// Largest difference of two columns of vectors over the largest vector of the second.
 fn largest_difference(ours: &[Vector<2>], theirs: &[Vector<2>]) -> f64 {
     assert_eq!(ours.len(), theirs.len());
-    let largest = theirs.iter().map(|&force| norm(force)).fold(0.0, f64::max);
-    ours.iter().zip(theirs).map(|(&a, &b)| norm(difference(a, b))).fold(0.0, f64::max) / largest
+    let largest = theirs.iter().map(|&force| norm(force)).fold(0.0, larger);
+    ours.iter().zip(theirs).map(|(&a, &b)| norm(difference(a, b))).fold(0.0, larger) / largest
 }
 
 fn forces_agree(name: &str, law: impl PairLaw) {
@@ -236,7 +236,7 @@ impl Inflated {
         (0..self.mobile_count)
             .filter(|&disk| network.backbone[disk] && !self.rattler[disk])
             .map(|disk| norm(difference(packing.positions()[disk], self.after[disk])))
-            .fold(0.0, f64::max)
+            .fold(0.0, larger)
     }
 
     fn rattlers(&self) -> BTreeSet<usize> {

@@ -15,7 +15,7 @@ use jamscope::packing::Packing;
 use jamscope::reference::antiscreened::Antiscreened;
 use jamscope::reference::{Annulus, RadialSolution};
 use jamscope::relax::{Fire, ForceLimit, Relaxer, Stop};
-use jamscope::vector::{norm, sum};
+use jamscope::vector::{larger, norm, sum};
 
 fn triangular(overlap: f64) -> Lattice {
     Lattice::triangular(0.5, overlap).expect("neighbours touch, second ones do not")
@@ -177,7 +177,7 @@ fn slope(points: &[(f64, f64)]) -> f64 {
 fn deviation(profile: &RadialProfile, amplitude: f64, outer_radius: f64) -> f64 {
     let inside = profile.rings.iter().filter(|ring| (0.3..0.8).contains(&(ring.radius / outer_radius)));
     let off = |radius: f64, mean: f64| mean - amplitude * (1.0 / radius - radius / outer_radius.powi(2));
-    inside.map(|ring| off(ring.radius, ring.mean).abs()).fold(0.0, f64::max) * outer_radius / amplitude
+    inside.map(|ring| off(ring.radius, ring.mean).abs()).fold(0.0, larger) * outer_radius / amplitude
 }
 
 #[test]
@@ -263,7 +263,7 @@ fn tied_disks_answer_as_the_antiscreened_medium() {
         let medium = Antiscreened::<2>::new(annulus, amplitude / inner_radius, wavenumber).expect("valid");
         let mut worst = 0.0f64;
         for ring in profile.rings.iter().filter(|ring| (20.0..50.0).contains(&ring.radius)) {
-            worst = worst.max((ring.mean - medium.value(ring.radius)).abs() / (amplitude / ring.radius));
+            worst = larger(worst, (ring.mean - medium.value(ring.radius)).abs() / (amplitude / ring.radius));
         }
         println!("κR = {reduced}i: {worst:e}");
         // Corrections of the lattice of (b/r)², r ≥ 20, of which rings of a dozen sites do not average all out.
@@ -384,7 +384,7 @@ fn worst(before: &Packing<2>, after: &Packing<2>, expected: impl Fn(usize) -> [f
             let u = expected(disk);
             norm::<2>(std::array::from_fn(|d| (a[d] - b[d]) + (a_low[d] - b_low[d]) - u[d]))
         })
-        .fold(0.0, f64::max)
+        .fold(0.0, larger)
 }
 
 #[test]

@@ -8,7 +8,7 @@ use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare, random_points};
 use jamscope::relax::{Criterion, DampedDynamics, Fire, ForceLimit, Look, Outcome, Relaxer, Stop};
 use jamscope::scene::{Scene, SceneError};
-use jamscope::vector::{Vector, difference, dot, norm, scaled, sum};
+use jamscope::vector::{Vector, difference, dot, larger, norm, scaled, sum};
 
 const STIFFNESS: f64 = 2e5;
 
@@ -246,7 +246,7 @@ fn an_inflation_with_sites_has_them_throughout_and_its_pressure_is_that_of_conta
         assert!(sizes[1] < 0.9 * sizes[0], "{sizes:?}: tied disks move less");
         // Deflated in the same landscape: back where it began, to the limit over the stiffness of the sites and softer modes.
         let left = DisplacementField::of_cycle(&run).expect("deflated");
-        let largest = left.disks.iter().map(|moved| norm(moved.displacement)).fold(0.0, f64::max);
+        let largest = left.disks.iter().map(|moved| norm(moved.displacement)).fold(0.0, larger);
         assert!(largest < 2e-11, "{largest:e} left");
         let after = run.after.packing.get();
         let network = ContactNetwork::new(after, &law).expect("apart");

@@ -9,7 +9,7 @@ use jamscope::linear::{LinearError, LinearResponse};
 use jamscope::packing::{Packing, ball_volume};
 use jamscope::plastic::{LinearRangeSearch, PlasticPart, linear_range};
 use jamscope::relax::{Fire, ForceLimit, Relaxed, Relaxer};
-use jamscope::vector::{Vector, difference, norm};
+use jamscope::vector::{Vector, difference, larger, norm};
 
 fn fire() -> Fire {
     Fire { limit: ForceLimit::Relative(1e-13), step_limit: 500_000, ..Fire::default() }
@@ -47,7 +47,7 @@ fn contact_forces_and_pressure_change_as_small_inflations_say() {
         let (before, after) = (inflated.before.packing.get(), inflated.after.packing.get());
         let changes = response(&inflated).contact_changes(before, &law).expect("no coincidence");
         let networks = [before, after].map(|packing| ContactNetwork::new(packing, &law).expect("no coincidence"));
-        let largest = changes.iter().map(|change| change.force_change.abs()).fold(0.0, f64::max);
+        let largest = changes.iter().map(|change| change.force_change.abs()).fold(0.0, larger);
         for change in &changes {
             let force_and_virial = |network: &ContactNetwork<2>| {
                 let same = |pair: (u32, u32)| pair == (change.first, change.second);
@@ -101,11 +101,11 @@ fn forces_are_answered_by_displacements_whose_hessian_gives_them_back() {
                 wanted.iter_mut().skip(axis).step_by(2).for_each(|force| *force -= mean);
             }
             let shift = answer.displacements.iter().fold([0.0; 2], |sum, u| [sum[0] + u[0], sum[1] + u[1]]);
-            let size = answer.displacements.iter().fold(0.0, |most: f64, u| most.max(norm(*u)));
+            let size = answer.displacements.iter().fold(0.0, |most, u| larger(most, norm(*u)));
             assert!(norm(shift) < 1e-12 * size * packing.len() as f64, "{shift:?} of {size}");
         }
         // Backward error of 10⁻¹⁵ of ‖A‖ ‖x‖.
-        let size = answer.displacements.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let size = answer.displacements.as_flattened().iter().fold(0.0, |most, x| larger(most, x.abs()));
         let tolerance = 1e-14 * hessian.matrix().norm() * size;
         for (given, wanted) in given.iter().zip(&wanted) {
             assert!((given - wanted).abs() < tolerance, "{given}, not {wanted} ± {tolerance:e}");
@@ -137,7 +137,7 @@ fn a_held_rim_moved_as_a_whole_takes_the_packing_with_it_and_stretched_it_is_fol
         .collect();
     let stretched = packing.clone().with_corrections(corrections).expect("finite");
     let after = at_rest(stretched, &law);
-    let size = answer.displacements.iter().fold(0.0, |most: f64, u| most.max(norm(*u)));
+    let size = answer.displacements.iter().fold(0.0, |most, u| larger(most, norm(*u)));
     for disk in (0..packing.len()).filter(|&disk| answer.solved[disk]) {
         let ((a, a_low), (b, b_low)) = (after.get().centre(disk), packing.centre(disk));
         let found: Vector<2> = std::array::from_fn(|d| ((a[d] - b[d]) + (a_low[d] - b_low[d])) / stretch);

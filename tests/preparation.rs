@@ -6,6 +6,7 @@ use jamscope::inflation::{Boundary, Inflation, inflate};
 use jamscope::packing::{Component, Mixture, PackingError};
 use jamscope::preparation::{Preparation, PreparationError, Prepared, Target, prepare, random_points};
 use jamscope::relax::{Criterion, Fire, Stop};
+use jamscope::vector::{larger, norm};
 
 fn preparation(disk_count: usize, target: Target, seed: u64) -> Preparation {
     Preparation { disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed }
@@ -34,8 +35,8 @@ fn meets_pressures<L: PairLaw>(law: L, seed: u64) {
         // At rest when looked at anew; positions carry their corrections, so rounding is far below the limit.
         let residual = (0..packing.len())
             .filter(|&disk| network.backbone[disk])
-            .map(|disk| jamscope::vector::norm(network.forces()[disk]))
-            .fold(0.0, f64::max);
+            .map(|disk| norm(network.forces()[disk]))
+            .fold(0.0, larger);
         assert!(residual <= 1.01e-8 * network.mean_contact_force(), "{residual:e}");
         // Maxwell: N backbone disks need at least 2 N − 2 contacts (translations are free), and one more to bear a pressure.
         let (disks, contacts) = (network.backbone_count(), network.backbone_contacts().count());

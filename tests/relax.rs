@@ -7,7 +7,7 @@ use jamscope::preparation::random_points;
 use jamscope::relax::{
     Criterion, DampedDynamics, Fire, ForceLimit, Look, Motion, Outcome, Relaxer, Stop, TimeStep, rounding_floor,
 };
-use jamscope::vector::{Vector, difference, dot, norm, scaled, sum};
+use jamscope::vector::{Vector, difference, dot, larger, norm, scaled, sum};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -70,7 +70,7 @@ fn energy_error(step_count: usize) -> f64 {
     for _ in 0..step_count {
         motion.step(time / step_count as f64).expect("no coincidence");
         let energy = motion.assembly.evaluate_totals().energy + motion.kinetic_energy();
-        worst = worst.max((energy / start - 1.0).abs());
+        worst = larger(worst, (energy / start - 1.0).abs());
     }
     let totals = motion.assembly.evaluate_totals();
     assert_eq!(totals.contact_count, 0, "still in contact after {time}");
@@ -241,7 +241,7 @@ fn fire_and_damped_dynamics_meet_in_a_minimum_near_by() {
         // |u| ≤ |F| / λ_min, |F| ≤ √N times the largest force on a disk.
         let allowed = limit * network.mean_contact_force() * (minimum.len() as f64).sqrt() / softest;
         for end in &ends {
-            let worst = from_mean(end).into_iter().map(norm).fold(0.0, f64::max);
+            let worst = from_mean(end).into_iter().map(norm).fold(0.0, larger);
             println!("{law:?}: softest {softest}, {worst:e} from the minimum, allowed {allowed:e}");
             assert!(worst <= allowed, "{worst:e} from the minimum, allowed {allowed:e}");
         }
@@ -316,7 +316,7 @@ fn a_packing_far_from_the_origin_comes_to_rest_all_the_same() {
     let residual = (0..network.backbone.len())
         .filter(|&disk| network.backbone[disk])
         .map(|disk| norm(network.forces()[disk]))
-        .fold(0.0, f64::max);
+        .fold(0.0, larger);
     assert!(residual <= 2e-13 * network.mean_contact_force(), "{:e}", residual / network.mean_contact_force());
 }
 

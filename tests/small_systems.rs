@@ -13,7 +13,7 @@ use jamscope::relax::{
     Criterion, Fire, ForceLimit, Motion, NonlinearConjugateGradients, Outcome, QuasiNewton, Relaxer, RelaxerChoice,
     StepBack, Stop, Uphill,
 };
-use jamscope::vector::norm;
+use jamscope::vector::{larger, norm};
 use square_lattice::square_lattice;
 
 /// Radii of the chains: multiples of 1/8, so that touching disks stand at exact positions.
@@ -209,7 +209,7 @@ fn an_undamped_hertzian_collision_lasts_as_long_as_hertz_says() {
     for steps in [200.0, 400.0, 800.0] {
         let time_step = duration / steps;
         let mut most: f64 = 0.0;
-        let (relative, count) = collide(&law, 0.0, speed, time_step, |overlap| most = most.max(overlap));
+        let (relative, count) = collide(&law, 0.0, speed, time_step, |overlap| most = larger(most, overlap));
         // The disks part within the step in which the duration ends, give or take the second order (1/steps)².
         assert!((count as f64 - steps).abs() <= 1.0, "{count} of {steps} steps");
         // The deepest overlap met lies within half a step of the turning point, where it is off by a h²/8.

@@ -11,7 +11,7 @@ use jamscope::io::read_packing;
 use jamscope::packing::Packing;
 use jamscope::relax::implicit::{ImplicitMotion, Inertia, Stepped};
 use jamscope::relax::{ForceLimit, Motion, Newton, Relaxer};
-use jamscope::vector::{Vector, difference, norm, scaled, sum};
+use jamscope::vector::{Vector, difference, larger, norm, scaled, sum};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -212,7 +212,7 @@ fn long_implicit_steps_end_at_rest<C: DampingLaw>(packing: &Packing<2>, damping:
     }
     let way =
         |disk: usize| norm(difference(motion.assembly.displacements[disk], linear.motion.assembly.displacements[disk]));
-    let apart = (0..mobile).map(way).fold(0.0, f64::max);
+    let apart = (0..mobile).map(way).fold(0.0, larger);
     // Both are at rest to rounding: forces to 10⁻¹² of the mean, over soft modes some 10³ times softer than a contact.
     assert!(apart < 1e-8 * overlap, "{apart:e} apart, overlap {overlap:e}");
 }

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use crate::precision::{PrecisionReport, stop_name};
+use crate::precision::results::{PrecisionReport, stop_name};
 
 /// Names and units of the columns.
 const COLUMNS: [(&str, &str); 19] = [

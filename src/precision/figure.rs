@@ -5,7 +5,7 @@
 use std::fmt::Write as _;
 
 use crate::precision::ladder::{Method, Varied};
-use crate::precision::{Run, SamplePrecision};
+use crate::precision::results::{Run, SamplePrecision};
 use crate::relax::Stop;
 use crate::report::figures::{Figure, HEIGHT, INK, WIDTH};
 use crate::report::number::superscript;

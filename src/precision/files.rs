@@ -4,7 +4,8 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::io::write_atomically;
-use crate::precision::{PrecisionReport, csv};
+use crate::precision::csv;
+use crate::precision::results::PrecisionReport;
 use crate::report::ReportError;
 
 /// Writes a report into `folder`, made if it is not there, and names the files written in that order.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::contact::damping::DampingChoice;
-use crate::precision::PrecisionSettings;
+use crate::precision::settings::PrecisionSettings;
 use crate::relax::implicit::Finish;
 use crate::relax::{
     DampedDynamics, Fire, ForceLimit, GradientFlow, ImplicitDynamics, Newton, NonlinearConjugateGradients, QuasiNewton,

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use crate::precision::choices::ChoiceTable;
 use crate::precision::figure::figures;
+use crate::precision::results::{PrecisionReport, SamplePrecision, stop_name};
 use crate::precision::state::Measured;
 use crate::precision::table::facts;
-use crate::precision::{PrecisionReport, SamplePrecision, stop_name};
 use crate::report::figures::escaped;
 use crate::report::number::{count, significant};
 use crate::report::page::STYLE;

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use crate::precision::results::{PrecisionReport, SamplePrecision, stop_name};
 use crate::precision::state::Errors;
-use crate::precision::{PrecisionReport, SamplePrecision, stop_name};
 use crate::report::number::{count, significant};
 
 /// The numbers of a report for a reader at a terminal.

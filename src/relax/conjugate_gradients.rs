@@ -11,16 +11,12 @@
 //! # Source
 //! Polak, Ribière (1969), Rev. Fr. Inform. Rech. Opér. 16, 35; β ≥ 0: Gilbert, Nocedal (1992), SIAM J. Optim. 2, 21.
 
-use std::time::Instant;
-
 use serde::{Deserialize, Serialize};
 
 use crate::contact::PairLaw;
-use crate::contact::assembly::Assembly;
 use crate::packing::{Packing, PackingError};
-use crate::relax::descent::{Descent, Directions, Step, Turn, WATCH};
+use crate::relax::descent::{Descent, Directions, Step, Turn};
 use crate::relax::flat::{combine, dot_product};
-use crate::relax::monitor::Monitor;
 use crate::relax::{ForceLimit, Outcome, Relaxer, Trace};
 
 /// Nonlinear conjugate gradients.
@@ -56,16 +52,9 @@ impl Relaxer for NonlinearConjugateGradients {
         law: &L,
         trace: &mut impl Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
-        let start = Instant::now();
-        let mut assembly = Assembly::new(&packing, *law)?;
-        let mut monitor = Monitor::with(self.limit, WATCH, &assembly);
         let NonlinearConjugateGradients { limit, step_limit, largest_step, flatness: flat } = *self;
         let descent = Descent { limit, step_limit, largest_step, flat };
-        let (stop, mut cost) = descent.run(&mut Conjugate { last: None }, &mut assembly, &mut monitor, trace)?;
-        let (residual, rounding_floor) = monitor.finish(&assembly, &assembly.forces[..assembly.mobile_count()]);
-        cost.rebuild_count = assembly.rebuild_count();
-        cost.seconds = start.elapsed().as_secs_f64();
-        Ok(Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost })
+        descent.relax(Conjugate { last: None }, packing, law, trace)
     }
 }
 

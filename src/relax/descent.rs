@@ -1,18 +1,20 @@
 //! Going downhill along one direction after another: what nonlinear conjugate gradients and L-BFGS have in common.
 
+use std::time::Instant;
+
 use crate::contact::assembly::Assembly;
 use crate::contact::law::PairLaw;
-use crate::packing::PackingError;
+use crate::packing::{Packing, PackingError};
 use crate::relax::flat::dot_product;
 use crate::relax::line_search::{Line, search};
 use crate::relax::monitor::{Monitor, Watch};
-use crate::relax::{Cost, ForceLimit, Look, Stop, Trace};
+use crate::relax::{Cost, ForceLimit, Look, Outcome, Stop, Trace};
 
 /// Steps between two looks at the residual, of one or two evaluations each.
 const LOOK_EVERY: usize = 10;
 
 /// As patient as FIRE, whose looks are 20 evaluations apart.
-pub const WATCH: Watch = Watch { refresh_every: 10, patience: 150, waits_for_rattlers: false };
+const WATCH: Watch = Watch { refresh_every: 10, patience: 150, waits_for_rattlers: false };
 
 /// A step made: `u ← u + length · direction`.
 #[derive(Debug, Clone, Copy)]
@@ -63,8 +65,26 @@ pub struct Descent {
 }
 
 impl Descent {
+    /// Brings a packing to rest along these directions.
+    ///
+    /// # Errors
+    /// Only what makes forces undefined.
+    pub fn relax<const D: usize, L: PairLaw>(
+        &self,
+        mut directions: impl Directions,
+        packing: Packing<D>,
+        law: &L,
+        trace: &mut impl Trace,
+    ) -> Result<Outcome<Packing<D>>, PackingError> {
+        let start = Instant::now();
+        let mut assembly = Assembly::new(&packing, *law)?;
+        let mut monitor = Monitor::with(self.limit, WATCH, &assembly);
+        let ended = self.run(&mut directions, &mut assembly, &mut monitor, trace)?;
+        Ok(monitor.outcome(assembly, packing, ended, start))
+    }
+
     /// Steps until the monitor stops it or the steps are used up.
-    pub fn run<const D: usize, L: PairLaw>(
+    fn run<const D: usize, L: PairLaw>(
         &self,
         directions: &mut impl Directions,
         assembly: &mut Assembly<D, L>,

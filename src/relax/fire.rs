@@ -115,7 +115,7 @@ const BOUND_EVERY: usize = 40;
 const FIRST_STEP: f64 = 0.1;
 
 /// Rounding of an energy summed over blocks, relative \[1\].
-const ENERGY_ROUNDING: f64 = 1e-13;
+pub(super) const ENERGY_ROUNDING: f64 = 1e-13;
 
 impl Relaxer for Fire {
     fn relax<const D: usize, L: PairLaw>(
@@ -127,11 +127,8 @@ impl Relaxer for Fire {
         let start = Instant::now();
         let mut assembly = Assembly::new(&packing, *law)?;
         let mut monitor = Monitor::new(self.limit, &assembly);
-        let (stop, mut cost) = self.run(&mut assembly, &mut monitor, trace)?;
-        let (residual, rounding_floor) = monitor.finish(&assembly, &assembly.forces[..assembly.mobile_count()]);
-        cost.rebuild_count = assembly.rebuild_count();
-        cost.seconds = start.elapsed().as_secs_f64();
-        Ok(Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost })
+        let (stop, cost) = self.run(&mut assembly, &mut monitor, trace)?;
+        Ok(monitor.outcome(assembly, packing, (stop, cost), start))
     }
 }
 

@@ -16,11 +16,9 @@ use crate::contact::assembly::Assembly;
 use crate::contact::forces::Totals;
 use crate::contact::law::PairLaw;
 use crate::packing::PackingError;
+use crate::relax::fire::ENERGY_ROUNDING;
 use crate::relax::flat::{combine, dot_product};
 use crate::vector::{dot, larger};
-
-/// Rounding of an energy summed over blocks, relative \[1\]; as in FIRE.
-const ENERGY_ROUNDING: f64 = 1e-13;
 
 /// Share of the promised fall of the energy that a step must bring. Source: Nocedal, Wright (2006), §3.1.
 const SUFFICIENT: f64 = 1e-4;
@@ -144,15 +142,25 @@ fn reach<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, line: &Line<'_>)
     (way.sqrt(), line.largest_step / share.sqrt())
 }
 
-/// Whether the energy has fallen by enough, or as far as energies tell not risen while the slope says that it fell. NaN fails.
 fn low_enough<const D: usize>(before: &Totals<D>, reached: &Reached<D>, slope: f64) -> bool {
-    let after = &reached.totals;
+    acceptance([before, &reached.totals], reached.length * slope, [slope, reached.slope], SUFFICIENT).is_some()
+}
+
+/// Whether a point is low enough: its energy has fallen by a share of what was promised, or as far as energies tell not risen
+/// while the slopes at both ends say that it fell. Then the fall over the promised one, 1/2 where energies cannot tell. NaN
+/// fails.
+pub fn acceptance<const D: usize>(
+    [before, after]: [&Totals<D>; 2],
+    promised: f64,
+    slopes: [f64; 2],
+    share: f64,
+) -> Option<f64> {
     let rounding = ENERGY_ROUNDING * (before.energy_scale() + after.energy_scale());
-    let (fall, promised) = (before.energy - after.energy, reached.length * slope);
-    if 0.5 * SUFFICIENT * promised > rounding {
-        fall >= SUFFICIENT * promised
+    let fall = before.energy - after.energy;
+    if 0.5 * share * promised > rounding {
+        (fall >= share * promised).then_some(fall / promised)
     } else {
-        fall >= -rounding && reached.slope >= -0.9 * slope
+        (fall >= -rounding && slopes[1] >= -0.9 * slopes[0]).then_some(0.5)
     }
 }
 

@@ -1,10 +1,13 @@
 //! When to stop: the residual on the backbone, looked at now and then, and the rounding floor.
 
+use std::time::Instant;
+
 use crate::contact::assembly::Assembly;
 use crate::contact::forces::Totals;
 use crate::contact::law::PairLaw;
 use crate::contact::network::{backbone, working_contacts};
-use crate::relax::{Criterion, ForceLimit, Look, RUNAWAY, Residual, Stop, Trace, UNJAMMED_FORCE};
+use crate::packing::Packing;
+use crate::relax::{Cost, Criterion, ForceLimit, Look, Outcome, RUNAWAY, Residual, Stop, Trace, UNJAMMED_FORCE};
 use crate::vector::{Vector, dot, larger};
 
 /// Evaluations between two looks at the residual. An evaluation with a look costs half as much again.
@@ -199,6 +202,20 @@ impl Monitor {
     /// Whether the rounding of displacements from the anchors is felt, so that the caller should re-anchor; asked once a look.
     pub fn takes_new_anchors(&mut self) -> bool {
         std::mem::take(&mut self.anchors_felt)
+    }
+
+    /// The outcome of a relaxer whose net forces are those of the assembly, which began at `start`.
+    pub fn outcome<const D: usize, L: PairLaw>(
+        self,
+        assembly: Assembly<D, L>,
+        packing: Packing<D>,
+        (stop, cost): (Stop, Cost),
+        start: Instant,
+    ) -> Outcome<Packing<D>> {
+        let (residual, rounding_floor) = self.finish(&assembly, &assembly.forces[..assembly.mobile_count()]);
+        let (rebuild_count, seconds) = (assembly.rebuild_count(), start.elapsed().as_secs_f64());
+        let cost = Cost { rebuild_count, seconds, ..cost };
+        Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost }
     }
 
     /// The residual and the floor for the outcome, with the backbone determined anew.

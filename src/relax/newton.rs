@@ -67,10 +67,6 @@ impl Relaxer for Newton {
             End::Stop(stop) => stop,
             End::Stalled => Stop::StepLimit,
         };
-        let (residual, rounding_floor) = monitor.finish(&assembly, &assembly.forces[..assembly.mobile_count()]);
-        let mut cost = descent.cost;
-        cost.rebuild_count = assembly.rebuild_count();
-        cost.seconds = start.elapsed().as_secs_f64();
-        Ok(Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost })
+        Ok(monitor.outcome(assembly, packing, (stop, descent.cost), start))
     }
 }

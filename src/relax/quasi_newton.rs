@@ -12,16 +12,12 @@
 //! Nocedal (1980), Math. Comput. 35, 773; Liu, Nocedal (1989), Math. Program. 45, 503; Nocedal, Wright (2006), Numerical
 //! Optimization, 2nd ed., algorithm 7.4 and eq. (7.20).
 
-use std::time::Instant;
-
 use serde::{Deserialize, Serialize};
 
 use crate::contact::PairLaw;
-use crate::contact::assembly::Assembly;
 use crate::packing::{Packing, PackingError};
-use crate::relax::descent::{Descent, Directions, Step, Turn, WATCH};
+use crate::relax::descent::{Descent, Directions, Step, Turn};
 use crate::relax::flat::{combine, dot_product};
-use crate::relax::monitor::Monitor;
 use crate::relax::{ForceLimit, Outcome, Relaxer, Trace};
 
 /// L-BFGS.
@@ -54,17 +50,9 @@ impl Relaxer for QuasiNewton {
         law: &L,
         trace: &mut impl Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
-        let start = Instant::now();
-        let mut assembly = Assembly::new(&packing, *law)?;
-        let mut monitor = Monitor::with(self.limit, WATCH, &assembly);
         let QuasiNewton { limit, step_limit, largest_step, memory, flatness: flat } = *self;
         let descent = Descent { limit, step_limit, largest_step, flat };
-        let mut directions = Memory::new(memory);
-        let (stop, mut cost) = descent.run(&mut directions, &mut assembly, &mut monitor, trace)?;
-        let (residual, rounding_floor) = monitor.finish(&assembly, &assembly.forces[..assembly.mobile_count()]);
-        cost.rebuild_count = assembly.rebuild_count();
-        cost.seconds = start.elapsed().as_secs_f64();
-        Ok(Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost })
+        descent.relax(Memory::new(memory), packing, law, trace)
     }
 }
 

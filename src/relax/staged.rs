@@ -56,11 +56,8 @@ impl Relaxer for Staged {
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();
         let mut assembly = Assembly::new(&packing, *law)?;
-        let (stop, mut cost, monitor) = self.run(&mut assembly, trace)?;
-        let (residual, rounding_floor) = monitor.finish(&assembly, &assembly.forces[..assembly.mobile_count()]);
-        cost.rebuild_count = assembly.rebuild_count();
-        cost.seconds = start.elapsed().as_secs_f64();
-        Ok(Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost })
+        let (stop, cost, monitor) = self.run(&mut assembly, trace)?;
+        Ok(monitor.outcome(assembly, packing, (stop, cost), start))
     }
 }
 

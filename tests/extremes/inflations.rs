@@ -6,6 +6,7 @@ use jamscope::inflation::{Inflated, Inflation, InflationError, inflate};
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::Criterion;
+use jamscope::vector::larger;
 
 use crate::{all_finite, fire};
 
@@ -29,13 +30,13 @@ fn inflations_from_a_hundred_trillionth_to_half_a_length() {
         field.disks.iter().map(|disk| disk.radial / increase).collect()
     };
     let linear = response(1e-6);
-    let scale = linear.iter().copied().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let scale = linear.iter().copied().fold(0.0, |most, value| larger(most, value.abs()));
     for increase in [1e-14, 1e-12, 1e-10, 1e-8, -1e-8] {
         let found = response(increase);
         // Force limit 10⁻¹³ of ⟨F⟩ over a softest stiffness of some per mille of F'(δ) ~ ⟨F⟩/0.1, hence 10⁻¹¹ of a length;
         // curvature of the response: d_0 over the overlaps, 10⁻⁶/0.1.
         let tolerance = 1e-11 / increase.abs() + 1e-4 * scale;
-        let worst = found.iter().zip(&linear).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        let worst = found.iter().zip(&linear).fold(0.0, |most, (a, b)| larger(most, (a - b).abs()));
         assert!(worst <= tolerance, "{increase:e}: {worst:e} of {scale}");
     }
     // Half a length doubles the radius of the disk; its neighbours stand at 0.9 and further.

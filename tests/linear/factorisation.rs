@@ -7,6 +7,7 @@ use jamscope::linear::ordering::{minimum_degree, nested_dissection};
 use jamscope::linear::{Analysis, LinearError, LinearResponse};
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare, random_points};
+use jamscope::vector::larger;
 
 use crate::{dense, fire, fixture};
 
@@ -87,8 +88,8 @@ fn factors_solve_and_count_as_dense_algebra_does() {
             }
             let told = factorisation.solve(&right, &mut solved).expect("accurate");
             assert!(told.backward_error <= 4.0 * f64::EPSILON, "{:e}", told.backward_error);
-            let largest = exact.iter().fold(0.0f64, |most, x| most.max(x.abs()));
-            let off = solved.iter().zip(&exact).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+            let largest = exact.iter().fold(0.0, |most, x| larger(most, x.abs()));
+            let off = solved.iter().zip(&exact).fold(0.0, |most, (a, b)| larger(most, (a - b).abs()));
             // Condition times backward errors of both, 10 ε with norms that differ by √n = 15 at most.
             let condition = spectrum[spectrum.len() - 1].abs().max(spectrum[0].abs()) / smallest;
             assert!(off <= 150.0 * f64::EPSILON * condition * largest, "Γ = {coupling}: {off:e} of {largest:e}");
@@ -163,11 +164,11 @@ fn every_order_of_elimination_gives_the_same_solution() {
         let mut factorisation = plain.cholesky(matrix).expect("definite");
         let ratio = factorisation.pivot_ratio();
         let _ = factorisation.solve(&right, &mut expected).expect("accurate");
-        let size = expected.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let size = expected.iter().fold(0.0, |most, x| larger(most, x.abs()));
         for analysis in &mut orders {
             let mut found = vec![f64::NAN; right.len()];
             let _ = analysis.cholesky(matrix).expect("definite").solve(&right, &mut found).expect("accurate");
-            let worst = expected.iter().zip(&found).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+            let worst = expected.iter().zip(&found).fold(0.0, |most, (a, b)| larger(most, (a - b).abs()));
             // Backward errors of 10⁻¹⁵ over the inverse condition number, which lies below the ratio of pivots.
             assert!(worst <= 1e-15 / ratio * 1e3 * size, "D = {D}: {worst:e} of {size:e}, pivots {ratio:e}");
         }
@@ -217,8 +218,8 @@ fn conjugate_gradients_come_to_the_solution_of_the_factor() {
         println!("{prestress:?}: {solution:?}, shift {:e}", incomplete.shift());
         // Far fewer than the unknowns, of which there are 1900.
         assert!(solution.backward_error <= 16.0 * f64::EPSILON && solution.iteration_count < 1000, "{solution:?}");
-        let size = expected.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        let worst = expected.iter().zip(&found).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        let size = expected.iter().fold(0.0, |most, x| larger(most, x.abs()));
+        let worst = expected.iter().zip(&found).fold(0.0, |most, (a, b)| larger(most, (a - b).abs()));
         // Backward errors of 10⁻¹⁵ over the inverse condition number, which lies below the ratio of pivots.
         assert!(worst <= 1e-15 / ratio * 1e3 * size, "{worst:e} of {size:e}, pivots {ratio:e}");
         // Started at the solution nothing is left to do; one iteration is too few.

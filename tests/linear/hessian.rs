@@ -5,7 +5,7 @@ use jamscope::contact::{
 };
 use jamscope::packing::{Domain, Packing};
 use jamscope::preparation::random_points;
-use jamscope::vector::{Vector, difference};
+use jamscope::vector::{Vector, difference, larger};
 
 use crate::dense;
 use crate::random_disks::{disks, periodic};
@@ -63,7 +63,7 @@ fn check_against_forces<const D: usize, L: PairLaw>(law: L, packing: &Packing<D>
     // Truncation (h/δ)² F'/δ^0 of each contact: overlaps below 20 h are left to the check that there are none. Hertzian:
     // F''' h²/6 = F' h²/(8 δ²) ≤ 3e-4 F'(δ) for δ = 20 h, and F'(20 h) is 1e-3 of the others. Rounding: ε F/h = 2e-9 F.
     let network = ContactNetwork::new(packing, &law).expect("apart");
-    let stiffest = network.contacts.iter().map(|c| law.stiffness(c.force, c.overlap)).fold(0.0, f64::max);
+    let stiffest = network.contacts.iter().map(|c| law.stiffness(c.force, c.overlap)).fold(0.0, larger);
     assert!(network.contacts.iter().all(|contact| contact.overlap > 20.0 * h), "choose another seed");
     assert!(!hessian.disks().is_empty());
     for (block, &disk) in hessian.disks().iter().enumerate() {

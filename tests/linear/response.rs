@@ -8,7 +8,7 @@ use jamscope::linear::LinearResponse;
 use jamscope::packing::Packing;
 use jamscope::preparation::random_points;
 use jamscope::relax::Relaxer;
-use jamscope::vector::{difference, norm};
+use jamscope::vector::{difference, larger, norm};
 
 use crate::{fire, fixture};
 
@@ -17,7 +17,7 @@ fn compare<const D: usize>(nonlinear: &DisplacementField<D>, linear: &Displaceme
     assert_eq!(nonlinear.disks.len(), linear.disks.len());
     nonlinear.disks.iter().zip(&linear.disks).filter(|(a, _)| a.counted).fold((0.0, 0.0), |(off, most), (a, b)| {
         assert!(a.disk == b.disk && b.counted);
-        (f64::max(off, norm(difference(a.displacement, b.displacement))), f64::max(most, norm(a.displacement)))
+        (larger(off, norm(difference(a.displacement, b.displacement))), larger(most, norm(a.displacement)))
     })
 }
 
@@ -169,9 +169,9 @@ fn a_hessian_without_prestress_answers_otherwise() {
     let [with, without] = [Prestress::Included, Prestress::LeftOut].map(|prestress| {
         LinearResponse::of_inflation(&circle.packing, circle.centre, &law, prestress).expect("a response")
     });
-    let largest = with.displacements.iter().map(|&u| norm(u)).fold(0.0, f64::max);
+    let largest = with.displacements.iter().map(|&u| norm(u)).fold(0.0, larger);
     let off = with.displacements.iter().zip(&without.displacements).map(|(&a, &b)| norm(difference(a, b)));
     // F/(r F') = δ/(1.5 r) = 0.044 of the stiffness.
-    let off = off.fold(0.0, f64::max) / largest;
+    let off = off.fold(0.0, larger) / largest;
     assert!(off > 0.005 && off < 0.2, "{off}");
 }

@@ -6,7 +6,7 @@
 use jamscope::contact::{Hertzian, Hessian, Hookean, Members, OnSite, PairLaw, PowerLaw, Prestress};
 use jamscope::packing::{Domain, Packing};
 use jamscope::sparse::SymmetricMatrix;
-use jamscope::vector::Vector;
+use jamscope::vector::{Vector, larger};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -132,7 +132,7 @@ fn smallest_pivot(mut a: Vec<Vec<f64>>) -> f64 {
     let mut least = f64::INFINITY;
     for k in 0..n {
         let pivot = a[k][k];
-        least = least.min(pivot);
+        least = -larger(-least, -pivot);
         for i in k + 1..n {
             let factor = a[i][k] / pivot;
             for j in k..n {

@@ -3,13 +3,14 @@
 //! Random cases come from proptest with a fixed seed, so every run sees the same ones; a failure prints its case.
 
 use jamscope::contact::{ContactNetwork, Hertzian, Hookean, OnSite, PairLaw};
-use jamscope::packing::Packing;
 use jamscope::relax::{DampedDynamics, ForceLimit, RelaxerChoice};
-use jamscope::vector::{Vector, difference, norm, sum};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-use crate::{allowed, apart, at_rest, fire, inflated, newton, points, relax, shaken, staged};
+use crate::claims::elsewhere::Elsewhere;
+use crate::rest::{apart, at_rest, relax};
+use crate::starts::{inflated, points, shaken};
+use crate::{allowed, fire, newton, staged};
 
 proptest! {
     #![proptest_config(ProptestConfig {
@@ -25,33 +26,11 @@ proptest! {
         let (law, limit) = (Hertzian::default(), 1e-12);
         let minimum = at_rest(relax(&staged(1e-13), inflated("hertz_N1000_p800", 3), &law));
         let start = shaken(&minimum, 1e-5, seed);
-        // By a quarter turn, which rounds nothing, a multiple of 2¹⁰, and in reverse order.
-        let place = |position: Vector<2>| if turned { [-position[1], position[0]] } else { position };
-        let offset = f64::from(shift) * 1024.0;
-        let count = start.len();
-        let reverse = |disk: usize| count - 1 - disk;
-        // Centres are unevaluated sums: what the shift rounds off goes into the corrections.
-        let exact: Vec<Vector<2>> = (0..count).map(|disk| place(start.centre(reverse(disk)).0)).collect();
-        let rests: Vec<Vector<2>> = (0..count).map(|disk| place(start.centre(reverse(disk)).1)).collect();
-        let split = |x: f64| { let high = x + offset; (high, x - (high - offset)) };
-        let positions: Vec<Vector<2>> = exact.iter().map(|x| [split(x[0]).0, split(x[1]).0]).collect();
-        let corrections: Vec<Vector<2>> =
-            exact.iter().zip(&rests).map(|(x, rest)| [split(x[0]).1 + rest[0], split(x[1]).1 + rest[1]]).collect();
-        let radii = (0..count).map(|disk| start.radii()[reverse(disk)]).collect();
-        let held = (0..count).map(|disk| start.held()[reverse(disk)]).collect();
-        let other = Packing::new(*start.domain(), positions, radii)
-            .and_then(|packing| packing.with_corrections(corrections))
-            .and_then(|packing| packing.with_held(held))
-            .expect("valid");
+        let elsewhere = Elsewhere { turned, offset: f64::from(shift) * 1024.0 };
+        let other = elsewhere.twin(&start);
         let (one, two) = (at_rest(relax(&newton(limit), start, &law)), at_rest(relax(&newton(limit), other, &law)));
         let backbone = ContactNetwork::new(&one, &law).expect("no coincidence").backbone;
-        let mut worst = 0.0f64;
-        for disk in (0..count).filter(|&disk| backbone[disk]) {
-            let (a, a_rest) = (place(one.centre(disk).0), place(one.centre(disk).1));
-            let (b, b_rest) = two.centre(reverse(disk));
-            let b = b.map(|x| x - offset);
-            worst = worst.max(norm(sum(difference(a, b), difference(a_rest, b_rest))));
-        }
+        let worst = elsewhere.apart(&one, &two, &backbone);
         // Beside the forces left: centres of the second were made with one rounding of a correction, 2⁻⁵³ of 2⁻⁴⁰.
         let tolerance = allowed(&minimum, &law, limit) + 1e-15;
         prop_assert!(worst <= tolerance, "{worst:e} apart, {tolerance:e} allowed");

@@ -1,57 +1,26 @@
 //! Few disks whose rest is known in closed form, with Newton's method and the staged relaxer.
 
-use jamscope::contact::{Assembly, ContactNetwork, Hertzian, Hookean, OnSite, PairLaw, PowerLaw};
+use jamscope::contact::{Assembly, ContactNetwork, Hertzian, Hookean, OnSite};
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::{RelaxerChoice, Stop};
-use jamscope::vector::{norm, sum};
+use jamscope::vector::norm;
 
-use crate::{at_rest, cross, newton, relax, staged};
+use crate::claims::closed_forms::{rests_in_the_middle, rests_under_one_force};
+use crate::rest::{at_rest, relax};
+use crate::starts::cross;
+use crate::{newton, staged};
 
 #[test]
 fn a_disk_between_four_held_ones_comes_to_rest_in_their_middle() {
-    fn check<L: PairLaw>(law: L) {
-        let limit = 1e-12;
-        let outcome = relax(&newton(limit), cross([0.02, -0.013]), &law);
-        assert!(outcome.cost.factorisation_count <= 8, "{law:?}: {:?}", outcome.cost);
-        let force = law.force(law.coefficient(0.55, 0.5), 0.05);
-        // Stiffness of the mobile disk: two contacts along, 2 F', two across, −2 F/r with r = 1.
-        let stiffness = 2.0 * (law.stiffness(force, 0.05) - force);
-        let (position, rest) = at_rest(outcome).centre(0);
-        let off = norm(sum(position, rest));
-        // Force limit over stiffness; twice, for the change of both on the way to the middle.
-        assert!(off <= 2.0 * limit * force / stiffness, "{law:?}: {off:e} from the middle");
+    for cost in rests_in_the_middle(&RelaxerChoice::Newton(newton(1e-12))) {
+        assert!(cost.factorisation_count <= 8, "{cost:?}");
     }
-    check(Hertzian::default());
-    check(Hookean::default());
-    check(PowerLaw { energy_scale: 3.0, exponent: 3.5 });
 }
 
-/// Three disks in a row between two held ones have no backbone, and nothing holds them across the row: they rest under
-/// one force F = c_j δ_j^(α−1), the overlaps adding up to what the last disk was pushed in.
 #[test]
 fn a_chain_without_a_backbone_comes_to_rest_under_one_force() {
-    let (law, total, limit) = (Hertzian::default(), 0.125, 1e-12);
-    let radii = [0.5, 0.75, 0.5, 0.625, 1.0];
-    let mut positions = vec![[0.0, 0.0]];
-    for pair in radii.windows(2) {
-        positions.push([positions[positions.len() - 1][0] + pair[0] + pair[1], 0.0]);
-    }
-    positions[4][0] -= total;
-    let packing = Packing::new(Domain::Open, positions, radii.to_vec())
-        .and_then(|packing| packing.with_held(vec![true, false, false, false, true]))
-        .expect("valid");
-    let shares: Vec<f64> = radii.windows(2).map(|pair| law.coefficient(pair[0], pair[1]).powf(-2.0 / 3.0)).collect();
-    for choice in [RelaxerChoice::Newton(newton(limit)), RelaxerChoice::Staged(staged(limit))] {
-        let end = at_rest(relax(&choice, packing.clone(), &law));
-        let network = ContactNetwork::new(&end, &law).expect("no coincidence");
-        assert_eq!(network.contacts.len(), 4);
-        for contact in &network.contacts {
-            let expected = total * shares[contact.first as usize] / shares.iter().sum::<f64>();
-            // Forces differ by the limit a disk, overlaps by two thirds of that; rounding of positions up to 5 over 0.03.
-            let error = (contact.overlap / expected - 1.0).abs();
-            assert!(error <= 5.0 * limit + 5.0 * 8.0 * f64::EPSILON / 0.03, "{}: {error:e}", choice.name());
-        }
-    }
+    rests_under_one_force(&RelaxerChoice::Newton(newton(1e-12)));
+    rests_under_one_force(&RelaxerChoice::Staged(staged(1e-12)));
 }
 
 /// A Hookean disk between four held ones, one of them grown, with a site: force along x at (x, 0), by hand.

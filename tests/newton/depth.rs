@@ -2,9 +2,11 @@
 
 use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw, PowerLaw};
 use jamscope::relax::{Criterion, Stop};
-use jamscope::vector::norm;
+use jamscope::vector::{larger, norm};
 
-use crate::{at_rest, fire, inflated, newton, points, relax, staged};
+use crate::rest::{at_rest, relax};
+use crate::starts::{inflated, points};
+use crate::{fire, newton, staged};
 
 /// A limit of zero cannot be met: it ends where rounding is all there is, as deep as FIRE gets.
 #[test]
@@ -39,7 +41,7 @@ fn inflated_packings_come_to_rest_at_rounding_with_few_factorisations() {
             let largest = (0..outcome.state.len())
                 .filter(|&disk| backbone[disk] && !held[disk])
                 .map(|disk| norm(network.forces()[disk]))
-                .fold(0.0, f64::max);
+                .fold(0.0, larger);
             let anew = largest / network.mean_contact_force();
             assert!(anew <= 1e-12 + 2.0 * outcome.rounding_floor, "{name}, {index}: {anew:e} anew");
         }

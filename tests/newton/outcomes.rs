@@ -4,7 +4,9 @@ use jamscope::contact::{Hertzian, Hookean};
 use jamscope::relax::{Criterion, ForceLimit, Newton, RelaxerChoice, Staged, Stop};
 use jamscope::scene::Scene;
 
-use crate::{cross, fire, inflated, newton, points, relax, staged};
+use crate::rest::relax;
+use crate::starts::{cross, inflated, points};
+use crate::{fire, newton, staged};
 
 #[test]
 fn too_few_factorisations_are_an_outcome_and_the_staged_relaxer_goes_on_without() {

@@ -5,13 +5,11 @@ use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
 use crate::contact::forces::Totals;
 use crate::packing::PackingError;
+use crate::relax::line_search::acceptance;
 use crate::relax::monitor::Monitor;
 use crate::relax::shifted::{Shifted, Solved};
 use crate::relax::{Cost, Look, Stop, Trace};
 use crate::vector::{Vector, difference, dot, larger, norm, scaled, sum};
-
-/// Rounding of an energy summed over blocks, relative \[1\]; as in FIRE.
-const ENERGY_ROUNDING: f64 = 1e-13;
 
 /// Share of the promised fall of the energy that a step must bring; Newton's own brings half near a minimum. Energies tell
 /// where half of this share is above their rounding.
@@ -190,6 +188,9 @@ impl Descent {
     }
 
     /// Looks for the lowest point along a direction from the checkpoint, to within `FLAT`; none if none leads down.
+    ///
+    /// Not [`search`](crate::relax::line_search::search), with which it shares what counts as low enough: the model gives the
+    /// length, so nothing is sought beyond the whole step, and the next point lies between a tenth and half of the bracket.
     fn search<const D: usize, L: PairLaw>(
         &mut self,
         assembly: &mut Assembly<D, L>,
@@ -206,7 +207,7 @@ impl Descent {
         let mut length = longest;
         for trial in 1..=TRIAL_LIMIT {
             let (reached, end_slope) = self.go(assembly, step, length)?;
-            let ratio = acceptance(totals, &reached, length * slope, end_slope / slope);
+            let ratio = acceptance([totals, &reached], length * slope, [slope, end_slope], SUFFICIENT);
             if let Some(ratio) = ratio {
                 // Model: the slope falls evenly, to nothing at length 1.
                 let found = Reached { totals: reached, ratio: ratio / (1.0 - 0.5 * length) };
@@ -228,7 +229,7 @@ impl Descent {
             return Ok(None);
         }
         let (reached, end_slope) = self.go(assembly, step, low.0)?;
-        let ratio = acceptance(totals, &reached, low.0 * slope, end_slope / slope);
+        let ratio = acceptance([totals, &reached], low.0 * slope, [slope, end_slope], SUFFICIENT);
         Ok(ratio.map(|ratio| Reached { totals: reached, ratio: ratio / (1.0 - 0.5 * low.0) }))
     }
 
@@ -253,18 +254,6 @@ impl Descent {
     fn evaluate<const D: usize, L: PairLaw>(&mut self, assembly: &mut Assembly<D, L>) -> Totals<D> {
         self.cost.force_evaluation_count += 1;
         assembly.evaluate_totals()
-    }
-}
-
-/// Whether a point is low enough: then the fall of its energy over the promised one, 1/2 where energies cannot tell.
-fn acceptance<const D: usize>(before: &Totals<D>, after: &Totals<D>, promised: f64, slope_ratio: f64) -> Option<f64> {
-    let rounding = ENERGY_ROUNDING * (before.energy_scale() + after.energy_scale());
-    let fall = before.energy - after.energy;
-    if 0.5 * SUFFICIENT * promised > rounding {
-        (fall >= SUFFICIENT * promised).then_some(fall / promised)
-    } else {
-        // The work of the forces along the step, by its two ends; NaN fails.
-        (fall >= -rounding && slope_ratio >= -0.9).then_some(0.5)
     }
 }
 

@@ -8,6 +8,7 @@ use jamscope::reference::elastic::Elastic;
 use jamscope::reference::poles::{pole, pole_count_below};
 use jamscope::reference::screened::Screened;
 use jamscope::reference::{Annulus, RadialSolution};
+use jamscope::vector::larger;
 
 use super::{boundaries, claimed_screened, elastic, length, radii, screened, screening, size};
 use crate::annulus;
@@ -153,7 +154,7 @@ fn by_potentials(
     let (at_inner, at_outer) = (columns(annulus.inner_radius()), columns(annulus.outer_radius()));
     // Columns scaled by what they are where they are largest.
     let scale: [f64; 4] = std::array::from_fn(|c| {
-        [at_inner[c], at_outer[c]].iter().flatten().fold(0.0, |largest: f64, x| largest.max(x.abs()))
+        [at_inner[c], at_outer[c]].iter().flatten().fold(0.0, |largest, x| larger(largest, x.abs()))
     });
     let weights = eliminate(std::array::from_fn(|row| {
         let (columns, wanted) = if row < 2 { (&at_inner, boundary[row]) } else { (&at_outer, 0.0) };

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use jamscope::reference::lorentzian::{ContinuumLorentzian, Crossing, Lorentzian, LorentzianError};
+use jamscope::vector::larger;
 
 use super::{at, claimed, continuum, lorentzian};
 
@@ -40,7 +41,7 @@ fn a_threshold_never_reached_has_a_name() {
     }
     // For s > 2 the lowest value need not be that at π. With f† = 8, s = 6, G is near that of eight equal modes.
     let medium = lorentzian(8.0, 6.0);
-    let scanned = (1..=100_000).map(|n| medium.correlation(PI * f64::from(n) / 1e5)).fold(1.0, f64::min);
+    let scanned = -(1..=100_000).map(|n| -medium.correlation(PI * f64::from(n) / 1e5)).fold(-1.0, larger);
     assert!(scanned < medium.correlation(PI) - 0.1);
     let Ok(Crossing::Never { lowest }) = medium.crossing(-0.9) else { panic!("never so low") };
     // The scan is within its step squared times the curvature of the minimum, f†² at most.
