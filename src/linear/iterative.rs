@@ -233,7 +233,13 @@ fn true_residual(
 }
 
 fn largest(column: &[f64]) -> f64 {
-    column.iter().fold(0.0, |most, value| larger(value.abs(), most))
+    let most = column.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+    // The maximum drops NaN, which the sum keeps (as it may an infinity: NaN or infinite, it is not small).
+    if column.iter().sum::<f64>().is_finite() {
+        most
+    } else {
+        column.iter().fold(0.0, |most, value| larger(value.abs(), most))
+    }
 }
 
 /// NaN is not positive either.

@@ -162,8 +162,8 @@ struct Integration {
     step_limit: usize,
 }
 
-/// Largest ratio of a step to the one before.
-const LARGEST_GROWTH: f64 = 5.0;
+/// Largest ratio of a step to the one before; 1 after a rejected one, since the contact that made it fail is mostly still near.
+const LARGEST_GROWTH: f64 = 2.0;
 
 /// Smallest one.
 const SMALLEST_GROWTH: f64 = 0.1;
@@ -292,6 +292,7 @@ impl Integration {
         motion.prestressed.copy_from_slice(monitor.backbone());
         motion.margin = overlap;
         *time_step = time_step.min(motion.longest_step(LONGEST_STEP));
+        let mut rejected = false;
         loop {
             if cost.step_count >= self.step_limit {
                 return Ok(Err(Stop::StepLimit));
@@ -306,13 +307,14 @@ impl Integration {
                     // The embedded solution is of second order: its error in a step grows as the third power of h.
                     let growth = (SAFETY / error).cbrt().clamp(SMALLEST_GROWTH, LARGEST_GROWTH);
                     if error <= 1.0 {
-                        *time_step *= growth;
+                        *time_step *= if rejected { growth.min(1.0) } else { growth };
                         return Ok(Ok(reached));
                     }
                     if growth.is_nan() { SMALLEST_GROWTH } else { growth }
                 }
             };
             cost.rejected_count += 1;
+            rejected = true;
             motion.take_back()?;
             *time_step *= growth;
         }
