@@ -5,24 +5,21 @@
 //! (m/(hγ)² + (ζ + C)/(hγ) + K) U_i = r_v + (m/(hγ) + ζ + C) r_u        r_u, r_v the right sides of the stage
 //! ```
 //!
-//! C is the matrix of the contact damping, K the [`Hessian`]; m = 1, ζ = 0 for damped dynamics, m = 0, C = 0 for gradient
+//! C is the matrix of the contact damping, K the [`Hessian`](crate::contact::Hessian); m = 1, ζ = 0 for damped dynamics, m = 0, C = 0 for gradient
 //! flow, which then has no velocities. The matrix is symmetric, and one factorisation serves all stages. What it leaves out
-//! (how C turns and grows with u, contacts that close during the step) costs no order: see [`super::tableau`]. It is
-//! positive definite but for the prestress in K, which is left out where it would not be. Where the mass term dominates,
-//! the diagonal and an incomplete factor are enough, and conjugate gradients need a few products.
+//! (how C turns and grows with u) and what it holds beside (contacts that may close during the step) costs no order: see
+//! [`super::tableau`]. It is positive definite but for the prestress in K, which is left out where it would not be.
 
 use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
 use crate::contact::damping::DampingLaw;
-use crate::contact::forces::{Totals, add_damping, geometry};
-use crate::contact::hessian::{Hessian, Members, Prestress};
-use crate::linear::iterative::{IncompleteFactor, IterationLimits, conjugate_gradients};
-use crate::linear::{Analysis, LinearError};
+use crate::contact::forces::{Totals, add_damping};
+use crate::linear::LinearError;
 use crate::packing::{Packing, PackingError};
 use crate::relax::flat::products;
+use crate::relax::implicit::matrix::{Ready, StepMatrix, StepTerms};
 use crate::relax::implicit::tableau::{ROS34PW2, STAGE_COUNT};
-use crate::sparse::SymmetricMatrix;
-use crate::vector::{Vector, difference, dot, larger, norm, scaled, sum};
+use crate::vector::{Vector, difference, dot, larger, scaled, sum};
 
 /// What resists motion beside the contacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,6 +28,16 @@ pub enum Inertia {
     Massive,
     /// No masses, friction ζ on every disk: gradient flow \[force / velocity\].
     Friction(f64),
+}
+
+impl Inertia {
+    /// Mass and friction of a disk.
+    pub(super) fn resistance(self) -> (f64, f64) {
+        match self {
+            Inertia::Massive => (1.0, 0.0),
+            Inertia::Friction(friction) => (0.0, friction),
+        }
+    }
 }
 
 /// What a step came to.
@@ -60,15 +67,6 @@ pub struct Work {
     pub contact_change_count: usize,
 }
 
-/// A pair in the matrix of a step.
-#[derive(Debug, Clone, Copy)]
-struct Link<const D: usize> {
-    ends: (u32, u32),
-    normal: Vector<D>,
-    /// c of its damping in the matrix.
-    damping: f64,
-}
-
 /// One stage: U of positions, of velocities and of the work of damping.
 #[derive(Debug, Clone, Default)]
 struct Stage<const D: usize> {
@@ -76,16 +74,6 @@ struct Stage<const D: usize> {
     kick: Vec<Vector<D>>,
     work: f64,
 }
-
-/// Condition of the matrix, by its rows, up to which conjugate gradients are used: there they need some ten products a stage,
-/// and take less time than a factorisation of any size (5548 disks).
-const ITERATE_BELOW: f64 = 6.0;
-
-/// Backward error of their solutions \[1\]: a stage is known to this share of its way, far below any tolerance of a step.
-const ITERATE_TO: f64 = 1e-8;
-
-/// Share of a disk's last way by which it may come nearer in the next step.
-const OUTLOOK: f64 = 10.0;
 
 /// A packing in motion under elastic and damping forces.
 pub struct ImplicitMotion<const D: usize, L, C> {
@@ -110,15 +98,8 @@ pub struct ImplicitMotion<const D: usize, L, C> {
     /// Elastic and damping forces at the present positions and velocities.
     net_forces: Vec<Vector<D>>,
     dissipation: f64,
-    hessian: Hessian<D>,
-    matrix: SymmetricMatrix,
-    analysis: Option<Analysis>,
-    /// How far each mobile disk went in the last step that was not taken back; infinite before the first.
-    ways: Vec<f64>,
-    margins: Vec<f64>,
-    /// Stiffness of each pair in the matrix, with its damping over hγ.
-    along: Vec<f64>,
-    links: Vec<Link<D>>,
+    /// From the first step on.
+    matrix: Option<StepMatrix<D>>,
     /// Where the disks are, less where they were at the start of the step.
     moved: Vec<Vector<D>>,
     taken_back: bool,
@@ -145,12 +126,6 @@ struct Before<const D: usize> {
     time: f64,
 }
 
-/// How the stages of one step are solved.
-enum Solver<'a> {
-    Factor(crate::linear::Factorisation<'a>),
-    Iterate(IncompleteFactor, &'a SymmetricMatrix),
-}
-
 impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     /// A packing at rest. A `damping` without rate belongs to gradient flow.
     ///
@@ -172,13 +147,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             damping_coefficient: Vec::new(),
             net_forces: zero.clone(),
             dissipation: 0.0,
-            hessian: Hessian::of(&assembly, Members::Mobile, Prestress::Included),
-            matrix: SymmetricMatrix::default(),
-            analysis: None,
-            ways: vec![f64::INFINITY; mobile],
-            margins: Vec::new(),
-            along: Vec::new(),
-            links: Vec::new(),
+            matrix: None,
             moved: vec![[f64::INFINITY; D]; mobile],
             taken_back: false,
             stages: std::array::from_fn(|_| Stage { way: zero.clone(), kick: zero.clone(), work: 0.0 }),
@@ -209,21 +178,26 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     /// # Errors
     /// Two disks with the same centre.
     pub fn step(&mut self, time_step: f64) -> Result<Stepped<D>, PackingError> {
+        let mut matrix = self.matrix.take().unwrap_or_else(|| StepMatrix::of(&self.assembly));
         if !self.taken_back {
-            self.ways.iter_mut().zip(&self.moved).for_each(|(way, &moved)| *way = norm(moved));
+            matrix.set_ways(&self.moved);
         }
         self.taken_back = false;
         self.remember();
-        let scale = time_step * ROS34PW2.diagonal;
-        let mut analysis = self.analysis.take();
-        let mut matrix = std::mem::take(&mut self.matrix);
-        let made = self.set_matrix(scale, &mut matrix, &mut analysis);
-        let stepped = match made {
-            Ok(mut solver) => self.stages(time_step, &mut solver),
+        let terms = StepTerms {
+            scale: time_step * ROS34PW2.diagonal,
+            inertia: self.inertia,
+            damping: &self.damping,
+            damping_coefficient: &self.damping_coefficient,
+            margin: self.margin,
+            prestressed: &self.prestressed,
+        };
+        let stepped = match matrix.set(&self.assembly, &terms, &mut self.work) {
+            Ok(mut ready) => self.stages(time_step, &mut ready),
             Err(LinearError::OutOfMemory { .. }) => Ok(Stepped::OutOfMemory),
             Err(_) => Ok(Stepped::Indefinite),
         };
-        (self.analysis, self.matrix) = (analysis, matrix);
+        self.matrix = Some(matrix);
         stepped
     }
 
@@ -309,63 +283,14 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             (self.dissipated, self.dissipation, self.time);
     }
 
-    /// Mass and friction of a disk.
-    fn resistance(&self) -> (f64, f64) {
-        match self.inertia {
-            Inertia::Massive => (1.0, 0.0),
-            Inertia::Friction(friction) => (0.0, friction),
-        }
-    }
-
-    /// The matrix of a step, factorised or ready for conjugate gradients.
-    fn set_matrix<'a>(
-        &mut self,
-        scale: f64,
-        matrix: &'a mut SymmetricMatrix,
-        analysis: &'a mut Option<Analysis>,
-    ) -> Result<Solver<'a>, LinearError> {
-        self.set_links(scale);
-        let (mass, friction) = self.resistance();
-        let diagonal = mass / (scale * scale) + friction / scale;
-        let (margins, along, prestressed) = (&self.margins, &self.along, &self.prestressed);
-        let same = self.hessian.update_within(
-            &self.assembly,
-            |pair| margins[pair],
-            self.margin,
-            |contact| {
-                let both = prestressed[contact.ends.0 as usize] && prestressed[contact.ends.1 as usize];
-                (along[contact.pair], if both { contact.across } else { 0.0 })
-            },
-        );
-        if !same {
-            *analysis = None;
-            self.work.contact_change_count += 1;
-        }
-        matrix.clone_from(self.hessian.matrix());
-        for column in 0..matrix.dimension() {
-            // The first entry of a column is the one on the diagonal.
-            matrix.values[matrix.starts[column]] += diagonal;
-        }
-        self.right_side.resize(matrix.dimension(), 0.0);
-        self.unknowns.resize(matrix.dimension(), 0.0);
-        if mass > 0.0 && matrix.norm() <= ITERATE_BELOW * diagonal {
-            return Ok(Solver::Iterate(IncompleteFactor::new(matrix)?, matrix));
-        }
-        if analysis.is_none() {
-            *analysis = Some(Analysis::of(&self.hessian)?);
-        }
-        self.work.factorisation_count += 1;
-        match analysis {
-            Some(analysis) => Ok(Solver::Factor(analysis.cholesky(matrix)?)),
-            None => Err(LinearError::NotPositiveDefinite { dimension: matrix.dimension() }),
-        }
-    }
-
     /// All stages; the disks are where the step ends afterwards.
-    fn stages(&mut self, time_step: f64, solver: &mut Solver<'_>) -> Result<Stepped<D>, PackingError> {
+    fn stages(&mut self, time_step: f64, ready: &mut Ready<'_, D>) -> Result<Stepped<D>, PackingError> {
         let scale = time_step * ROS34PW2.diagonal;
-        let (mass, friction) = self.resistance();
+        let (mass, friction) = self.inertia.resistance();
         let mobile = self.assembly.mobile_count();
+        let dimension = ready.hessian.matrix().dimension();
+        self.right_side.resize(dimension, 0.0);
+        self.unknowns.resize(dimension, 0.0);
         for index in 0..STAGE_COUNT {
             if index > 0 && self.go(&ROS34PW2.argument[index][..index])?.is_none() {
                 return Ok(Stepped::TooFar);
@@ -385,7 +310,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             }
             let kept: f64 = done.iter().zip(carried).map(|(past, factor)| factor * past.work).sum();
             stage.work = scale * (self.dissipation + kept / time_step);
-            for link in &self.links {
+            for link in ready.links {
                 let (i, j) = (link.ends.0 as usize, link.ends.1 as usize);
                 let along = dot(difference(self.carried[i], self.carried[j]), link.normal);
                 let force = scaled(link.damping * along, link.normal);
@@ -396,15 +321,15 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             }
             let alone = 1.0 / (mass / (scale * scale) + friction / scale);
             for disk in 0..mobile {
-                match self.hessian.row_of(disk as u32) {
+                match ready.hessian.row_of(disk as u32) {
                     Some(row) => self.right_side[row..row + D].copy_from_slice(&stage.way[disk]),
                     // A disk that touches nothing: the matrix is its diagonal.
                     None => stage.way[disk] = scaled(alone, stage.way[disk]),
                 }
             }
-            self.work.iteration_count += solver.solve(&self.right_side, &mut self.unknowns);
+            self.work.iteration_count += ready.solve(&self.right_side, &mut self.unknowns);
             for disk in 0..mobile {
-                if let Some(row) = self.hessian.row_of(disk as u32) {
+                if let Some(row) = ready.hessian.row_of(disk as u32) {
                     stage.way[disk] = std::array::from_fn(|d| self.unknowns[row + d]);
                 }
                 if mass > 0.0 {
@@ -476,58 +401,10 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         }
     }
 
-    /// The pairs in the matrix: those that touch, and those that may come to on the way.
-    fn set_links(&mut self, scale: f64) {
-        let (pairs, law) = (self.assembly.pairs(), self.assembly.law());
-        let way = |disk: u32| self.ways.get(disk as usize).copied().unwrap_or(0.0);
-        self.links.clear();
-        self.margins.clear();
-        self.along.clear();
-        for pair in 0..pairs.len() {
-            let ends = (pairs.first[pair], pairs.second[pair]);
-            let margin = (OUTLOOK * larger(way(ends.0), way(ends.1))).min(self.margin);
-            let (apart, distance, overlap) = geometry(pairs, pair, &self.assembly.displacements);
-            self.margins.push(margin);
-            if overlap <= -margin {
-                self.along.push(0.0);
-                continue;
-            }
-            let wide = overlap + margin;
-            let damping = match self.inertia {
-                Inertia::Massive => self.damping.damping(self.damping_coefficient[pair], wide),
-                Inertia::Friction(_) => 0.0,
-            };
-            let along = law.stiffness(law.force(pairs.coefficient[pair], wide), wide) + damping / scale;
-            self.along.push(along);
-            self.links.push(Link { ends, normal: scaled(1.0 / distance, apart), damping });
-        }
-    }
-
     fn set_damping_coefficients(&mut self) {
         let (pairs, radii) = (self.assembly.pairs(), self.assembly.radii());
         let of_pair = |(&i, &j): (&u32, &u32)| self.damping.coefficient(radii[i as usize], radii[j as usize]);
         self.damping_coefficient.clear();
         self.damping_coefficient.extend(pairs.first.iter().zip(&pairs.second).map(of_pair));
-    }
-}
-
-impl Solver<'_> {
-    /// Solves for one stage; the iterations it took.
-    fn solve(&mut self, right_side: &[f64], unknowns: &mut [f64]) -> usize {
-        match self {
-            Solver::Factor(factorisation) => {
-                factorisation.solve_unrefined(right_side, unknowns);
-                0
-            }
-            Solver::Iterate(factor, matrix) => {
-                unknowns.fill(0.0);
-                let limits = IterationLimits { backward_error: ITERATE_TO, iteration_count: 200 };
-                match conjugate_gradients(matrix, factor, right_side, unknowns, &limits) {
-                    Ok(solution) => solution.iteration_count,
-                    // The best so far; the error of the step tells if it is not good enough.
-                    Err(_) => limits.iteration_count,
-                }
-            }
-        }
     }
 }
