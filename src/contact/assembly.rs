@@ -52,12 +52,20 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// # Errors
     /// A box too small for one image a pair, or two disks with the same centre (named by the caller's indices).
     pub fn new(packing: &Packing<D>, law: L) -> Result<Self, PackingError> {
+        Self::with_skin(packing, law, SKIN)
+    }
+
+    /// As [`Assembly::new`] with another width of the skin, over the smallest radius \[1\].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_skin(packing: &Packing<D>, law: L, skin: f64) -> Result<Self, PackingError> {
         let order = spatial_order(packing.domain(), packing.positions(), packing.radii(), packing.held());
         let pick = |column: &[Vector<D>]| order.iter().map(|&disk| column[disk as usize]).collect::<Vec<_>>();
         let radii: Vec<f64> = order.iter().map(|&disk| packing.radii()[disk as usize]).collect();
         let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
         let largest = radii.iter().copied().fold(0.0, f64::max);
-        let mut skin = SKIN * smallest;
+        let mut skin = skin * smallest;
         if let Some(lengths) = packing.domain().lengths() {
             // The list takes one image a pair, so its range stays below half the shortest side.
             let shortest = lengths.iter().copied().fold(f64::INFINITY, f64::min);

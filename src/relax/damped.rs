@@ -220,7 +220,11 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
     /// # Errors
     /// As [`Assembly::new`].
     pub fn new(packing: &Packing<D>, law: &L, damping: &C) -> Result<Self, PackingError> {
-        let mut assembly = Assembly::new(packing, *law)?;
+        Ok(Self::of(Assembly::new(packing, *law)?, damping))
+    }
+
+    /// A packing laid out already, at rest.
+    pub fn of(mut assembly: Assembly<D, L>, damping: &C) -> Self {
         assembly.evaluate();
         let zero = vec![[0.0; D]; assembly.len()];
         let mut motion = Motion {
@@ -233,7 +237,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
             assembly,
         };
         motion.set_damping_coefficients();
-        Ok(motion)
+        motion
     }
 
     /// One step of the scheme above.

@@ -1,0 +1,69 @@
+//! [`ChoiceTable`]: what other numerical choices move, measured on one sample.
+//!
+//! Ring widths and the range and search of the fit are varied on the first reference; the time step on one explicit trajectory
+//! from the inflated start, whose reference is the same trajectory at a quarter of the shortest step; the routes to the screened
+//! profile on the annulus of the sample.
+
+#[cfg(feature = "fit")]
+mod fits;
+mod routes;
+mod trajectory;
+
+use serde::Serialize;
+
+use crate::contact::PairLaw;
+use crate::contact::damping::DampingChoice;
+use crate::inflation::Grown;
+use crate::packing::PackingError;
+use crate::precision::state::State;
+use crate::scene::Observables;
+
+/// One choice and what it moves.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ChoiceTable {
+    /// Its name in files.
+    pub name: &'static str,
+    /// What is varied, and on what, for readers.
+    pub title: &'static str,
+    /// What the first column is, then the names of the numbers, with units.
+    pub columns: Vec<&'static str>,
+    /// One row a setting.
+    pub rows: Vec<ChoiceRow>,
+}
+
+/// One setting.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ChoiceRow {
+    /// The setting.
+    pub setting: String,
+    /// A number a column; seconds, the last one, differ from one measurement to the next.
+    pub values: Vec<Option<f64>>,
+}
+
+/// All tables of a sample.
+pub(super) fn choice_tables<L: PairLaw>(
+    state: &State,
+    grown: &Grown<2>,
+    law: &L,
+    damping: DampingChoice,
+    observables: &Observables,
+) -> Result<Vec<ChoiceTable>, PackingError> {
+    #[cfg(feature = "fit")]
+    let mut tables = fits::tables(state, grown, observables);
+    #[cfg(not(feature = "fit"))]
+    let (mut tables, _) = (Vec::new(), observables);
+    match damping {
+        DampingChoice::Constant(damping) => {
+            tables.push(trajectory::time_steps(grown, law, &damping)?);
+            tables.push(trajectory::skins(grown, law, &damping)?);
+        }
+        DampingChoice::Viscoelastic(damping) => {
+            let damping = law.viscoelastic(damping.rate);
+            tables.push(trajectory::time_steps(grown, law, &damping)?);
+            tables.push(trajectory::skins(grown, law, &damping)?);
+        }
+    }
+    let wavenumber = state.measured.fitted.map_or(0.0, |fitted| fitted.wavenumber);
+    tables.extend(routes::routes(grown, wavenumber));
+    Ok(tables)
+}

@@ -1,0 +1,61 @@
+//! Routes to the screened profile.
+
+use std::time::Instant;
+
+use crate::inflation::Grown;
+use crate::precision::choices::{ChoiceRow, ChoiceTable};
+use crate::reference::screened::Screened;
+use crate::reference::{Annulus, RadialSolution};
+use crate::vector::larger;
+
+/// Points of a profile.
+const POINTS: usize = 400;
+
+/// Evaluations of a profile that are timed.
+const REPEATS: usize = 20;
+
+/// The closed formula with J and Y of `libm` against [`Screened`], on the annulus of the sample: κ of the fit and shares of
+/// it. None where the annulus has no screened solution.
+pub(super) fn routes(grown: &Grown<2>, wavenumber: f64) -> Option<ChoiceTable> {
+    let annulus = Annulus::new(grown.inner_radius, grown.outer_radius).ok()?;
+    let (inner, outer) = (grown.inner_radius, grown.outer_radius);
+    let radii: Vec<f64> = (0..POINTS).map(|i| inner + (i as f64 + 0.5) / POINTS as f64 * (outer - inner)).collect();
+    let mut rows = Vec::new();
+    // Where nothing was fitted, the first wavelength that fits the annulus.
+    let largest = if wavenumber > 0.0 { wavenumber } else { 2.0 / outer };
+    for share in [1.0, 1e-2, 1e-4, 1e-6] {
+        let wavenumber = share * largest;
+        let Ok(medium) = Screened::<2>::new(annulus, 1.0, wavenumber) else { continue };
+        let bracket = |radius: f64| {
+            let (x, rim) = (wavenumber * radius, wavenumber * outer);
+            libm::y1(x) * libm::j1(rim) - libm::j1(x) * libm::y1(rim)
+        };
+        let at_disk = bracket(inner);
+        let timed = |profile: &dyn Fn(f64) -> f64| {
+            let start = Instant::now();
+            let mut sum = 0.0;
+            for _ in 0..REPEATS {
+                sum += radii.iter().map(|&radius| profile(std::hint::black_box(radius))).sum::<f64>();
+            }
+            std::hint::black_box(sum);
+            start.elapsed().as_secs_f64() / (REPEATS * POINTS) as f64
+        };
+        let closed = |radius: f64| bracket(radius) / at_disk;
+        let most = radii.iter().map(|&radius| medium.value(radius).abs()).fold(0.0, larger);
+        let errors = radii.iter().map(|&radius| (closed(radius) - medium.value(radius)).abs() / most);
+        let values =
+            vec![Some(errors.fold(0.0, larger)), Some(timed(&closed)), Some(timed(&|radius| medium.value(radius)))];
+        rows.push(ChoiceRow { setting: format!("{wavenumber:.3e}"), values });
+    }
+    (!rows.is_empty()).then(|| ChoiceTable {
+        name: "bessel_route",
+        title: "Screened profile: the closed formula with J and Y of libm against the route used",
+        columns: vec![
+            "κ (1/length)",
+            "largest difference over largest value (1)",
+            "closed formula (s a point)",
+            "seconds",
+        ],
+        rows,
+    })
+}
