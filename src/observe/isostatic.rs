@@ -62,6 +62,8 @@ pub struct IsostaticSettings {
     pub measure: BondMeasure,
     /// Width of a ring \[length\].
     pub ring_width: f64,
+    /// Radius from which on rings count \[length\]: nearer are the contacts of the inflated disk, which it pushes itself.
+    pub from: f64,
     /// h_0.
     pub normalisation: Normalisation,
     /// The threshold.
@@ -76,6 +78,7 @@ impl Default for IsostaticSettings {
             bonds: BondSet::default(),
             measure: BondMeasure::default(),
             ring_width: 1.0,
+            from: 1.0,
             normalisation: Normalisation::NearCentre { radius: 1.5 },
             rule: IsostaticRule::Threshold(1.3),
         }
@@ -94,6 +97,12 @@ pub enum IsostaticError {
     RingWidthNotPositive {
         /// The value given \[length\].
         ring_width: f64,
+    },
+    /// Rings begin at the centre or beyond.
+    #[error("from is {from}, not a number from 0 on")]
+    FromNegative {
+        /// The value given \[length\].
+        from: f64,
     },
     /// The radius of the normalisation is one.
     #[error("the radius of the normalisation is {radius}, not a positive number")]
@@ -221,7 +230,8 @@ impl IsostaticLength {
         settings: &IsostaticSettings,
     ) -> Result<Self, IsostaticError> {
         settings.check()?;
-        let rings = &fluctuations.rings;
+        let rings = fluctuations.rings.iter().filter(|ring| ring.radius >= settings.from);
+        let rings: Vec<FluctuationRing> = rings.copied().collect();
         let mut found = IsostaticLength {
             excess,
             unit: None,
@@ -238,7 +248,7 @@ impl IsostaticLength {
             found.outcome = IsostaticOutcome::NoExcess { excess };
             return Ok(found);
         }
-        let unit = settings.normalisation.unit(rings, increase);
+        let unit = settings.normalisation.unit(&rings, increase);
         let sound = |ring: &FluctuationRing| (ring.radius * ring.fluctuation * ring.standard_error).is_finite();
         if !(unit > 0.0 && unit.is_finite() && rings.iter().all(sound)) {
             found.outcome = IsostaticOutcome::NoScale;
@@ -319,6 +329,9 @@ impl IsostaticSettings {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         if !positive(self.ring_width) {
             return Err(IsostaticError::RingWidthNotPositive { ring_width: self.ring_width });
+        }
+        if !(self.from >= 0.0 && self.from.is_finite()) {
+            return Err(IsostaticError::FromNegative { from: self.from });
         }
         match self.normalisation {
             Normalisation::NearCentre { radius } if !positive(radius) => {

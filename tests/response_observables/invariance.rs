@@ -134,7 +134,7 @@ proptest! {
         let curve = |it: &Fluctuations, unit: f64| {
             let normalisation = Normalisation::NearCentre { radius: 5.0 * unit };
             let rule = IsostaticRule::Threshold(3.0);
-            let settings = IsostaticSettings { normalisation, rule, ring_width: unit, ..IsostaticSettings::default() };
+            let settings = IsostaticSettings { normalisation, rule, ring_width: unit, from: unit, ..IsostaticSettings::default() };
             IsostaticLength::of(it, Some(0.5 / unit), 0.1 * unit, 40.0 * unit, &settings).expect("sound settings")
         };
         // ΔZ is a number and r ΔZ a length; dividing ΔZ by the unit here makes x one number in both.

@@ -47,7 +47,9 @@ fn a_crossing_between_two_rings_is_where_it_was_put() {
         let IsostaticOutcome::Reached { length, product, between } = found.outcome else { panic!("{found:?}") };
         assert!((length - 7.3).abs() < 1e-14 && (product - 3.65).abs() < 1e-14);
         assert_eq!(between, [6.5, 7.5]);
-        let point = found.curve[20];
+        // Rings from r = 1.5 on: the innermost holds the contacts of the inflated disk.
+        assert_eq!(found.curve[0].radius, 1.5);
+        let point = found.curve[19];
         assert_eq!((point.radius, point.scaled_radius), (20.5, 20.5 * EXCESS));
         assert!((point.scaled_fluctuation - 12.0 / unit).abs() < 1e-12);
         assert!((point.standard_error / point.scaled_fluctuation - 0.1).abs() < 1e-15);
@@ -78,7 +80,7 @@ fn what_has_no_length_says_why() {
     assert_eq!(with(None, &rings(plateau)), IsostaticOutcome::NoBackbone);
     assert_eq!(with(Some(-0.01), &rings(plateau)), IsostaticOutcome::NoExcess { excess: -0.01 });
     assert_eq!(with(Some(0.5), &Fluctuations { rings: Vec::new() }), IsostaticOutcome::TooFewRings);
-    assert_eq!(with(Some(0.5), &rings(|_| 10.0)), IsostaticOutcome::AboveFromTheStart { innermost: 0.5 });
+    assert_eq!(with(Some(0.5), &rings(|_| 10.0)), IsostaticOutcome::AboveFromTheStart { innermost: 1.5 });
     assert_eq!(with(Some(0.5), &rings(|r| 1.0 / r)), IsostaticOutcome::NeverReached { largest: 0.5 });
     assert_eq!(with(Some(0.5), &rings(|_| f64::NAN)), IsostaticOutcome::NoScale);
     let near = IsostaticSettings::default();
@@ -91,6 +93,7 @@ fn what_has_no_length_says_why() {
         refused(IsostaticSettings { ring_width: 0.0, ..near }),
         IsostaticError::RingWidthNotPositive { ring_width: 0.0 }
     );
+    assert_eq!(refused(IsostaticSettings { from: -1.0, ..near }), IsostaticError::FromNegative { from: -1.0 });
     assert_eq!(
         refused(IsostaticSettings { normalisation: Normalisation::NearCentre { radius: -1.0 }, ..near }),
         IsostaticError::RadiusNotPositive { radius: -1.0 }
