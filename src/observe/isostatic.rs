@@ -318,7 +318,7 @@ impl IsostaticRule {
                 values.sort_by(f64::total_cmp);
                 let middle = values.len() / 2;
                 let upper = *values.get(middle)?;
-                Some(share * if values.len() % 2 == 0 { 0.5 * (values[middle - 1] + upper) } else { upper })
+                Some(share * if values.len().is_multiple_of(2) { 0.5 * (values[middle - 1] + upper) } else { upper })
             }
         }
     }

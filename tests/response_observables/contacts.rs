@@ -134,3 +134,34 @@ fn a_real_inflation_adds_up_state_by_state() {
     let scaled = change.change / inflated.before.pressure.cbrt();
     assert!((change.scaled.expect("jammed") / scaled - 1.0).abs() < 1e-15);
 }
+
+#[test]
+fn balls_have_contacts_and_bonds_as_disks_do_and_both_can_be_written() {
+    use jamscope::observe::bond_changes::{BondChanges, BondSet};
+    use jamscope::packing::Domain;
+    // One ball between six held ones along the axes, overlap 0.005; it moves by 0.01 along x and leaves one of them.
+    let packing = |x: f64| {
+        let mut positions = vec![[x, 0.0, 0.0]];
+        for axis in 0..3 {
+            positions.extend([-0.995, 0.995].map(|side| {
+                let mut place = [0.0; 3];
+                place[axis] = side;
+                place
+            }));
+        }
+        let held = (0..7).map(|ball| ball > 0).collect();
+        Packing::<3>::new(Domain::Open, positions, vec![0.5; 7]).and_then(|it| it.with_held(held)).expect("sound balls")
+    };
+    let (start, end) = (packing(0.0), packing(0.01));
+    let law = Hookean::default();
+    let (before, after) = (State::new(&start, &law).expect("sound"), State::new(&end, &law).expect("sound"));
+    let changes = ContactChanges::between(&before, &after, 0);
+    assert_eq!((changes.kept_count, changes.made.len(), changes.broken.len()), (5, 0, 1));
+    assert_eq!((changes.broken[0].midpoint, changes.broken[0].distance), ([-0.4975, 0.0, 0.0], 0.4975));
+    let bonds = BondChanges::between(&before, &after, 0, BondSet::Before);
+    let stretched: Vec<f64> = bonds.bonds.iter().map(|bond| bond.parallel).collect();
+    assert_eq!(stretched, [0.01, -0.01, 0.0, 0.0, 0.0, 0.0]);
+    let written = serde_json::to_value((&changes, &bonds)).expect("plain data");
+    assert_eq!(written[0]["broken"][0]["midpoint"], serde_json::json!([-0.4975, 0.0, 0.0]));
+    assert_eq!(written[1]["bonds"].as_array().map(Vec::len), Some(6));
+}

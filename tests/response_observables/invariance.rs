@@ -61,7 +61,7 @@ fn states() -> &'static (Packing<2>, Packing<2>, usize, f64) {
 fn relabelled(packing: &Packing<2>, order: &[usize]) -> Packing<2> {
     let take = |of: &[[f64; 2]]| order.iter().map(|&disk| of[disk]).collect::<Vec<_>>();
     let radii = order.iter().map(|&disk| packing.radii()[disk]).collect();
-    Packing::new(packing.domain().clone(), take(packing.positions()), radii)
+    Packing::new(*packing.domain(), take(packing.positions()), radii)
         .and_then(|it| it.with_corrections(take(packing.corrections())))
         .and_then(|it| it.with_held(order.iter().map(|&disk| packing.held()[disk]).collect()))
         .expect("sound disks")

@@ -3,6 +3,8 @@
 mod bonds;
 mod contacts;
 mod excess;
+#[cfg(feature = "plot")]
+mod figures;
 mod invariance;
 mod isostatic;
 mod multipoles;
@@ -61,7 +63,7 @@ const ROWS: usize = 8;
 /// A triangular lattice of 48 disks in a periodic box, row by row; six contacts each.
 fn lattice_positions() -> Vec<Vector<2>> {
     let place = |row: usize, column: usize| {
-        let shift = if row % 2 == 0 { 0.25 } else { 0.75 };
+        let shift = if row.is_multiple_of(2) { 0.25 } else { 0.75 };
         [SPACING * (column as f64 + shift), SPACING * 0.75f64.sqrt() * (row as f64 + 0.5)]
     };
     (0..ROWS).flat_map(|row| (0..COLUMNS).map(move |column| place(row, column))).collect()

@@ -57,7 +57,7 @@ pub fn isostatic_figure(name: &str, curves: &[(&str, &IsostaticLength)]) -> Resu
         for threshold in drawn {
             let ends = [(0.0, scaling.apply(threshold)), (1.02 * widest, scaling.apply(threshold))];
             let style = RGBColor(0x77, 0x77, 0x77).stroke_width(SCALE);
-            axes.draw_series(DashedLineSeries::new(ends.into_iter(), 6 * SCALE, 4 * SCALE, style))?;
+            axes.draw_series(DashedLineSeries::new(ends, 6 * SCALE, 4 * SCALE, style))?;
         }
         for (index, (_, length)) in curves.iter().enumerate() {
             let [red, green, blue] = colour(index);
