@@ -4,8 +4,8 @@
 //! d_∥ = n·(d_i − d_j)        n = r_ij/r_ij before, r_ij from j to i        d_∥ > 0: stretched
 //! ```
 //!
-//! d_∥ is linear in the displacements and, but for terms of second order, the change of the length of the bond, which is given
-//! beside it.
+//! d_∥ is linear in the displacements and, but for terms of second order, the change of the length of the bond, which is
+//! given beside it.
 //!
 //! # Source
 //! Ellenbroek, van Hecke, van Saarloos (2009), Phys. Rev. E 80, 061307.
@@ -93,7 +93,8 @@ impl<const D: usize> BondChanges<D> {
         BondChanges { set, bonds: bonds.collect() }
     }
 
-    /// The bonds in the linear response to an inflation by `increase` \[length\], which breaks none; distances are from the disk that grows.
+    /// The bonds in the linear response to an inflation by `increase` \[length\], which breaks none; distances are from the
+    /// disk that grows.
     ///
     /// `before` is the state the response was made from.
     ///

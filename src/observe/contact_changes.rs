@@ -6,8 +6,8 @@
 //! kept = C(A) ∩ C(B)        broken = C(A) \ C(B)        made = C(B) \ C(A)
 //! ```
 //!
-//! Counted on the disks that are on the backbone in both states, held ones and the inflated one among them. A contact with any other
-//! disk is counted apart: a rattler touches or not as it happens to lie. Contacts of two held disks are none.
+//! Counted on the disks that are on the backbone in both states, held ones and the inflated one among them. A contact with
+//! any other disk is counted apart: a rattler touches or not as it happens to lie. Contacts of two held disks are none.
 //!
 //! # Source
 //! van Deen, Simon, Zeravcic, Dagois-Bohy, Tighe, van Hecke (2014), Phys. Rev. E 90, 020202.

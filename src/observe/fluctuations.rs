@@ -4,12 +4,12 @@
 //! h(r) = √⟨(x − ⟨x⟩)²⟩        ⟨·⟩ over the bonds or disks of the ring around r
 //! ```
 //!
-//! x = d_∥ of the bonds gives h_∥, x = d_r of the disks h_r. With n members s² = Σ (x − ⟨x⟩)²/(n − 1), and its standard error follows
-//! from the fourth moment, whatever the distribution: var s² = (m₄ − s⁴ (n − 3)/(n − 1))/n.
+//! x = d_∥ of the bonds gives h_∥, x = d_r of the disks h_r. With n members s² = Σ (x − ⟨x⟩)²/(n − 1), and its standard
+//! error follows from the fourth moment, whatever the distribution: var s² = (m₄ − s⁴ (n − 3)/(n − 1))/n.
 //!
 //! # Source
-//! Ellenbroek, Somfai, van Hecke, van Saarloos (2006), Phys. Rev. Lett. 97, 258001. Variance of s²: Kendall & Stuart, The Advanced
-//! Theory of Statistics, vol. 1, ex. 10.13.
+//! Ellenbroek, Somfai, van Hecke, van Saarloos (2006), Phys. Rev. Lett. 97, 258001. Variance of s²: Cramér (1946),
+//! Mathematical Methods of Statistics, ch. 27.
 
 use serde::{Deserialize, Serialize};
 

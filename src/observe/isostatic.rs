@@ -71,8 +71,8 @@ pub struct IsostaticSettings {
 }
 
 impl Default for IsostaticSettings {
-    /// Source: the study for the threshold, 1.3. It does not say what h_∥ is divided by; of the three only `NearCentre` brings y near the
-    /// threshold (the chapter has the numbers), so that is our reading.
+    /// Source: the study for the threshold, 1.3. It does not say what h_∥ is divided by; of the three only `NearCentre`
+    /// brings y near the threshold (the chapter has the numbers), so that is our reading.
     fn default() -> Self {
         IsostaticSettings {
             bonds: BondSet::default(),

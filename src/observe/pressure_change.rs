@@ -4,8 +4,8 @@
 //! Δp = p_after − p_before        Δp/p^((α−2)/(α−1)),  p = p_before:  Δp/p^(1/3) for Hertzian contacts, Δp for Hookean
 //! ```
 //!
-//! The bulk modulus of a jammed packing grows as δ^(α−2) with its overlaps, the pressure as δ^(α−1), so an elastic answer keeps the
-//! ratio as p changes.
+//! The bulk modulus of a jammed packing grows as δ^(α−2) with its overlaps, the pressure as δ^(α−1), so an elastic answer
+//! keeps the ratio as p changes.
 //!
 //! # Source
 //! O'Hern, Silbert, Liu, Nagel (2003), Phys. Rev. E 68, 011306 (exponents); design §6.

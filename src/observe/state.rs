@@ -24,8 +24,8 @@ impl<'a, const D: usize> State<'a, D> {
 
     /// The midpoint between the centres of a contact, from the centre of disk `centre`, and how far away that is \[length\].
     ///
-    /// In a periodic box the two disks may be nearest to the centre in different images; the midpoint is then the nearer one. Naming
-    /// the two disks the other way round changes no bit.
+    /// In a periodic box the two disks may be nearest to the centre in different images; the midpoint is then the nearer
+    /// one. Naming the two disks the other way round changes no bit.
     pub fn midpoint(&self, contact: &Contact<D>, centre: usize) -> (Vector<D>, f64) {
         let half = scaled(0.5, contact.separation);
         let first = difference(self.packing.separation(contact.first as usize, centre), half);

@@ -140,8 +140,9 @@ fn the_fluctuation_of_the_radial_displacement_is_the_spread_of_its_profile() {
 
 #[test]
 fn errors_of_a_fluctuation_cover() {
-    // 8000 rings of 150 independent numbers of known spread: (h − σ)/error lies within 1 in 68.3 % and within 2 in 95.4 %, to
-    // four standard deviations of that count (√(0.683 · 0.317/8000) = 0.52 %, 0.23 %) and 1 % for the skewness of s at 150.
+    // 8000 rings of 150 independent numbers of known spread: (h − σ)/error lies within 1 in 68.3 % and within 2 in 95.4 %,
+    // to four standard deviations of that count (√(0.683 · 0.317/8000) = 0.52 %, 0.23 %) and 1 % for the skewness of s at
+    // 150.
     let (mut generator, mut within) = (generator(8), [0.0; 2]);
     for _ in 0..8000 {
         let values: Vec<(f64, f64)> = (0..150).map(|_| (1.5, 0.3 + 0.02 * normal(&mut generator))).collect();

@@ -70,8 +70,8 @@ fn what_a_cycle_undoes_and_what_it_leaves_is_counted() {
 
 #[test]
 fn contacts_of_rattlers_are_counted_apart() {
-    // A small disk in the hole between disks 0, 1 and the one above them (0.5716 from each, room for 0.0716): it touches the one it is
-    // nearer to by 0.03.
+    // A small disk in the hole between disks 0, 1 and the one above them (0.5716 from each, room for 0.0716): it touches the
+    // one it is nearer to by 0.03.
     let corners = [0, 1, COLUMNS].map(|disk| lattice_positions()[disk]);
     let hole = [0, 1].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / 3.0);
     let at = |corner: usize| {

@@ -51,8 +51,8 @@ fn exact_elastic_modes_are_recovered_to_rounding() {
         let components = fitted(&ring.fit);
         let exact: Vec<ModeAmplitudes> = modes.iter().map(|mode| mode.at(distance).value).collect();
         let size = exact.iter().map(|value| value.radial.norm() + value.transverse.norm()).sum::<f64>();
-        // The sum of five values and the angle from rounded coordinates, n θ with n to 4: 10⁻¹⁵ of the size each; the condition of
-        // nine columns on 80 random angles is below 3.
+        // The sum of five values and the angle from rounded coordinates, n θ with n to 4: 10⁻¹⁵ of the size each; the
+        // condition of nine columns on 80 random angles is below 3.
         let tolerance = 1e-14 * size;
         for (n, exact) in exact.iter().enumerate() {
             for (component, exact) in components.iter().zip([exact.radial, exact.transverse]) {
@@ -61,7 +61,8 @@ fn exact_elastic_modes_are_recovered_to_rounding() {
                 assert!(mode.standard_errors.iter().all(|error| *error < tolerance));
                 if n > 0 {
                     assert!((mode.amplitude - exact.norm()).abs() < tolerance);
-                    // d = A cos(nθ − ψ) = Re[U e^(inθ)] with U = A e^(−iψ); an angle is off by what the amplitude is over it.
+                    // d = A cos(nθ − ψ) = Re[U e^(inθ)] with U = A e^(−iψ); an angle is off by what the amplitude is over
+                    // it.
                     let phase = (mode.phase + exact.arg()).rem_euclid(TAU);
                     assert!(phase.min(TAU - phase) * exact.norm() < tolerance);
                 }
@@ -109,8 +110,9 @@ fn evenly_spaced_angles_give_the_discrete_fourier_sums_and_parseval() {
 
 #[test]
 fn errors_of_the_modes_cover_what_noise_does() {
-    // 1500 rings of 60 disks at random angles, modes 0 to 2 and noise of 0.02. A pull lies within 1 in 68.0 % and within 2 in
-    // 95.0 % of the cases (t with 60 − 9 degrees of freedom: 67.8 and 94.9), to four standard deviations: 1.2 % and 0.56 % of 1500.
+    // 1500 rings of 60 disks at random angles, modes 0 to 2 and noise of 0.02. A pull lies within 1 in 68.0 % and within 2
+    // in 95.0 % of the cases (t with 60 − 9 degrees of freedom: 67.8 and 94.9), to four standard deviations: 1.2 % and 0.56
+    // % of 1500.
     let truth = [0.05, 0.03, -0.04];
     let phases = [0.0, 0.7, -2.0];
     let mut generator = generator(3);

@@ -17,8 +17,8 @@ fn radii() -> impl Iterator<Item = f64> {
     (1..40).map(f64::from)
 }
 
-/// How far interpolation on a straight line in ln |d| may be off between two rings one length apart: (1/8) max |y''|/min |y'|
-/// there, both by differences of the exact curve.
+/// How far interpolation on a straight line in ln |d| may be off between two rings one length apart: (1/8) max |y''|/min
+/// |y'| there, both by differences of the exact curve.
 fn interpolation_error(value: impl Fn(f64) -> f64, ring: f64) -> f64 {
     let y = |r: f64| value(r).abs().ln();
     let step = 1e-3;

@@ -7,8 +7,8 @@
 //! # Source
 //! Golub, Van Loan, Matrix Computations, §5.2 and §5.3.
 
-/// Smallest diagonal entry of R over the largest at which columns still count as independent \[1\]: beyond, half the digits of a
-/// coefficient are gone.
+/// Smallest diagonal entry of R over the largest at which columns still count as independent \[1\]: beyond, half the digits
+/// of a coefficient are gone.
 const LEAST_DIAGONAL: f64 = 1e-8;
 
 /// A factorised matrix of columns and the right-hand sides reflected with it.

@@ -26,7 +26,8 @@ const LEAST_WIDTH: i64 = 4;
 const STRETCH: &str = "r·d<tspan dy=\"3\" font-size=\"10\">∥</tspan><tspan dy=\"-3\">\u{200B}</tspan>";
 
 /// The bonds of a sample between the centres of their disks before the inflation: red compressed, blue stretched, white
-/// unchanged (not drawn), on a scale symmetric about zero that spans 98 % of them. A circle stands at `isostatic_length`, if given \[length\].
+/// unchanged (not drawn), on a scale symmetric about zero that spans 98 % of them. A circle stands at `isostatic_length`, if
+/// given \[length\].
 ///
 /// Bonds of one colour are one path of relative strokes, the strongest last so that weak ones do not hide them.
 pub fn bond_map(name: &str, changes: &BondChanges<2>, frame: &MapFrame, isostatic_length: Option<f64>) -> Figure {

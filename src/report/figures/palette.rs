@@ -31,8 +31,8 @@ const DIVERGING: [[u8; 3]; 11] = [
     [0x7F, 0x3B, 0x08],
 ];
 
-/// Red over white to blue. Source: ColorBrewer 2.0 (Brewer, Harrower), RdBu in 11 classes, "colorblind safe"; its middle is white here,
-/// the colour of the page.
+/// Red over white to blue. Source: ColorBrewer 2.0 (Brewer, Harrower), RdBu in 11 classes, "colorblind safe"; its middle is
+/// white here, the colour of the page.
 const RED_OVER_BLUE: [[u8; 3]; 11] = [
     [0x67, 0x00, 0x1F],
     [0xB2, 0x18, 0x2B],
