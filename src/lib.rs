@@ -67,7 +67,7 @@
 //! | [`lattice`] | lattices whose continuum answer is known | [`Lattice`](lattice::Lattice) |
 //! | [`displacement`] | how far every disk moved | [`DisplacementField`](displacement::DisplacementField) |
 //! | `plastic` (feature `linear`) | what of a response is not in the linear one, and from where on | `plastic::PlasticPart` |
-//! | [`observe`] | radial and angular profile, contact forces | [`RadialProfile`](observe::RadialProfile) |
+//! | [`observe`] | radial and angular profile, angular modes, contact forces and changes, penetration and isostatic length | [`RadialProfile`](observe::RadialProfile) |
 //! | [`reference`](mod@reference) | exact solutions, elastic and screened | [`Annulus`](reference::Annulus) |
 //! | `fit` (feature `fit`) | a profile against both solutions, with errors and a decision | `fit::profile::fit_radial_profile` |
 //! | `protocol` (feature `linear`) | whether relaxers end in the same minimum | `protocol::ProtocolSensitivity` |
@@ -190,6 +190,14 @@ mod book {
     mod observe_radial_profile {}
     #[doc = include_str!("../book/src/observe/angular_profile.md")]
     mod observe_angular_profile {}
+    #[doc = include_str!("../book/src/observe/multipoles.md")]
+    mod observe_multipoles {}
+    #[doc = include_str!("../book/src/observe/penetration_length.md")]
+    mod observe_penetration_length {}
+    #[doc = include_str!("../book/src/observe/isostatic_length.md")]
+    mod observe_isostatic_length {}
+    #[doc = include_str!("../book/src/observe/contact_changes.md")]
+    mod observe_contact_changes {}
     #[doc = include_str!("../book/src/reference.md")]
     mod reference {}
     #[doc = include_str!("../book/src/reference/angular_modes.md")]

@@ -170,9 +170,13 @@ impl<const D: usize> ContactNetwork<D> {
         if count == 0 {
             return 0.0;
         }
+        self.backbone_end_count() as f64 / count as f64
+    }
+
+    /// Ends of the contacts of the backbone on its mobile disks: two a contact, one where the other disk is held.
+    pub fn backbone_end_count(&self) -> usize {
         let mobile = |disk: u32| usize::from(!self.held[disk as usize]);
-        let ends: usize = self.backbone_contacts().map(|contact| mobile(contact.first) + mobile(contact.second)).sum();
-        ends as f64 / count as f64
+        self.backbone_contacts().map(|contact| mobile(contact.first) + mobile(contact.second)).sum()
     }
 
     /// Mean force of the contacts of the backbone; 0 without a backbone \[force\].

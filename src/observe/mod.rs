@@ -1,9 +1,27 @@
 //! One observable a file, all measured on the backbone.
 
 pub mod angular_profile;
+pub mod bond_changes;
+pub mod contact_changes;
+pub mod excess_coordination;
+pub mod fluctuations;
 pub mod force_distribution;
+pub mod isostatic;
+pub mod multipoles;
+pub mod penetration;
+pub mod pressure_change;
 pub mod radial_profile;
+pub mod state;
 
 pub use angular_profile::AngularProfile;
+pub use bond_changes::BondChanges;
+pub use contact_changes::{ContactChanges, ContactCycle};
+pub use excess_coordination::ExcessCoordination;
+pub use fluctuations::Fluctuations;
 pub use force_distribution::ForceDistribution;
+pub use isostatic::IsostaticLength;
+pub use multipoles::Multipoles;
+pub use penetration::PenetrationLength;
+pub use pressure_change::PressureChange;
 pub use radial_profile::{RadialProfile, Ring};
+pub use state::State;

@@ -5,6 +5,8 @@ use crate::certificate::Certificate;
 use crate::certificate::Stability;
 use crate::contact::LawChoice;
 use crate::inflation::Boundary;
+use crate::observe::penetration::{Penetration, PenetrationLength, PenetrationSettings};
+use crate::observe::pressure_change::pressure_exponent;
 use crate::relax::Criterion;
 #[cfg(feature = "fit")]
 use crate::report::curve;
@@ -12,8 +14,8 @@ use crate::report::number::{count, significant};
 use crate::run::{Report, RestSummary, SampleOutcome, SampleReport, SampleResult};
 use crate::scene::Sample;
 
-/// Mean |d_r| of a ring from which on it counts as displaced \[length\]. Source: the study, ξ.
-pub(crate) const PENETRATION_THRESHOLD: f64 = 1e-3;
+/// |⟨d_r⟩| of a ring at ξ \[length\]. Source: the study.
+const PENETRATION_THRESHOLD: f64 = 1e-3;
 
 /// Rows under one heading.
 pub(crate) struct Section {
@@ -176,7 +178,7 @@ fn inflation(report: &Report, samples: &[SampleReport], times: Times) -> Section
         let sample = samples.iter().find(|sample| done(sample).is_some_and(|other| std::ptr::eq(other, it)))?;
         settings(report, &sample.name).map(|sample| sample.relaxer.name().into())
     };
-    let exponent = pressure_exponent(&report.scene.law);
+    let exponent = pressure_exponent(report.scene.law.exponent());
     let coupling = report.scene.inflation.on_site_coupling;
     rows.add("on-site coupling, Γ [force/length]", |_| coupling.map(|value| significant(value, 5)));
     rows.add("relaxer", relaxer)
@@ -211,9 +213,7 @@ fn inflation(report: &Report, samples: &[SampleReport], times: Times) -> Section
         let left = it.cycle_field.as_ref()?.counted().map(|disk| crate::vector::norm(disk.displacement));
         Some(significant(left.fold(0.0, crate::vector::larger), 3))
     })
-    .add("penetration, |⟨d_r⟩| ≥ 10⁻³ [length]", |it| {
-        penetration_depth(it).map(|depth| significant(depth, 4))
-    });
+    .add("penetration ξ, |⟨d_r⟩| = 10⁻³ [length]", penetration);
     rows.section("Inflation")
 }
 
@@ -362,25 +362,25 @@ pub(crate) fn settings<'a>(report: &'a Report, name: &str) -> Option<&'a Sample>
     report.scene.sample.iter().find(|sample| sample.name == name)
 }
 
-/// Radius of the outermost ring with |⟨d_r⟩| ≥ 10⁻³, for a packing that was unjammed \[length\].
-///
-/// Rings and not disks, as in the study: single disks next to the rim move by as much in any loose packing.
-fn penetration_depth(result: &SampleResult) -> Option<f64> {
+/// ξ of a packing that was unjammed, or how far out of its rings \[length\].
+fn penetration(result: &SampleResult) -> Option<String> {
     let profile = result.radial_profile.as_ref()?;
-    let unjammed = result.inflation.before.rest.criterion == Criterion::Unjammed;
-    let moved = || profile.rings.iter().filter(|ring| ring.mean.abs() >= PENETRATION_THRESHOLD);
-    unjammed.then(|| moved().map(|ring| ring.radius).fold(0.0, f64::max))
+    if result.inflation.before.rest.criterion != Criterion::Unjammed {
+        return None;
+    }
+    let settings = PenetrationSettings { thresholds: vec![PENETRATION_THRESHOLD] };
+    let lengths = PenetrationLength::of(profile, &settings).ok()?;
+    Some(match lengths.first()?.penetration {
+        Penetration::FallsAt { radius, .. } => significant(radius, 4),
+        Penetration::NeverAbove { .. } => "nowhere".into(),
+        Penetration::ReachesRim { .. } => "to the rim".into(),
+    })
 }
 
 /// Wall time of all relaxations of an inflation \[s\].
 pub(crate) fn inflation_seconds(result: &SampleResult) -> f64 {
     let states = [Some(&result.inflation.before), Some(&result.inflation.after), result.inflation.deflated.as_ref()];
     states.into_iter().flatten().map(|state| state.rest.cost.seconds).sum()
-}
-
-/// (α − 2)/(α − 1), the power of p in the scaled pressure change.
-fn pressure_exponent(law: &LawChoice) -> f64 {
-    (law.exponent() - 2.0) / (law.exponent() - 1.0)
 }
 
 fn scaled_label(exponent: f64) -> String {

@@ -13,7 +13,7 @@ use crate::displacement::DisplacementField;
 use crate::fit::profile::fit_radial_profile;
 use crate::inflation::{Inflated, InflationError, Rest, inflate};
 use crate::io::{ReadError, read_packing};
-use crate::observe::{AngularProfile, RadialProfile};
+use crate::observe::{AngularProfile, PressureChange, RadialProfile};
 use crate::packing::{Packing, PackingError};
 use crate::preparation::{Preparation, PreparationError, Target, prepare};
 #[cfg(feature = "linear")]
@@ -366,10 +366,7 @@ fn summary<L: PairLaw>(
             certificate: certificate(rest)?,
         })
     };
-    let before = inflated.before.pressure;
-    let pressure_change = inflated.after.pressure - before;
-    let exponent = law.exponent();
-    let scale = libm::pow(before, (exponent - 2.0) / (exponent - 1.0));
+    let pressure = PressureChange::of_inflation(inflated, law);
     Ok(InflationSummary {
         centre_label: inflated.before.packing.get().labels()[inflated.centre],
         inner_radius: inflated.inner_radius,
@@ -378,7 +375,7 @@ fn summary<L: PairLaw>(
         before: state(&inflated.before)?,
         after: state(&inflated.after)?,
         deflated: inflated.deflated.as_ref().map(state).transpose()?,
-        pressure_change,
-        scaled_pressure_change: (before > 0.0).then(|| pressure_change / scale),
+        pressure_change: pressure.change,
+        scaled_pressure_change: pressure.scaled,
     })
 }

@@ -1,13 +1,19 @@
 //! Figures of one sample as SVG: [`heat_map`](heat_map::heat_map), [`radial`](radial::radial_figure),
-//! [`angular`](angular::angular_figure).
+//! [`angular`](angular::angular_figure), [`bond_map`](bond_map::bond_map), [`contact_map`](contact_map::contact_map),
+//! [`isostatic`](isostatic::isostatic_figure), [`multipoles`](multipoles::multipole_figure).
 //!
-//! All three have one height and one style, so that they stand in a row. The charts are drawn by plotters, on a canvas
-//! ten times finer than the picture, because plotters places points on whole pixels; the heat map is written
-//! directly, one stroke a disk.
+//! All have one height and one style, so that they stand in a row. The charts are drawn by plotters, on a canvas
+//! ten times finer than the picture, because plotters places points on whole pixels; maps are written directly, one
+//! stroke a disk, bond or contact.
 
 pub mod angular;
+pub mod bond_map;
 mod chart;
+pub mod contact_map;
 pub mod heat_map;
+pub mod isostatic;
+pub mod map;
+pub mod multipoles;
 mod palette;
 pub mod radial;
 

@@ -31,12 +31,37 @@ const DIVERGING: [[u8; 3]; 11] = [
     [0x7F, 0x3B, 0x08],
 ];
 
-/// The colour of a value in −1 … 1, beyond it that of the end.
+/// Red over white to blue. Source: ColorBrewer 2.0 (Brewer, Harrower), RdBu in 11 classes, "colorblind safe"; its middle is
+/// white here, the colour of the page.
+const RED_OVER_BLUE: [[u8; 3]; 11] = [
+    [0x67, 0x00, 0x1F],
+    [0xB2, 0x18, 0x2B],
+    [0xD6, 0x60, 0x4D],
+    [0xF4, 0xA5, 0x82],
+    [0xFD, 0xDB, 0xC7],
+    [0xFF, 0xFF, 0xFF],
+    [0xD1, 0xE5, 0xF0],
+    [0x92, 0xC5, 0xDE],
+    [0x43, 0x93, 0xC3],
+    [0x21, 0x66, 0xAC],
+    [0x05, 0x30, 0x61],
+];
+
+/// The colour of a value in −1 … 1, beyond it that of the end: purple below zero, orange above.
 pub(crate) fn diverging(value: f64) -> [u8; 3] {
-    let place = (value.clamp(-1.0, 1.0) + 1.0) / 2.0 * (DIVERGING.len() - 1) as f64;
-    let class = (place as usize).min(DIVERGING.len() - 2);
+    between(&DIVERGING, value)
+}
+
+/// As [`diverging`]: red below zero, blue above.
+pub(crate) fn red_over_blue(value: f64) -> [u8; 3] {
+    between(&RED_OVER_BLUE, value)
+}
+
+fn between(scale: &[[u8; 3]; 11], value: f64) -> [u8; 3] {
+    let place = (value.clamp(-1.0, 1.0) + 1.0) / 2.0 * (scale.len() - 1) as f64;
+    let class = (place as usize).min(scale.len() - 2);
     let share = place - class as f64;
-    let (low, high) = (DIVERGING[class], DIVERGING[class + 1]);
+    let (low, high) = (scale[class], scale[class + 1]);
     std::array::from_fn(|i| (f64::from(low[i]) + share * (f64::from(high[i]) - f64::from(low[i]))).round() as u8)
 }
 
@@ -55,6 +80,7 @@ mod tests {
         assert_eq!(diverging(0.0), DIVERGING[5]);
         assert_eq!(diverging(0.2), DIVERGING[6]);
         assert_eq!(diverging(7.0), DIVERGING[10]);
+        assert_eq!((red_over_blue(-1.0), red_over_blue(0.0)), (RED_OVER_BLUE[0], [0xFF; 3]));
         assert_eq!(hexadecimal(BLUE), "#0072b2");
     }
 }

@@ -1,0 +1,192 @@
+//! [`IsostaticLength`]: from where on the stretching of bonds varies around a ring as in a continuum, ℓ_iso.
+//!
+//! ```text
+//! x = r ΔZ        y = (h_∥(r)/h_0) x        ℓ_iso: the smallest r at which y rises to a threshold        C = ℓ_iso ΔZ
+//! ```
+//!
+//! Beyond ℓ_iso h_∥ falls as 1/r, so y stays on a plateau until the held rim bends it down. h_0 makes h_∥ a number,
+//! [`Normalisation`]; the threshold is one given or a share of the plateau, [`IsostaticRule`]. Between two rings y is taken as a straight line.
+//!
+//! # Source
+//! Ellenbroek, Somfai, van Hecke, van Saarloos (2006), Phys. Rev. Lett. 97, 258001; the study, threshold 1.3, C ≈ 6.
+
+mod settings;
+
+use serde::{Deserialize, Serialize};
+
+pub use settings::{IsostaticError, IsostaticRule, IsostaticSettings, Normalisation};
+
+use crate::contact::PairLaw;
+use crate::inflation::Inflated;
+use crate::observe::ExcessCoordination;
+use crate::observe::bond_changes::BondChanges;
+use crate::observe::fluctuations::{FluctuationRing, Fluctuations};
+use crate::observe::state::State;
+
+/// One ring, scaled.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct IsostaticPoint {
+    /// r \[length\].
+    pub radius: f64,
+    /// x = r ΔZ \[1\].
+    pub scaled_radius: f64,
+    /// y = (h_∥/h_0) r ΔZ \[1\].
+    pub scaled_fluctuation: f64,
+    /// Standard error of y from that of h_∥, h_0 taken as exact \[1\].
+    pub standard_error: f64,
+}
+
+/// Where y reaches the threshold.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum IsostaticOutcome {
+    /// At ℓ_iso, between two rings.
+    Reached {
+        /// ℓ_iso \[length\].
+        length: f64,
+        /// C = ℓ_iso ΔZ \[1\].
+        product: f64,
+        /// Radii of the rings on either side \[length\].
+        between: [f64; 2],
+    },
+    /// The innermost ring is at or above it already: ℓ_iso is at most its radius.
+    AboveFromTheStart {
+        /// That radius \[length\].
+        innermost: f64,
+    },
+    /// No ring reaches it.
+    NeverReached {
+        /// The largest y \[1\].
+        largest: f64,
+    },
+    /// ΔZ is not positive: there is no length.
+    NoExcess {
+        /// ΔZ \[1\].
+        excess: f64,
+    },
+    /// Nothing is rigid.
+    NoBackbone,
+    /// Fewer than two rings have a fluctuation.
+    TooFewRings,
+    /// No ring where the plateau should be.
+    NoPlateau,
+    /// h_0 is 0 or a ring is not a number.
+    NoScale,
+}
+
+/// ℓ_iso, and the curve it was read from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct IsostaticLength {
+    /// ΔZ of the backbone before; absent without one \[1\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub excess: Option<f64>,
+    /// h_0, where there is a curve \[length\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit: Option<f64>,
+    /// The threshold, given or from the plateau \[1\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub threshold: Option<f64>,
+    /// y against x, from the inside out.
+    pub curve: Vec<IsostaticPoint>,
+    /// Where the threshold is reached.
+    pub outcome: IsostaticOutcome,
+}
+
+impl IsostaticLength {
+    /// ℓ_iso of an inflation.
+    ///
+    /// # Errors
+    /// Settings that make no sense; a packing without forces.
+    pub fn of_inflation<const D: usize, L: PairLaw>(
+        inflated: &Inflated<D>,
+        law: &L,
+        settings: &IsostaticSettings,
+    ) -> Result<Self, IsostaticError> {
+        settings.check()?;
+        let before = State::new(inflated.before.packing.get(), law)?;
+        let after = State::new(inflated.after.packing.get(), law)?;
+        let changes = BondChanges::between(&before, &after, inflated.centre, settings.bonds);
+        let fluctuations =
+            Fluctuations::of_bonds(&changes, settings.measure, inflated.outer_radius, settings.ring_width);
+        let excess = ExcessCoordination::of(&before.network).map(|excess| excess.value);
+        let increase = after.packing.radii()[inflated.centre] - inflated.inner_radius;
+        Self::of(&fluctuations, excess, increase, inflated.outer_radius, settings)
+    }
+
+    /// ℓ_iso of a fluctuation against r, which may be a mean over samples, or h_r to see that it does not collapse.
+    ///
+    /// `excess` is ΔZ, none without a backbone; `increase` d_0 and `outer_radius` R \[length\].
+    ///
+    /// # Errors
+    /// Settings that make no sense.
+    pub fn of(
+        fluctuations: &Fluctuations,
+        excess: Option<f64>,
+        increase: f64,
+        outer_radius: f64,
+        settings: &IsostaticSettings,
+    ) -> Result<Self, IsostaticError> {
+        settings.check()?;
+        let rings = fluctuations.rings.iter().filter(|ring| ring.radius >= settings.from);
+        let rings: Vec<FluctuationRing> = rings.copied().collect();
+        let mut found = IsostaticLength {
+            excess,
+            unit: None,
+            threshold: None,
+            curve: Vec::new(),
+            outcome: IsostaticOutcome::NoBackbone,
+        };
+        let Some(excess) = excess else { return Ok(found) };
+        if rings.len() < 2 {
+            found.outcome = IsostaticOutcome::TooFewRings;
+            return Ok(found);
+        }
+        if excess.is_nan() || excess <= 0.0 {
+            found.outcome = IsostaticOutcome::NoExcess { excess };
+            return Ok(found);
+        }
+        let unit = settings.normalisation.unit(&rings, increase);
+        let sound = |ring: &FluctuationRing| (ring.radius * ring.fluctuation * ring.standard_error).is_finite();
+        if !(unit > 0.0 && unit.is_finite() && rings.iter().all(sound)) {
+            found.outcome = IsostaticOutcome::NoScale;
+            return Ok(found);
+        }
+        found.unit = Some(unit);
+        found.curve = rings.iter().map(|ring| IsostaticPoint::of(ring, excess, unit)).collect();
+        let Some(threshold) = settings.rule.threshold(&found.curve, outer_radius) else {
+            found.outcome = IsostaticOutcome::NoPlateau;
+            return Ok(found);
+        };
+        found.threshold = Some(threshold);
+        found.outcome = outcome(&found.curve, threshold, excess);
+        Ok(found)
+    }
+}
+
+fn outcome(curve: &[IsostaticPoint], threshold: f64, excess: f64) -> IsostaticOutcome {
+    match curve.iter().position(|point| point.scaled_fluctuation >= threshold) {
+        None => {
+            let largest = curve.iter().map(|point| point.scaled_fluctuation).fold(0.0, f64::max);
+            IsostaticOutcome::NeverReached { largest }
+        }
+        Some(0) => IsostaticOutcome::AboveFromTheStart { innermost: curve[0].radius },
+        Some(first) => {
+            let (below, above) = (&curve[first - 1], &curve[first]);
+            let share = (threshold - below.scaled_fluctuation) / (above.scaled_fluctuation - below.scaled_fluctuation);
+            let length = below.radius + share * (above.radius - below.radius);
+            IsostaticOutcome::Reached { length, product: length * excess, between: [below.radius, above.radius] }
+        }
+    }
+}
+
+impl IsostaticPoint {
+    fn of(ring: &FluctuationRing, excess: f64, unit: f64) -> Self {
+        let scaled_radius = ring.radius * excess;
+        IsostaticPoint {
+            radius: ring.radius,
+            scaled_radius,
+            scaled_fluctuation: ring.fluctuation / unit * scaled_radius,
+            standard_error: ring.standard_error / unit * scaled_radius,
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! How ℓ_iso is measured, and what of it makes no sense.
+
+use serde::{Deserialize, Serialize};
+
+use crate::observe::bond_changes::BondSet;
+use crate::observe::fluctuations::{BondMeasure, FluctuationRing};
+use crate::observe::isostatic::IsostaticPoint;
+use crate::packing::PackingError;
+
+/// What h_∥ is divided by, h_0.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Normalisation {
+    /// h_∥ of the ring whose radius is nearest to this \[length\].
+    NearCentre {
+        /// That radius.
+        radius: f64,
+    },
+    /// |d_0|, by which the disk grew.
+    Increase,
+    /// One length: h_∥ as it is.
+    Length,
+}
+
+/// The y that ends the disordered region.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum IsostaticRule {
+    /// This value \[1\].
+    Threshold(f64),
+    /// A share of the plateau, which is the median of y over the rings between two radii.
+    Plateau {
+        /// The smaller radius over R \[1\].
+        from: f64,
+        /// The larger radius over R \[1\].
+        to: f64,
+        /// Share of the median \[1\].
+        share: f64,
+    },
+}
+
+/// How ℓ_iso is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct IsostaticSettings {
+    /// Which contacts are bonds.
+    pub bonds: BondSet,
+    /// Which number of a bond.
+    pub measure: BondMeasure,
+    /// Width of a ring \[length\].
+    pub ring_width: f64,
+    /// Radius from which on rings count \[length\]: nearer are the contacts of the inflated disk, which it pushes itself.
+    pub from: f64,
+    /// h_0.
+    pub normalisation: Normalisation,
+    /// The threshold.
+    pub rule: IsostaticRule,
+}
+
+impl Default for IsostaticSettings {
+    /// Source: the study for the threshold, 1.3. It does not say what h_∥ is divided by; of the three only `NearCentre`
+    /// brings y near the threshold (the chapter has the numbers), so that is our reading.
+    fn default() -> Self {
+        IsostaticSettings {
+            bonds: BondSet::default(),
+            measure: BondMeasure::default(),
+            ring_width: 1.0,
+            from: 1.0,
+            normalisation: Normalisation::NearCentre { radius: 1.5 },
+            rule: IsostaticRule::Threshold(1.3),
+        }
+    }
+}
+
+/// Why ℓ_iso could not be looked for.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum IsostaticError {
+    /// The disks themselves are at fault.
+    #[error(transparent)]
+    Packing(#[from] PackingError),
+    /// A ring has a width.
+    #[error("ring_width is {ring_width}, not a positive number")]
+    RingWidthNotPositive {
+        /// The value given \[length\].
+        ring_width: f64,
+    },
+    /// Rings begin at the centre or beyond.
+    #[error("from is {from}, not a number from 0 on")]
+    FromNegative {
+        /// The value given \[length\].
+        from: f64,
+    },
+    /// The radius of the normalisation is one.
+    #[error("the radius of the normalisation is {radius}, not a positive number")]
+    RadiusNotPositive {
+        /// The value given \[length\].
+        radius: f64,
+    },
+    /// A threshold, or share of the plateau, is positive.
+    #[error("the threshold or share is {value}, not a positive number")]
+    ThresholdNotPositive {
+        /// The value given \[1\].
+        value: f64,
+    },
+    /// The plateau lies within the circle.
+    #[error("the plateau goes from {from} to {to} of the outer radius: not 0 ≤ from < to ≤ 1")]
+    PlateauOutOfRange {
+        /// The smaller radius given \[1\].
+        from: f64,
+        /// The larger radius given \[1\].
+        to: f64,
+    },
+}
+
+impl Normalisation {
+    /// h_0 for at least one ring.
+    pub(super) fn unit(&self, rings: &[FluctuationRing], increase: f64) -> f64 {
+        match *self {
+            Normalisation::NearCentre { radius } => {
+                let away = |ring: &&FluctuationRing| (ring.radius - radius).abs();
+                rings.iter().min_by(|a, b| away(a).total_cmp(&away(b))).map_or(f64::NAN, |ring| ring.fluctuation)
+            }
+            Normalisation::Increase => increase.abs(),
+            Normalisation::Length => 1.0,
+        }
+    }
+}
+
+impl IsostaticRule {
+    pub(super) fn threshold(&self, curve: &[IsostaticPoint], outer_radius: f64) -> Option<f64> {
+        match *self {
+            IsostaticRule::Threshold(value) => Some(value),
+            IsostaticRule::Plateau { from, to, share } => {
+                let there = |point: &&IsostaticPoint| (from..=to).contains(&(point.radius / outer_radius));
+                let mut values: Vec<f64> = curve.iter().filter(there).map(|point| point.scaled_fluctuation).collect();
+                values.sort_by(f64::total_cmp);
+                let middle = values.len() / 2;
+                let upper = *values.get(middle)?;
+                Some(share * if values.len().is_multiple_of(2) { 0.5 * (values[middle - 1] + upper) } else { upper })
+            }
+        }
+    }
+}
+
+impl IsostaticSettings {
+    pub(super) fn check(&self) -> Result<(), IsostaticError> {
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        if !positive(self.ring_width) {
+            return Err(IsostaticError::RingWidthNotPositive { ring_width: self.ring_width });
+        }
+        if !(self.from >= 0.0 && self.from.is_finite()) {
+            return Err(IsostaticError::FromNegative { from: self.from });
+        }
+        match self.normalisation {
+            Normalisation::NearCentre { radius } if !positive(radius) => {
+                return Err(IsostaticError::RadiusNotPositive { radius });
+            }
+            _ => {}
+        }
+        match self.rule {
+            IsostaticRule::Threshold(value) | IsostaticRule::Plateau { share: value, .. } if !positive(value) => {
+                Err(IsostaticError::ThresholdNotPositive { value })
+            }
+            IsostaticRule::Plateau { from, to, .. } if !(0.0 <= from && from < to && to <= 1.0) => {
+                Err(IsostaticError::PlateauOutOfRange { from, to })
+            }
+            _ => Ok(()),
+        }
+    }
+}

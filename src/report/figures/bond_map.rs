@@ -1,0 +1,100 @@
+//! [`bond_map`]: every bond where it was, coloured by r·d_∥.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use crate::observe::BondChanges;
+use crate::report::figures::map::{MapFrame, Range, colour_bar, level, map_label};
+use crate::report::figures::palette::{hexadecimal, red_over_blue};
+use crate::report::figures::{Figure, escaped};
+use crate::report::number::significant;
+use crate::vector::{difference, scaled, sum};
+
+/// Colours on either side of zero.
+const LEVELS: i32 = 16;
+
+/// Width of a bond \[length\]: thinner than the distance of two bonds, so that both are seen.
+const WIDTH: f64 = 0.3;
+
+/// Height of a strip \[tenths of a pixel\].
+const STRIP: i64 = 60;
+
+/// Least width of a bond \[tenths of a pixel\].
+const LEAST_WIDTH: i64 = 4;
+
+/// r·d_∥ as SVG text, the index lowered.
+const STRETCH: &str = "r·d<tspan dy=\"3\" font-size=\"10\">∥</tspan><tspan dy=\"-3\">\u{200B}</tspan>";
+
+/// The bonds of a sample between the centres of their disks before the inflation: red compressed, blue stretched, white
+/// unchanged (not drawn), on a scale symmetric about zero that spans 98 % of them. A circle stands at `isostatic_length`, if
+/// given \[length\].
+///
+/// Bonds of one colour are one path of relative strokes, the strongest last so that weak ones do not hide them.
+pub fn bond_map(name: &str, changes: &BondChanges<2>, frame: &MapFrame, isostatic_length: Option<f64>) -> Figure {
+    let rescaled = |bond: &crate::observe::bond_changes::BondChange<2>| bond.distance * bond.parallel;
+    let range = Range::of(changes.bonds.iter().map(rescaled));
+    // Size, then sign: few groups, in an order that does not depend on the bonds.
+    let mut groups: BTreeMap<(i32, bool), Vec<[[i64; 2]; 2]>> = BTreeMap::new();
+    for bond in &changes.bonds {
+        let level = level(rescaled(bond), range.shown, LEVELS);
+        // White on white.
+        if level == 0 {
+            continue;
+        }
+        let half = scaled(0.5, bond.separation);
+        let ends = [difference(bond.midpoint, half), sum(bond.midpoint, half)].map(|end| frame.place(end));
+        groups.entry((level.abs(), level > 0)).or_default().push(ends);
+    }
+    let width = frame.tenths(WIDTH).max(LEAST_WIDTH);
+    let mut strokes = String::new();
+    for ((size, stretched), bonds) in groups {
+        let path = path(bonds);
+        let value = f64::from(if stretched { size } else { -size }) / f64::from(LEVELS);
+        let _ = writeln!(
+            strokes,
+            "<path stroke=\"{}\" stroke-width=\"{width}\" d=\"{path}\"/>",
+            hexadecimal(red_over_blue(value))
+        );
+    }
+    let circle = isostatic_length.map(|length| frame.circle(length, " stroke-width=\"1.6\" stroke-dasharray=\"6 4\""));
+    let elements = [
+        frame.group(&strokes),
+        frame.boundary(),
+        circle.unwrap_or_default(),
+        frame.scale_bar(),
+        colour_bar(red_over_blue, LEVELS),
+        map_label(&format!(
+            "{STRETCH} / ({} length²),  largest |{STRETCH}| = {}",
+            escaped(&significant(range.shown, 3)),
+            escaped(&significant(range.largest, 3))
+        )),
+    ];
+    Figure {
+        title: format!("{name}: map of r·d_∥"),
+        description: format!(
+            "Each of {} bonds coloured by its rescaled stretching, blue stretched, red compressed, full at {} length² (98 % of the \
+             bonds are below it, the largest has {}){}",
+            changes.bonds.len(),
+            significant(range.shown, 3),
+            significant(range.largest, 3),
+            isostatic_length.map_or(String::new(), |length| format!(
+                "; the dashed circle has the isostatic length {}",
+                significant(length, 3)
+            ))
+        ),
+        elements: elements.concat(),
+    }
+}
+
+/// Strokes from end to end, each seen from where the last one ended, in strips across the map: half the letters of absolute
+/// places in any order.
+fn path(mut bonds: Vec<[[i64; 2]; 2]>) -> String {
+    bonds.sort_unstable_by_key(|&[[x, y], end]| (y.div_euclid(STRIP), x, y, end));
+    let mut path = String::new();
+    let [mut last_x, mut last_y] = [0, 0];
+    for [[x, y], [end_x, end_y]] in bonds {
+        let _ = write!(path, "m{} {}l{} {}", x - last_x, y - last_y, end_x - x, end_y - y);
+        [last_x, last_y] = [end_x, end_y];
+    }
+    path
+}

@@ -1,0 +1,126 @@
+use jamscope::contact::Hertzian;
+use jamscope::inflation::{Inflation, inflate};
+use jamscope::io::read_packing;
+use jamscope::observe::bond_changes::BondSet;
+use jamscope::observe::fluctuations::{FluctuationRing, Fluctuations};
+use jamscope::observe::isostatic::{
+    IsostaticError, IsostaticLength, IsostaticOutcome, IsostaticRule, IsostaticSettings, Normalisation,
+};
+use jamscope::relax::Fire;
+
+/// Rings at 0.5, 1.5, … 39.5 with h by a function of r.
+fn rings(fluctuation: impl Fn(f64) -> f64) -> Fluctuations {
+    let ring = |k: u32| {
+        let radius = f64::from(k) + 0.5;
+        let fluctuation = fluctuation(radius);
+        FluctuationRing { radius, count: 100, mean: 0.0, fluctuation, standard_error: 0.1 * fluctuation }
+    };
+    Fluctuations { rings: (0..40).map(ring).collect() }
+}
+
+const EXCESS: f64 = 0.5;
+
+/// h r constant from `from` on and h constant before: y = 2 x up to a plateau of 2 · 0.5 · 12 = 12.
+fn plateau(radius: f64) -> f64 {
+    if radius < 12.0 { 2.0 } else { 24.0 / radius }
+}
+
+fn found(fluctuations: &Fluctuations, settings: &IsostaticSettings) -> IsostaticLength {
+    IsostaticLength::of(fluctuations, Some(EXCESS), 0.1, 40.0, settings).expect("sound settings")
+}
+
+#[test]
+fn a_crossing_between_two_rings_is_where_it_was_put() {
+    let rings = rings(plateau);
+    for (normalisation, unit) in
+        [(Normalisation::Length, 1.0), (Normalisation::Increase, 0.1), (Normalisation::NearCentre { radius: 3.3 }, 2.0)]
+    {
+        // y = (2/unit) 0.5 r on a straight line up to r = 12: the threshold at r = 7.3.
+        let threshold = 2.0 / unit * EXCESS * 7.3;
+        let settings = IsostaticSettings {
+            normalisation,
+            rule: IsostaticRule::Threshold(threshold),
+            ..IsostaticSettings::default()
+        };
+        let found = found(&rings, &settings);
+        assert_eq!((found.excess, found.unit, found.threshold), (Some(EXCESS), Some(unit), Some(threshold)));
+        let IsostaticOutcome::Reached { length, product, between } = found.outcome else { panic!("{found:?}") };
+        assert!((length - 7.3).abs() < 1e-14 && (product - 3.65).abs() < 1e-14);
+        assert_eq!(between, [6.5, 7.5]);
+        // Rings from r = 1.5 on: the innermost holds the contacts of the inflated disk.
+        assert_eq!(found.curve[0].radius, 1.5);
+        let point = found.curve[19];
+        assert_eq!((point.radius, point.scaled_radius), (20.5, 20.5 * EXCESS));
+        assert!((point.scaled_fluctuation - 12.0 / unit).abs() < 1e-12);
+        assert!((point.standard_error / point.scaled_fluctuation - 0.1).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn the_plateau_sets_the_threshold_itself() {
+    // Bent down near the rim, as a held rim does; the plateau between 0.4 and 0.7 R is 12, whatever the rest does.
+    let rings = rings(|r| plateau(r) * if r > 30.0 { 0.2 } else { 1.0 });
+    let rule = IsostaticRule::Plateau { from: 0.4, to: 0.7, share: 0.5 };
+    let settings = IsostaticSettings { normalisation: Normalisation::Length, rule, ..IsostaticSettings::default() };
+    let result = found(&rings, &settings);
+    assert!((result.threshold.expect("a plateau") - 6.0).abs() < 1e-14);
+    // y = r/2 · 2 = 6 at r = 6.
+    let IsostaticOutcome::Reached { length, .. } = result.outcome else { panic!("{result:?}") };
+    assert!((length - 6.0).abs() < 1e-14);
+    let nowhere = IsostaticRule::Plateau { from: 0.9995, to: 1.0, share: 0.5 };
+    assert_eq!(found(&rings, &IsostaticSettings { rule: nowhere, ..settings }).outcome, IsostaticOutcome::NoPlateau);
+}
+
+#[test]
+fn what_has_no_length_says_why() {
+    let settings = IsostaticSettings { normalisation: Normalisation::Length, ..IsostaticSettings::default() };
+    let with = |excess: Option<f64>, fluctuations: &Fluctuations| {
+        IsostaticLength::of(fluctuations, excess, 0.1, 40.0, &settings).expect("sound settings").outcome
+    };
+    assert_eq!(with(None, &rings(plateau)), IsostaticOutcome::NoBackbone);
+    assert_eq!(with(Some(-0.01), &rings(plateau)), IsostaticOutcome::NoExcess { excess: -0.01 });
+    assert_eq!(with(Some(0.5), &Fluctuations { rings: Vec::new() }), IsostaticOutcome::TooFewRings);
+    assert_eq!(with(Some(0.5), &rings(|_| 10.0)), IsostaticOutcome::AboveFromTheStart { innermost: 1.5 });
+    assert_eq!(with(Some(0.5), &rings(|r| 1.0 / r)), IsostaticOutcome::NeverReached { largest: 0.5 });
+    assert_eq!(with(Some(0.5), &rings(|_| f64::NAN)), IsostaticOutcome::NoScale);
+    let near = IsostaticSettings::default();
+    assert_eq!(found(&rings(|_| 0.0), &near).outcome, IsostaticOutcome::NoScale);
+
+    let refused = |settings: IsostaticSettings| {
+        IsostaticLength::of(&rings(plateau), Some(0.5), 0.1, 40.0, &settings).expect_err("no sense")
+    };
+    assert_eq!(
+        refused(IsostaticSettings { ring_width: 0.0, ..near }),
+        IsostaticError::RingWidthNotPositive { ring_width: 0.0 }
+    );
+    assert_eq!(refused(IsostaticSettings { from: -1.0, ..near }), IsostaticError::FromNegative { from: -1.0 });
+    assert_eq!(
+        refused(IsostaticSettings { normalisation: Normalisation::NearCentre { radius: -1.0 }, ..near }),
+        IsostaticError::RadiusNotPositive { radius: -1.0 }
+    );
+    assert_eq!(
+        refused(IsostaticSettings { rule: IsostaticRule::Threshold(0.0), ..near }),
+        IsostaticError::ThresholdNotPositive { value: 0.0 }
+    );
+    assert_eq!(
+        refused(IsostaticSettings { rule: IsostaticRule::Plateau { from: 0.7, to: 0.4, share: 1.0 }, ..near }),
+        IsostaticError::PlateauOutOfRange { from: 0.7, to: 0.4 }
+    );
+    let written = serde_json::to_string(&near).expect("plain data");
+    assert_eq!(serde_json::from_str::<IsostaticSettings>(&written).expect("the same"), near);
+    assert!(serde_json::from_str::<IsostaticSettings>(r#"{"width": 1.0}"#).is_err());
+}
+
+#[test]
+fn an_inflation_has_the_curve_of_its_bonds() {
+    let packing = read_packing::<2>("fixtures/packings/hertz_N1000_p800.xyz").expect("a fixture");
+    let law = Hertzian::default();
+    let inflated = inflate(&Inflation::default(), &packing, &law, &Fire::default(), 1, &mut ()).expect("an inflation");
+    let settings = IsostaticSettings { bonds: BondSet::Before, ..IsostaticSettings::default() };
+    let length = IsostaticLength::of_inflation(&inflated, &law, &settings).expect("sound settings");
+    // ΔZ of the circle is near that of the box, 0.893; contacts with the rim have one end in it.
+    assert!((length.excess.expect("jammed") - 0.893).abs() < 0.05);
+    let last = length.curve.last().expect("rings");
+    assert!(last.radius < inflated.outer_radius && last.radius > inflated.outer_radius - 1.0);
+    assert!(length.curve.iter().all(|point| point.scaled_fluctuation > 0.0 && point.standard_error > 0.0));
+}
