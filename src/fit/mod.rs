@@ -2,6 +2,7 @@
 //!
 //! Start from [`profile::fit_radial_profile`]: one radial profile against the elastic and the screened solution.
 
+pub mod angular;
 pub mod profile;
 mod rings;
 mod screening;

@@ -37,7 +37,7 @@ pub use ring::{RingSample, RingSettings, Weights};
 pub use statistics::{
     CorrelationStatistics, CrossingStatistics, Mean, SpectrumStatistics, correlation_statistics, spectrum_statistics,
 };
-pub use window::SpectralWindow;
+pub use window::{Source, SpectralWindow};
 
 /// Disks a ring needs: with fewer there is no angle to speak of.
 pub const LEAST_DISK_COUNT: usize = 4;

@@ -221,6 +221,14 @@ impl PowerSpectrum {
         (first > 0.0).then(|| self.power.iter().map(|power| power / first).collect())
     }
 
+    /// (P_f + 2ρ/n)/(P_1 + 2ρ/n): the unresolved variance as the floor it is to n even angles; flat for values without
+    /// correlation. None where the divisor is not positive.
+    pub fn normalised_with_floor(&self) -> Option<Vec<f64>> {
+        let floor = 2.0 * self.unresolved / self.disk_count as f64;
+        let first = self.power[1] + floor;
+        (first > 0.0).then(|| self.power.iter().map(|power| (power + floor) / first).collect())
+    }
+
     /// Highest f.
     pub fn frequency_limit(&self) -> usize {
         self.power.len() - 1

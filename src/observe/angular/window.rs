@@ -34,6 +34,15 @@ pub struct SpectralWindow {
     white: Vec<f64>,
 }
 
+/// A frequency, or one that stands for several beside it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Source {
+    /// g, or the middle of a band \[1\].
+    pub frequency: f64,
+    /// How many it stands for.
+    pub count: f64,
+}
+
 /// Frequencies taken together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Band {
@@ -110,18 +119,40 @@ impl SpectralWindow {
     ///
     /// Sources beyond those of the window count as values of single disks, which they are to disks at irregular angles.
     pub fn expected(&self, spectrum: impl Fn(f64) -> f64, highest: usize) -> Vec<f64> {
-        let power: Vec<f64> = self.bands.iter().map(|band| spectrum(band.middle())).collect();
+        let sources = self.sources(highest);
+        self.expected_from(&sources, &sources.iter().map(|source| spectrum(source.frequency)).collect::<Vec<_>>())
+    }
+
+    /// The frequencies at which a spectrum that goes on to `highest` must be known.
+    pub fn sources(&self, highest: usize) -> Vec<Source> {
         let last = self.bands.last().map_or(0, |band| band.last);
-        let beyond: f64 =
-            Band::all(last + 1, 0, highest).iter().map(|band| band.count() * spectrum(band.middle())).sum();
-        let rows = self.coupling.chunks_exact(self.bands.len());
-        rows.zip(&self.white)
-            .map(|(row, white)| row.iter().zip(&power).map(|(k, s)| k * s).sum::<f64>() + beyond * white)
-            .collect()
+        let beyond = Band::all(last + 1, 0, highest);
+        let source = |band: &Band| Source { frequency: band.middle(), count: band.count() };
+        self.bands.iter().chain(&beyond).map(source).collect()
+    }
+
+    /// Σ_g K_fg S_g of a spectrum known at [`sources`](Self::sources).
+    ///
+    /// # Panics
+    /// If there are fewer sources than the window has.
+    pub fn expected_from(&self, sources: &[Source], power: &[f64]) -> Vec<f64> {
+        let own = self.bands.len();
+        let beyond: f64 = sources[own..].iter().zip(&power[own..]).map(|(source, power)| source.count * power).sum();
+        let rows = self.coupling.chunks_exact(own);
+        rows.zip(&self.white).map(|(row, white)| product(row, &power[..own]) + beyond * white).collect()
     }
 
     /// K_fg of frequencies that are no band: f and g from 1 to the limit.
     pub(super) fn coupling(&self, f: usize, g: usize) -> f64 {
         self.coupling[(f - 1) * self.bands.len() + g - 1]
     }
+}
+
+/// Σ a_i b_i in eight sums side by side.
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    for (a, b) in a.chunks(8).zip(b.chunks(8)) {
+        sums.iter_mut().zip(a).zip(b).for_each(|((sum, a), b)| *sum += a * b);
+    }
+    sums.iter().sum()
 }
