@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Estimators of both, by name; the highest frequency of S is n/4, that of G stands beside.
+/// Estimators of both, by name, with the highest frequency a disk.
 fn estimators() -> Vec<(&'static str, Option<SpectrumEstimator>, f64)> {
     let direct = |weights, leakage| Some(SpectrumEstimator::Direct { weights, leakage });
     vec![
@@ -88,13 +88,13 @@ fn compare(
     let rings = gaussian_rings(&settings, ring_count, spectrum)?;
     let truths: Vec<Truth> = rings.iter().map(|ring| Truth::of(ring, noise)).collect();
     let n = disk_count;
-    let bands = [(1, 4), (n / 32 + 1, n / 16 + 1), (n / 8, n / 4)];
+    let bands = [(1, 4), (n / 32 + 1, n / 16 + 1), (n / 16 + 1, n / 8 + 1)];
     println!("\n{n} disks, noise {noise_share}, {ring_count} rings; bands {bands:?}: bias/rms of S; rms of G, θ*; µs");
     for (index, (name, estimator, share)) in estimators().into_iter().enumerate() {
         let mut line = format!("{name:<30}");
         let mut spectrum_time = f64::INFINITY;
         if let Some(estimator) = estimator {
-            let settings = SpectrumSettings { estimator, frequency_limit: FrequencyLimit::Fixed(n / 4) };
+            let settings = SpectrumSettings { estimator, frequency_limit: FrequencyLimit::PerDisk(share) };
             let mut spectra = Vec::new();
             for ring in &rings {
                 let start = Instant::now();
@@ -135,7 +135,9 @@ fn compare(
         }
         let error = rms(&errors);
         line += &format!(" {error:>8.4} {:>8.4} ({missed})", rms(&angle_errors));
-        println!("{line} {:>9.0} {:>9.0}", spectrum_time * 1e6, seconds * 1e6);
+        let spectrum_time =
+            if spectrum_time.is_finite() { format!("{:.0}", spectrum_time * 1e6) } else { "–".into() };
+        println!("{line} {spectrum_time:>9} {:>9.0}", seconds * 1e6);
         marks.push(Mark { disk_count, noise: noise_share > 0.0, estimator: index, seconds, error });
     }
     Ok(())
@@ -216,7 +218,12 @@ fn plot(path: &str, marks: &[Mark]) -> Result<(), Box<dyn Error>> {
             .label(name)
             .legend(move |(x, y)| Circle::new((x + 8, y), 4, colour.filled()));
     }
-    chart.configure_series_labels().background_style(WHITE.mix(0.8)).border_style(BLACK).draw()?;
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::LowerLeft)
+        .background_style(WHITE.mix(0.8))
+        .border_style(BLACK)
+        .draw()?;
     area.present()?;
     Ok(())
 }

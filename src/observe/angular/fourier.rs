@@ -19,23 +19,25 @@ const LANES: usize = 8;
 /// Grid points to either side that a disk is spread over: leaves out e^(−3π·15/4) = 5·10⁻¹⁶, times e^(15π/12) = 50.
 const SPREAD: usize = 15;
 
-/// Disks × frequencies from which the fast route is the shorter (`cargo bench --bench angular`).
-const FAST_FROM: usize = 40_000;
+/// Frequencies and disks from which the fast route is the shorter: a disk costs it 36 rotations, whatever the frequencies
+/// (`cargo bench --bench angular`).
+const FAST_FROM_FREQUENCY: usize = 40;
+const FAST_FROM_DISKS: usize = 100;
 
 /// A way to the sums.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Route {
     /// Term by term: n·f_max rotations.
     Direct,
-    /// Spread on a grid of at least 4 f_max points and transformed.
+    /// Spread on a grid of at least 4 f_max points and transformed: 11 times faster at 4000 disks and f_max = 500
+    /// (`cargo bench --bench angular`, 3.4 and 0.30 ms on two shared cores).
     Fast,
 }
 
 impl Route {
     /// The shorter one, by size alone.
     pub fn shorter(disk_count: usize, frequency_limit: usize) -> Self {
-        // A few disks alone do not pay for a grid.
-        if disk_count.saturating_mul(frequency_limit) >= FAST_FROM && disk_count >= 64 {
+        if frequency_limit >= FAST_FROM_FREQUENCY && disk_count >= FAST_FROM_DISKS {
             Route::Fast
         } else {
             Route::Direct

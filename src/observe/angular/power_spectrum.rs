@@ -41,7 +41,8 @@ pub enum SpectrumEstimator {
 }
 
 impl Default for SpectrumEstimator {
-    /// Gaps as weights, leakage removed: the least biased at every frequency (`examples/angular_estimators.rs`).
+    /// Gaps as weights, leakage removed: least biased where disks have values of their own, and with the nearest G
+    /// (`examples/angular_estimators.rs`).
     fn default() -> Self {
         SpectrumEstimator::Direct { weights: Weights::Gaps, leakage: Leakage::Removed }
     }
@@ -53,7 +54,8 @@ impl Default for SpectrumEstimator {
 pub enum Leakage {
     /// It stays in: powers are never negative.
     Kept,
-    /// The expected power is solved for the spectrum and the variance above it: unbiased, single powers may be negative.
+    /// The expected power is solved for the spectrum and the variance above it: unbiased where that is white, single powers may be
+    /// negative.
     Removed,
 }
 
