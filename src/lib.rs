@@ -67,9 +67,9 @@
 //! | [`lattice`] | lattices whose continuum answer is known | [`Lattice`](lattice::Lattice) |
 //! | [`displacement`] | how far every disk moved | [`DisplacementField`](displacement::DisplacementField) |
 //! | `plastic` (feature `linear`) | what of a response is not in the linear one, and from where on | `plastic::PlasticPart` |
-//! | [`observe`] | radial and angular profile, angular modes, contact forces and changes, penetration and isostatic length | [`RadialProfile`](observe::RadialProfile) |
+//! | [`observe`] | radial and angular profile, angular modes, spectrum and correlation, contact forces and changes, penetration and isostatic length | [`RadialProfile`](observe::RadialProfile), [`AngularCorrelation`](observe::angular::AngularCorrelation) |
 //! | [`reference`](mod@reference) | exact solutions, elastic and screened | [`Annulus`](reference::Annulus) |
-//! | `fit` (feature `fit`) | a profile against both solutions, with errors and a decision | `fit::profile::fit_radial_profile` |
+//! | `fit` (feature `fit`) | a profile against both solutions, with errors and a decision; slope and crossover of an angular spectrum | `fit::profile::fit_radial_profile`, `fit::angular::fit_slope` |
 //! | `protocol` (feature `linear`) | whether relaxers end in the same minimum | `protocol::ProtocolSensitivity` |
 //! | [`scene`] | everything a run needs, as plain data | [`Scene`](scene::Scene) |
 //! | [`run`] | scene to report, one line a stage | [`run::run`] |
@@ -83,7 +83,7 @@
 //!
 //! | feature | adds | with |
 //! |---|---|---|
-//! | `fit` | fits of a measured profile | argmin, statrs |
+//! | `fit` | fits of a measured profile, of a measured spectrum | argmin, statrs |
 //! | `linear` | Hessian, factorisations, Newton, linear response, plastic part, moduli, modes, protocol sensitivity | faer |
 //! | `parallel` | the samples of a scene side by side; never changes a bit of a result | rayon |
 //! | `plot` | figures and the HTML page of a report | plotters |
@@ -198,6 +198,11 @@ mod book {
     mod observe_isostatic_length {}
     #[doc = include_str!("../book/src/observe/contact_changes.md")]
     mod observe_contact_changes {}
+    #[cfg(feature = "fit")]
+    #[doc = include_str!("../book/src/observe/power_spectrum.md")]
+    mod observe_power_spectrum {}
+    #[doc = include_str!("../book/src/observe/angular_correlation.md")]
+    mod observe_angular_correlation {}
     #[doc = include_str!("../book/src/reference.md")]
     mod reference {}
     #[doc = include_str!("../book/src/reference/angular_modes.md")]

@@ -1,7 +1,9 @@
 //! Fits of what was measured to what is exactly known, with errors, evidence, and a refusal where neither holds.
 //!
-//! Start from [`profile::fit_radial_profile`]: one radial profile against the elastic and the screened solution.
+//! Start from [`profile::fit_radial_profile`]: one radial profile against the elastic and the screened solution; or from
+//! [`angular::fit_slope`] and [`angular::fit_crossover`]: angular power spectra.
 
+pub mod angular;
 pub mod profile;
 mod rings;
 mod screening;

@@ -23,7 +23,12 @@ pub struct AngularProfile {
 impl AngularProfile {
     /// The ring of a field around r̂, on the disks that count.
     pub fn of(field: &DisplacementField<2>, relative_radius: f64) -> Self {
-        let near = |distance: f64| (distance / field.outer_radius - relative_radius).abs() <= RING_HALF_WIDTH;
+        Self::within(field, relative_radius, RING_HALF_WIDTH)
+    }
+
+    /// The ring r̂ ± `half_width`.
+    pub fn within(field: &DisplacementField<2>, relative_radius: f64, half_width: f64) -> Self {
+        let near = |distance: f64| (distance / field.outer_radius - relative_radius).abs() <= half_width;
         let mut disks: Vec<(f64, f64, f64)> = field
             .counted()
             .filter(|disk| near(disk.distance))

@@ -1,5 +1,6 @@
 //! One observable a file, all measured on the backbone.
 
+pub mod angular;
 pub mod angular_profile;
 pub mod bond_changes;
 pub mod contact_changes;

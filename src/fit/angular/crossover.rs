@@ -1,0 +1,232 @@
+//! [`fit_crossover`]: f† of the generalised Lorentzian, or that there is none.
+
+use serde::{Deserialize, Serialize};
+
+use crate::fit::angular::likelihood::Powers;
+use crate::fit::angular::search::{golden, minimum};
+use crate::fit::angular::{Interval, SpectrumFitError, SpectrumWindowSettings};
+use crate::observe::angular::RingSample;
+
+/// f† searched: from 1/16 to 16 times the highest f, in steps of 2^(1/4).
+const OCTAVES_BEYOND: f64 = 4.0;
+const STEPS_PER_OCTAVE: f64 = 4.0;
+
+/// Exponents a free one is looked for in.
+const EXPONENTS: [f64; 2] = [0.5, 6.0];
+
+/// How a crossover is fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CrossoverSettings {
+    /// Which powers.
+    pub window: SpectrumWindowSettings,
+    /// s.
+    pub exponent: ExponentChoice,
+    /// k of θ† = k/f† \[rad\].
+    pub angle_factor: f64,
+}
+
+impl Default for CrossoverSettings {
+    /// s = 1.5; k = 1.681334, which makes θ† the angle of G = 0.1 at large f† (the study has 0.45, which is another
+    /// threshold's).
+    fn default() -> Self {
+        CrossoverSettings {
+            window: SpectrumWindowSettings::default(),
+            exponent: ExponentChoice::Fixed(1.5),
+            angle_factor: 1.681_333_697_987_038,
+        }
+    }
+}
+
+/// The exponent of the Lorentzian.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ExponentChoice {
+    /// This one \[1\].
+    Fixed(f64),
+    /// The best from 0.5 to 6.
+    Free,
+}
+
+/// A Lorentzian fitted to the spectra of rings.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CrossoverFit {
+    /// What the spectrum is found to be.
+    pub outcome: CrossoverOutcome,
+    /// s, as fixed or as found \[1\].
+    pub exponent: f64,
+    /// Lowest and highest f fitted.
+    pub window: [usize; 2],
+    /// Number of powers fitted.
+    pub power_count: usize,
+    /// How much −2 ln L of f^(−s), f† = 0, is above the best: beyond [`rise`](Self::rise) it is refused.
+    pub scale_free_rise: f64,
+    /// How much −2 ln L of a flat spectrum is above the best.
+    pub white_rise: f64,
+    /// The rise of −2 ln L within the interval.
+    pub rise: f64,
+    /// ρ of the first ring over its variance \[1\]; 0 if it was not fitted.
+    pub noise: f64,
+    /// Σ (P/E − 1)² per degree of freedom: 1 if the model is what there is, more if not \[1\].
+    pub dispersion: f64,
+}
+
+/// What a spectrum says of f†.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CrossoverOutcome {
+    /// There is a crossover.
+    Found {
+        /// f† \[1\].
+        crossover: Interval,
+        /// θ† = k/f† \[rad\].
+        angle: Interval,
+    },
+    /// A power law fits as well: f† may be 0 and θ† without bound.
+    ScaleFree {
+        /// Upper end of the interval of f† \[1\].
+        largest: f64,
+        /// k over it \[rad\].
+        smallest_angle: f64,
+    },
+    /// A flat spectrum fits as well: f† may be any number beyond.
+    White {
+        /// Lower end of the interval of f† \[1\].
+        smallest: f64,
+        /// k over it \[rad\].
+        largest_angle: f64,
+    },
+    /// Both fit as well.
+    Undetermined,
+}
+
+impl CrossoverOutcome {
+    /// Whether a crossover is within what was found; 0 is scale-free, infinity white.
+    pub fn holds(&self, crossover: f64) -> bool {
+        match self {
+            CrossoverOutcome::Found { crossover: found, .. } => found.holds(crossover),
+            CrossoverOutcome::ScaleFree { largest, .. } => crossover <= *largest,
+            CrossoverOutcome::White { smallest, .. } => crossover >= *smallest,
+            CrossoverOutcome::Undetermined => true,
+        }
+    }
+}
+
+/// Fits S = A/(1 + (f/f†)^s) to the rings, f† one for all, and s if it is free.
+///
+/// # Errors
+/// As [`fit_slope`](crate::fit::angular::fit_slope); a fixed exponent or k that is not positive and finite.
+///
+/// # Example
+/// ```
+/// use jamscope::fit::angular::{CrossoverOutcome, CrossoverSettings, fit_crossover};
+/// use jamscope::observe::angular::synthetic::{SyntheticSettings, gaussian_rings};
+/// let settings = SyntheticSettings { disk_count: 4000, ..SyntheticSettings::default() };
+/// let ring = gaussian_rings(&settings, 1, |f| 1.0 / (1.0 + (f / 20.0).powf(1.5)))?.remove(0).ring;
+/// let fit = fit_crossover(&[ring], &CrossoverSettings::default())?;
+/// let CrossoverOutcome::Found { crossover, angle } = fit.outcome else { panic!("{fit:?}") };
+/// assert!(crossover.holds(20.0) && angle.holds(1.681333697987038 / 20.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn fit_crossover(rings: &[RingSample], settings: &CrossoverSettings) -> Result<CrossoverFit, SpectrumFitError> {
+    let factor = settings.angle_factor;
+    if !(factor > 0.0 && factor.is_finite()) {
+        return Err(SpectrumFitError::SettingOutOfRange { setting: "angle_factor", value: factor });
+    }
+    if let ExponentChoice::Fixed(value) = settings.exponent
+        && !(value > 0.0 && value <= 100.0)
+    {
+        return Err(SpectrumFitError::SettingOutOfRange { setting: "exponent", value });
+    }
+    let powers = Powers::of(rings, &settings.window)?;
+    let [_, highest] = powers.window();
+    let deviance = |shape: Shape| powers.best(|logarithm| shape.at(logarithm)).deviance;
+    // The best exponent beside a crossover, and −2 ln L there.
+    let profile = |crossover: Crossover| match settings.exponent {
+        ExponentChoice::Fixed(exponent) => (exponent, deviance(Shape { crossover, exponent })),
+        ExponentChoice::Free => {
+            let at = |exponent: f64| deviance(Shape { crossover, exponent });
+            let best = golden(EXPONENTS[0], EXPONENTS[1], 1e-5, at);
+            (best, at(best))
+        }
+    };
+    let octaves = (highest as f64).log2() + 2.0 * OCTAVES_BEYOND;
+    let steps = (octaves * STEPS_PER_OCTAVE).ceil() as usize;
+    let grid: Vec<f64> = (0..=steps).map(|i| i as f64 / STEPS_PER_OCTAVE - OCTAVES_BEYOND).collect();
+    let rise = powers.rise();
+    let inside = minimum(&grid, rise, |octave| profile(Crossover::Octave(octave)).1);
+    let (scale_free, white) =
+        (profile(Crossover::Zero), deviance(Shape { crossover: Crossover::Infinite, exponent: 1.0 }));
+    let lowest = inside.value.min(scale_free.1).min(white);
+    let (scale_free_rise, white_rise) = (scale_free.1 - lowest, white - lowest);
+    // The interval anew, if one of the limits fits better than any crossover between.
+    let interval = if lowest < inside.value {
+        minimum(&grid, rise + lowest - inside.value, |octave| profile(Crossover::Octave(octave)).1)
+    } else {
+        inside
+    };
+    let ends = [interval.lower, interval.upper].map(|end| end.map(f64::exp2));
+    // A sixteenth of f = 1 is as good as 0, sixteen times the highest f as infinity.
+    let down_to_zero = scale_free_rise <= rise || ends[0].is_none();
+    let up_to_infinity = white_rise <= rise || ends[1].is_none();
+    let outcome = match (down_to_zero, up_to_infinity, ends) {
+        (true, false, [_, Some(largest)]) => CrossoverOutcome::ScaleFree { largest, smallest_angle: factor / largest },
+        (false, true, [Some(smallest), _]) => CrossoverOutcome::White { smallest, largest_angle: factor / smallest },
+        (false, false, [Some(lower), Some(upper)]) => {
+            let best = interval.at.exp2();
+            CrossoverOutcome::Found {
+                crossover: Interval { best, lower: Some(lower), upper: Some(upper) },
+                angle: Interval { best: factor / best, lower: Some(factor / upper), upper: Some(factor / lower) },
+            }
+        }
+        _ => CrossoverOutcome::Undetermined,
+    };
+    let crossover = match outcome {
+        CrossoverOutcome::ScaleFree { .. } if scale_free_rise == 0.0 => Crossover::Zero,
+        CrossoverOutcome::White { .. } if white_rise == 0.0 => Crossover::Infinite,
+        _ => Crossover::Octave(interval.at),
+    };
+    let (exponent, _) = profile(crossover);
+    let best = powers.best(|logarithm| Shape { crossover, exponent }.at(logarithm));
+    let parameter_count = if settings.exponent == ExponentChoice::Free { 2 } else { 1 };
+    Ok(CrossoverFit {
+        outcome,
+        exponent,
+        window: powers.window(),
+        power_count: powers.count(),
+        scale_free_rise,
+        white_rise,
+        rise,
+        noise: best.noise,
+        dispersion: powers.dispersion(best, parameter_count),
+    })
+}
+
+/// f†, limits included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Crossover {
+    Zero,
+    /// Of this logarithm to base 2.
+    Octave(f64),
+    Infinite,
+}
+
+/// A spectrum of any amplitude.
+#[derive(Debug, Clone, Copy)]
+struct Shape {
+    crossover: Crossover,
+    exponent: f64,
+}
+
+impl Shape {
+    /// S at a frequency whose logarithm this is.
+    fn at(self, logarithm: f64) -> f64 {
+        match self.crossover {
+            Crossover::Zero => libm::exp(-self.exponent * logarithm),
+            Crossover::Octave(octave) => {
+                1.0 / (1.0 + libm::exp(self.exponent * (logarithm - octave * std::f64::consts::LN_2)))
+            }
+            Crossover::Infinite => 1.0,
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Minimum and interval of a function of one variable that may have several minima.
+
+use argmin::core::{CostFunction, Error, Executor, State};
+use argmin::solver::brent::BrentOpt;
+use argmin::solver::goldensectionsearch::GoldenSectionSearch;
+
+/// Brent needs 10 to 30 steps.
+const STEP_LIMIT: u64 = 100;
+
+/// The end of an interval to this share of a grid step, or this rise of the function.
+const EDGE_TOLERANCE: f64 = 1e-7;
+
+/// False position needs 6 to 10 steps.
+const EDGE_STEPS: usize = 60;
+
+struct Cost<F>(F);
+
+impl<F: Fn(f64) -> f64> CostFunction for Cost<F> {
+    type Param = f64;
+    type Output = f64;
+
+    fn cost(&self, at: &f64) -> Result<f64, Error> {
+        Ok((self.0)(*at))
+    }
+}
+
+/// Where the function is least between two points, by golden sections.
+pub(super) fn golden(low: f64, high: f64, tolerance: f64, function: impl Fn(f64) -> f64) -> f64 {
+    let middle = 0.5 * (low + high);
+    let Ok(solver) = GoldenSectionSearch::new(low, high).and_then(|solver| solver.with_tolerance(tolerance)) else {
+        return middle;
+    };
+    Executor::new(Cost(function), solver)
+        .configure(|state| state.param(middle).max_iters(STEP_LIMIT))
+        .run()
+        .ok()
+        .and_then(|result| result.state().get_best_param().copied())
+        .unwrap_or(middle)
+}
+
+/// The least value on a grid, polished, and where the function has risen by `rise` to either side.
+pub(super) struct Minimum {
+    pub at: f64,
+    pub value: f64,
+    /// The lowest point of the function's rise below `rise` that joins on to the minimum; none at the end of the grid.
+    pub lower: Option<f64>,
+    /// The highest one.
+    pub upper: Option<f64>,
+}
+
+/// Minimum and interval on an ascending grid of at least three points.
+///
+/// The interval ends where the function is above for good: humps inside it are in it.
+pub(super) fn minimum(grid: &[f64], rise: f64, function: impl Fn(f64) -> f64) -> Minimum {
+    let values: Vec<f64> = grid.iter().map(|&at| function(at)).collect();
+    let lowest = (0..grid.len()).fold(0, |best, i| if values[i] < values[best] { i } else { best });
+    let (low, high) = (grid[lowest.saturating_sub(1)], grid[(lowest + 1).min(grid.len() - 1)]);
+    let polished = Executor::new(Cost(&function), BrentOpt::new(low, high).set_tolerance(1e-8, 1e-10))
+        .configure(|state| state.max_iters(STEP_LIMIT))
+        .run()
+        .ok()
+        .and_then(|result| result.state().get_best_param().copied())
+        .map(|at| (at, function(at)))
+        .filter(|&(_, value)| value < values[lowest]);
+    let (at, value) = polished.unwrap_or((grid[lowest], values[lowest]));
+    let level = value + rise;
+    let inside = |i: &usize| values[*i] <= level;
+    let first = (0..grid.len()).find(inside).map_or(at, |i| grid[i]).min(at);
+    let last = (0..grid.len()).rev().find(inside).map_or(at, |i| grid[i]).max(at);
+    let lower = grid.iter().rev().find(|&&point| point < first).map(|&out| edge(out, first, level, &function));
+    let upper = grid.iter().find(|&&point| point > last).map(|&out| edge(out, last, level, &function));
+    Minimum { at, value, lower, upper }
+}
+
+/// Where the function passes `level` between a point above it and one not above it: false position, halving the value of
+/// an end that stays (Illinois; Dowell, Jarratt (1971), BIT 11, 168).
+fn edge(out: f64, inside: f64, level: f64, function: impl Fn(f64) -> f64) -> f64 {
+    let excess = |at: f64| function(at) - level;
+    let (mut high, mut low) = ((out, excess(out)), (inside, excess(inside)));
+    let width = (out - inside).abs();
+    for _ in 0..EDGE_STEPS {
+        let share = low.1 / (low.1 - high.1);
+        let at = low.0 + if share.is_finite() { share } else { 0.5 } * (high.0 - low.0);
+        let value = excess(at);
+        if (high.0 - low.0).abs() <= EDGE_TOLERANCE * width || value.abs() <= EDGE_TOLERANCE {
+            return at;
+        }
+        if value > 0.0 {
+            high = (at, value);
+            low.1 *= 0.5;
+        } else {
+            low = (at, value);
+            high.1 *= 0.5;
+        }
+    }
+    0.5 * (high.0 + low.0)
+}

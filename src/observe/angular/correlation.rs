@@ -1,0 +1,184 @@
+//! [`AngularCorrelation`]: G(θ) of the radial displacement in a ring, G* and θ*.
+//!
+//! From the spectrum, or from the pairs of disks:
+//!
+//! ```text
+//! G(θ) = Σ_(f=1)^(f_max) P_f cos fθ / (Σ P_f + ρ)   (θ > 0)        G(0) = 1
+//! ```
+//!
+//! ρ, what the spectrum has above f_max and of single disks, is a peak at θ = 0. With ρ = 0 both are a Fourier pair
+//! (Wiener, Khinchin): P_f/Σ P = (2/π) ∫_0^π G cos fθ dθ; with ρ the peak counts too. Pairs in bins are not: their number varies with
+//! the angle, and a bin is wide.
+
+use std::f64::consts::PI;
+
+use serde::{Deserialize, Serialize};
+
+use crate::observe::angular::AngularError;
+use crate::observe::angular::crossing::{CrossingOutcome, ThresholdCrossing};
+use crate::observe::angular::pairs::PairSums;
+use crate::observe::angular::power_spectrum::{FrequencyLimit, PowerSpectrum, SpectrumSettings};
+use crate::observe::angular::ring::{RingSample, Weights};
+
+/// How the correlation function is estimated.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CorrelationEstimator {
+    /// The cosine sum of a spectrum.
+    Spectral(SpectrumSettings),
+    /// All pairs of disks, in even bins of their angle.
+    Pairs {
+        /// Bins of \[0, π\].
+        bin_count: usize,
+    },
+}
+
+impl Default for CorrelationEstimator {
+    /// The spectrum's own defaults: nearest to the true G at 60, 1000 and 4000 disks, with noise and without
+    /// (`examples/angular_estimators.rs`).
+    fn default() -> Self {
+        CorrelationEstimator::Spectral(SpectrumSettings::default())
+    }
+}
+
+/// How a correlation function is taken.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CorrelationSettings {
+    /// The estimator. Changes results.
+    pub estimator: CorrelationEstimator,
+    /// Even steps of [0, π] in the table of a spectral estimate; a crossing narrower than one is missed.
+    pub step_count: usize,
+    /// Thresholds of G, each below 1 \[1\].
+    pub thresholds: Vec<f64>,
+}
+
+impl Default for CorrelationSettings {
+    /// Half a degree; the thresholds of the study, its usual one first.
+    fn default() -> Self {
+        CorrelationSettings {
+            estimator: CorrelationEstimator::default(),
+            step_count: 360,
+            thresholds: vec![0.1, 0.02, 0.05, 0.2],
+        }
+    }
+}
+
+/// G(θ), normalised to G(0) = 1; NaN throughout where the values have no variance.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AngularCorrelation {
+    /// How it was estimated.
+    pub estimator: CorrelationEstimator,
+    /// Number of disks.
+    pub disk_count: usize,
+    /// θ \[rad\], ascending from 0; bins stand at their middles.
+    pub angles: Vec<f64>,
+    /// G(θ) \[1\].
+    pub values: Vec<f64>,
+    /// G* = −G(π) \[1\]; of bins the last one.
+    pub anticorrelation: f64,
+    /// θ* of every threshold.
+    pub crossings: Vec<ThresholdCrossing>,
+}
+
+impl AngularCorrelation {
+    /// The correlation function of a ring.
+    ///
+    /// # Errors
+    /// Settings out of range, a threshold that is not below 1; as [`PowerSpectrum::of`].
+    ///
+    /// # Cost
+    /// Spectral: the spectrum, and f_max multiplications a step. Pairs: n²/2.
+    pub fn of(ring: &RingSample, settings: &CorrelationSettings) -> Result<Self, AngularError> {
+        settings.check()?;
+        match settings.estimator {
+            CorrelationEstimator::Spectral(spectrum) => {
+                Self::of_spectrum(&PowerSpectrum::of(ring, &spectrum)?, settings)
+            }
+            CorrelationEstimator::Pairs { bin_count } => Ok(Self::of_pairs(ring, bin_count, settings)),
+        }
+    }
+
+    /// The correlation function that goes with a spectrum; the estimator of the settings is not looked at.
+    ///
+    /// # Errors
+    /// No steps, a threshold that is not below 1.
+    pub fn of_spectrum(spectrum: &PowerSpectrum, settings: &CorrelationSettings) -> Result<Self, AngularError> {
+        settings.check()?;
+        let curve = |angle: f64| spectrum_correlation(spectrum, angle);
+        let steps = settings.step_count;
+        let angles: Vec<f64> = (0..=steps).map(|j| PI * j as f64 / steps as f64).collect();
+        let mut values: Vec<f64> = angles.iter().map(|&angle| curve(angle)).collect();
+        if values[0].is_finite() {
+            values[0] = 1.0;
+        }
+        let crossings = settings.crossings(|threshold| CrossingOutcome::of_curve(&angles, &values, threshold, curve));
+        let estimator = CorrelationEstimator::Spectral(SpectrumSettings {
+            estimator: spectrum.estimator,
+            frequency_limit: FrequencyLimit::Fixed(spectrum.frequency_limit()),
+        });
+        let (disk_count, anticorrelation) = (spectrum.disk_count, -values[steps]);
+        Ok(AngularCorrelation { estimator, disk_count, angles, values, anticorrelation, crossings })
+    }
+
+    fn of_pairs(ring: &RingSample, bin_count: usize, settings: &CorrelationSettings) -> Self {
+        let centred = ring.centred(&ring.weights(Weights::Equal));
+        let bins = PairSums::of(ring, &centred.values, bin_count).correlation(centred.variance);
+        let middle = |bin: usize| PI * (bin as f64 + 0.5) / bin_count as f64;
+        let angles: Vec<f64> = std::iter::once(0.0).chain((0..bin_count).map(middle)).collect();
+        let first = if centred.variance > 0.0 { 1.0 } else { f64::NAN };
+        let values: Vec<f64> = std::iter::once(first).chain(bins).collect();
+        let crossings = settings.crossings(|threshold| CrossingOutcome::in_table(&angles, &values, threshold));
+        let anticorrelation = -values[bin_count];
+        let (estimator, disk_count) = (settings.estimator, ring.disk_count());
+        AngularCorrelation { estimator, disk_count, angles, values, anticorrelation, crossings }
+    }
+
+    /// θ* of a threshold, if it was asked for and met.
+    pub fn crossing(&self, threshold: f64) -> Option<f64> {
+        self.crossings.iter().find(|crossing| crossing.threshold == threshold)?.outcome.angle()
+    }
+}
+
+/// Frequencies between two settings of the rotation.
+const RESTART: usize = 64;
+
+/// Σ P_f cos fθ/(Σ P_f + ρ), by one rotation a frequency.
+fn spectrum_correlation(spectrum: &PowerSpectrum, angle: f64) -> f64 {
+    let total: f64 = spectrum.power[1..].iter().sum::<f64>() + spectrum.unresolved;
+    if total.is_nan() || total <= 0.0 {
+        return f64::NAN;
+    }
+    let (sine, cosine) = libm::sincos(angle);
+    let mut sum = 0.0;
+    for (block, powers) in spectrum.power[1..].chunks(RESTART).enumerate() {
+        let (mut s, mut c) = libm::sincos((block * RESTART + 1) as f64 * angle);
+        for power in powers {
+            sum += power * c;
+            (c, s) = (c * cosine - s * sine, s * cosine + c * sine);
+        }
+    }
+    sum / total
+}
+
+impl CorrelationSettings {
+    fn check(&self) -> Result<(), AngularError> {
+        let bin_count = match self.estimator {
+            CorrelationEstimator::Pairs { bin_count } => bin_count,
+            CorrelationEstimator::Spectral(_) => 1,
+        };
+        for (setting, count) in [("steps", self.step_count), ("bins", bin_count)] {
+            if count == 0 {
+                return Err(AngularError::NotPositive { setting, value: 0.0 });
+            }
+        }
+        match self.thresholds.iter().find(|&&threshold| threshold.is_nan() || threshold >= 1.0) {
+            Some(&threshold) => Err(AngularError::ThresholdNotBelowOne { threshold }),
+            None => Ok(()),
+        }
+    }
+
+    fn crossings(&self, at: impl Fn(f64) -> CrossingOutcome) -> Vec<ThresholdCrossing> {
+        self.thresholds.iter().map(|&threshold| ThresholdCrossing { threshold, outcome: at(threshold) }).collect()
+    }
+}
