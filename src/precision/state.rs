@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use crate::contact::{ContactNetwork, PairLaw};
-#[cfg(feature = "fit")]
 use crate::displacement::DisplacementField;
 #[cfg(feature = "fit")]
 use crate::fit::profile::{Decision, ProfileFit, ProfileFitSettings, fit_radial_profile};
@@ -130,7 +129,6 @@ impl State {
     }
 
     /// The displacement field from before the inflation to this state.
-    #[cfg(feature = "fit")]
     pub(super) fn field(&self, grown: &Grown<2>) -> DisplacementField<2> {
         let before = (grown.before.packing.get(), grown.before.backbone.as_slice());
         let states = [before, (&self.packing, self.backbone.as_slice())];

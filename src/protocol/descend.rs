@@ -112,6 +112,7 @@ pub(super) fn descend<const D: usize, L: PairLaw>(
         energy: network.energy() + network.on_site_energy(),
         pressure: if unjammed { 0.0 } else { pressure(&network) },
         pressure_change: None,
+        response: None,
         #[cfg(feature = "fit")]
         fit: None,
     };

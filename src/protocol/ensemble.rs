@@ -40,6 +40,15 @@ pub struct ProtocolSummary {
     /// Root mean square over the samples of the standard deviation of Δp \[force / length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pressure_change: Option<f64>,
+    /// The same of G* \[1\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub anticorrelation: Option<f64>,
+    /// The same of θ* \[rad\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub correlation_angle: Option<f64>,
+    /// The same of the number of contacts made and broken.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_change_count: Option<f64>,
     /// The same of d_0^eff of the elastic solution \[length\].
     #[cfg(feature = "fit")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -73,6 +82,9 @@ impl ProtocolSummary {
             mean_minimum_count: minima as f64 / compared.len() as f64,
             largest_distance: compared.iter().map(|it| it.largest_distance).fold(0.0, larger),
             pressure_change: rms(&|it| it.spreads.pressure_change),
+            anticorrelation: rms(&|it| it.spreads.anticorrelation),
+            correlation_angle: rms(&|it| it.spreads.correlation_angle),
+            contact_change_count: rms(&|it| it.spreads.contact_change_count),
             #[cfg(feature = "fit")]
             elastic_amplitude: rms(&|it| it.spreads.elastic_amplitude),
             #[cfg(feature = "fit")]

@@ -19,6 +19,7 @@ mod compare;
 mod descend;
 #[cfg(feature = "fit")]
 mod ending_fit;
+mod ending_response;
 mod ensemble;
 mod spread;
 
@@ -32,6 +33,7 @@ use crate::relax::{Cost, Stop, Trace};
 pub use descend::Protocol;
 #[cfg(feature = "fit")]
 pub use ending_fit::{EndingFit, EndingScreened};
+pub use ending_response::EndingResponse;
 pub use ensemble::{ProtocolSummary, chosen};
 pub use spread::{Spread, Spreads};
 
@@ -92,6 +94,9 @@ pub struct Ending {
     /// Δp \[force / length^(D−1)\]; absent if not at rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pressure_change: Option<f64>,
+    /// Its angular correlation and contact changes, where they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub response: Option<EndingResponse>,
     /// What was fitted to its radial profile.
     #[cfg(feature = "fit")]
     #[serde(skip_serializing_if = "Option::is_none")]

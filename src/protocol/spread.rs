@@ -38,6 +38,15 @@ pub struct Spreads {
     /// Of Δp \[force / length^(D−1)\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pressure_change: Option<Spread>,
+    /// Of G* \[1\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub anticorrelation: Option<Spread>,
+    /// Of θ*, over the endings that have one \[rad\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub correlation_angle: Option<Spread>,
+    /// Of the number of contacts made and broken.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_change_count: Option<Spread>,
     /// Of d_0^eff of the elastic solution \[length\].
     #[cfg(feature = "fit")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -55,12 +64,18 @@ pub struct Spreads {
 impl Spreads {
     /// Those of some endings; the ones not at rest are left out.
     pub fn of(endings: &[Ending]) -> Self {
+        let responses = || endings.iter().filter_map(|ending| ending.response);
         let at_rest = || endings.iter().filter(|ending| ending.at_rest());
         #[cfg(feature = "fit")]
         let screened = || at_rest().filter_map(|ending| ending.fit?.screened);
         Spreads {
             energy: Spread::of(at_rest().map(|ending| ending.energy)),
             pressure_change: Spread::of(at_rest().filter_map(|ending| ending.pressure_change)),
+            anticorrelation: Spread::of(responses().filter_map(|response| response.anticorrelation)),
+            correlation_angle: Spread::of(responses().filter_map(|response| response.correlation_angle)),
+            contact_change_count: Spread::of(
+                responses().map(|response| (response.made_count + response.broken_count) as f64),
+            ),
             #[cfg(feature = "fit")]
             elastic_amplitude: Spread::of(at_rest().filter_map(|ending| Some(ending.fit?.elastic_amplitude))),
             #[cfg(feature = "fit")]

@@ -41,7 +41,10 @@ pub(crate) fn section(samples: &[SampleReport]) -> Section {
     .add("contacts that differ, at most", |it| {
         measured(it)?.endings.iter().filter_map(|ending| ending.contact_difference_count).max().map(count)
     })
-    .add("which minimum: Δp ± [force/length]", |it| deviation(measured(it)?.spreads.pressure_change));
+    .add("which minimum: Δp ± [force/length]", |it| deviation(measured(it)?.spreads.pressure_change))
+    .add("which minimum: G* ±", |it| deviation(measured(it)?.spreads.anticorrelation))
+    .add("which minimum: θ* ± [rad]", |it| deviation(measured(it)?.spreads.correlation_angle))
+    .add("which minimum: contact changes ±", |it| deviation(measured(it)?.spreads.contact_change_count));
     #[cfg(feature = "fit")]
     rows.add("which minimum: elastic d_0^eff ±", |it| deviation(measured(it)?.spreads.elastic_amplitude))
         .add("which minimum: screened d_0^eff ±", |it| deviation(measured(it)?.spreads.screened_amplitude))
@@ -62,6 +65,9 @@ pub(crate) fn summary(report: &Report) -> Option<String> {
     );
     let bars = [
         ("Δp", all.pressure_change),
+        ("G*", all.anticorrelation),
+        ("θ*", all.correlation_angle),
+        ("contact changes", all.contact_change_count),
         #[cfg(feature = "fit")]
         ("elastic d_0^eff", all.elastic_amplitude),
         #[cfg(feature = "fit")]
@@ -94,7 +100,7 @@ fn stop(stop: Stop) -> &'static str {
 }
 
 /// Names and units of the columns of the endings.
-const COLUMNS: [(&str, &str); 14] = [
+const COLUMNS: [(&str, &str); 18] = [
     ("relaxer", "1"),
     ("stop", "1"),
     ("minimum", "1"),
@@ -104,6 +110,10 @@ const COLUMNS: [(&str, &str); 14] = [
     ("contact_count", "1"),
     ("energy", "energy"),
     ("pressure_change", "force/length"),
+    ("anticorrelation", "1"),
+    ("correlation_angle", "rad"),
+    ("made_contact_count", "1"),
+    ("broken_contact_count", "1"),
     ("elastic_amplitude", "length"),
     ("screened_amplitude", "length"),
     ("wavenumber", "1/length"),
@@ -129,6 +139,10 @@ pub(crate) fn csv(sensitivity: &ProtocolSensitivity) -> String {
             ending.contact_count.to_string(),
             number(Some(ending.energy)),
             number(ending.pressure_change),
+            number(ending.response.and_then(|it| it.anticorrelation)),
+            number(ending.response.and_then(|it| it.correlation_angle)),
+            integer(ending.response.map(|it| it.made_count)),
+            integer(ending.response.map(|it| it.broken_count)),
             number(elastic),
             number(screened),
             number(wavenumber),
@@ -153,6 +167,10 @@ pub(crate) fn html(sensitivity: &ProtocolSensitivity) -> String {
         "disks that differ",
         "contacts that differ",
         "Δp [force/length]",
+        "G*",
+        "θ* [rad]",
+        "contacts made",
+        "broken",
     ];
     if cfg!(feature = "fit") {
         heads.extend(["elastic d_0^eff [length]", "screened d_0^eff [length]", "κ [1/length]"]);
@@ -173,6 +191,10 @@ pub(crate) fn html(sensitivity: &ProtocolSensitivity) -> String {
             integer(compared),
             integer(ending.contact_difference_count),
             number(ending.pressure_change, 6),
+            number(ending.response.and_then(|it| it.anticorrelation), 3),
+            number(ending.response.and_then(|it| it.correlation_angle), 3),
+            integer(ending.response.map(|it| it.made_count)),
+            integer(ending.response.map(|it| it.broken_count)),
         ];
         if cfg!(feature = "fit") {
             cells.extend(fitted(ending).map(|value| number(value, 5)));

@@ -247,8 +247,8 @@ fn protocol_of<L: PairLaw>(
     trace: &mut impl Trace,
 ) -> Result<ProtocolSensitivity, PackingError> {
     let protocols = Protocol::all(&sample.relaxer);
-    #[cfg_attr(not(feature = "fit"), allow(unused_mut, reason = "only fits are added"))]
     let mut compared = Compared::of_inflation(inflated, &scene.inflation, law, &protocols, settings, trace)?;
+    compared.measure_responses(inflated, law)?;
     #[cfg(feature = "fit")]
     if let (Some(profile), Some(fit)) = (scene.observables.radial_profile, scene.observables.profile_fit) {
         compared.fit(inflated, profile.ring_width, &fit);

@@ -4,6 +4,7 @@
 //! from the inflated start, whose reference is the same trajectory at a quarter of the shortest step; the routes to the screened
 //! profile on the annulus of the sample.
 
+mod angular;
 #[cfg(feature = "fit")]
 mod fits;
 mod routes;
@@ -64,6 +65,7 @@ pub(super) fn choice_tables<L: PairLaw>(
         }
     }
     let wavenumber = state.measured.fitted.map_or(0.0, |fitted| fitted.wavenumber);
+    tables.extend(angular::estimators(&state.field(grown)));
     tables.extend(routes::routes(grown, wavenumber));
     Ok(tables)
 }
