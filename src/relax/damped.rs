@@ -96,7 +96,7 @@ impl Default for TimeStep {
 const ENERGY_GAIN: f64 = 6.0;
 
 /// Steps after which the bound on the time step is taken anew.
-const BOUND_EVERY: usize = 50;
+pub(super) const BOUND_EVERY: usize = 50;
 
 impl Relaxer for DampedDynamics {
     fn relax<const D: usize, L: PairLaw>(
@@ -211,6 +211,10 @@ pub struct Motion<const D: usize, L, C> {
     predicted: Vec<Vector<D>>,
     damping: C,
     damping_coefficient: Vec<f64>,
+    /// Work of damping since the start \[energy\].
+    pub dissipated: f64,
+    /// What is lost to damping now \[energy / time\].
+    dissipation: f64,
     row: Vec<f64>,
 }
 
@@ -233,10 +237,30 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
             predicted: zero,
             damping: *damping,
             damping_coefficient: Vec::new(),
+            dissipated: 0.0,
+            dissipation: 0.0,
             row: Vec::new(),
             assembly,
         };
         motion.set_damping_coefficients();
+        motion
+    }
+
+    /// A packing laid out already, whose mobile disks have these velocities, in working order.
+    ///
+    /// # Panics
+    /// If there is not one velocity a mobile disk.
+    pub fn moving(assembly: Assembly<D, L>, velocities: &[Vector<D>], damping: &C) -> Self {
+        let mut motion = Self::of(assembly, damping);
+        motion.velocities[..motion.assembly.mobile_count()].copy_from_slice(velocities);
+        motion.dissipation = add_damping(
+            &motion.damping,
+            motion.assembly.pairs(),
+            &motion.damping_coefficient,
+            &motion.assembly.displacements,
+            &motion.velocities,
+            &mut motion.accelerations,
+        );
         motion
     }
 
@@ -262,7 +286,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         }
         self.assembly.evaluate();
         self.accelerations.copy_from_slice(&self.assembly.forces);
-        add_damping(
+        let dissipation = add_damping(
             &self.damping,
             self.assembly.pairs(),
             &self.damping_coefficient,
@@ -270,6 +294,8 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
             &self.predicted,
             &mut self.accelerations,
         );
+        self.dissipated += half * (self.dissipation + dissipation);
+        self.dissipation = dissipation;
         let (a, v) = (self.accelerations[..mobile].as_flattened(), self.velocities[..mobile].as_flattened_mut());
         for (a, v) in a.iter().zip(v) {
             *v += half * a;

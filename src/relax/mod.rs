@@ -157,6 +157,9 @@ pub struct Cost {
     /// Steps among them whose error was too large, so that they were repeated; not written where there are none.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub rejected_count: usize,
+    /// Explicit steps of implicit dynamics, a stretch of which is one of its steps; not written where there are none.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub explicit_count: usize,
     /// Evaluations of all forces.
     pub force_evaluation_count: usize,
     /// Neighbour lists made.
@@ -189,6 +192,7 @@ impl Cost {
         Cost {
             step_count: self.step_count + other.step_count,
             rejected_count: self.rejected_count + other.rejected_count,
+            explicit_count: self.explicit_count + other.explicit_count,
             force_evaluation_count: self.force_evaluation_count + other.force_evaluation_count,
             rebuild_count: self.rebuild_count + other.rebuild_count,
             factorisation_count: self.factorisation_count + other.factorisation_count,

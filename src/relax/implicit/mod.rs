@@ -12,6 +12,7 @@
 
 mod matrix;
 mod motion;
+mod pace;
 pub mod tableau;
 
 use std::time::Instant;
@@ -23,6 +24,7 @@ use crate::contact::assembly::Assembly;
 use crate::contact::damping::{ConstantDamping, DampingChoice, DampingLaw};
 use crate::contact::forces::Totals;
 use crate::packing::{Packing, PackingError};
+use crate::relax::implicit::pace::Pace;
 use crate::relax::monitor::Monitor;
 use crate::relax::newton::{Descent, End, Patience, WATCH};
 use crate::relax::{Cost, ForceLimit, Look, NetForce, Outcome, Relaxer, Stop, Trace};
@@ -243,6 +245,7 @@ impl Integration {
         };
         let mut time_step = 0.0;
         let mut restless = Restless::default();
+        let mut pace = Pace::new(motion);
         loop {
             let kinetic_energy = motion.kinetic_energy();
             let look = Look {
@@ -274,22 +277,39 @@ impl Integration {
             if time_step == 0.0 {
                 time_step = first_step(motion, self.tolerance * overlap);
             }
-            match self.advance(motion, monitor, cost, &mut time_step, overlap)? {
-                Ok(reached) => totals = reached,
+            // Explicit steps follow contacts that come and go; where there is no backbone, nothing bounds them.
+            let pressed = monitor.backbone()[..motion.assembly.mobile_count()].iter().any(|&member| member);
+            if pressed && pace.is_explicit(time_step) {
+                if cost.step_count >= self.step_limit {
+                    return Ok(Stop::StepLimit);
+                }
+                cost.step_count += 1;
+                totals = pace.stretch(motion, &mut time_step, cost)?;
+                continue;
+            }
+            let shortest = if pressed { pace.shortest() } else { 0.0 };
+            match self.advance(motion, monitor, cost, &mut time_step, (overlap, shortest))? {
+                Ok(Some(reached)) => {
+                    totals = reached;
+                    pace.stepped();
+                }
+                // Back at the start of the step.
+                Ok(None) => {}
                 Err(stop) => return Ok(stop),
             }
         }
     }
 
-    /// One step, repeated with shorter ones until its error is small enough; `time_step` is that of the next afterwards.
+    /// One step, repeated with shorter ones until its error is small enough; `time_step` is that of the next afterwards. None
+    /// if it would have to be shorter than `shortest`.
     fn advance<const D: usize, L: PairLaw, C: DampingLaw>(
         &self,
         motion: &mut ImplicitMotion<D, L, C>,
         monitor: &Monitor,
         cost: &mut Cost,
         time_step: &mut f64,
-        overlap: f64,
-    ) -> Result<Result<Totals<D>, Stop>, PackingError> {
+        (overlap, shortest): (f64, f64),
+    ) -> Result<Result<Option<Totals<D>>, Stop>, PackingError> {
         motion.prestressed.copy_from_slice(monitor.backbone());
         motion.margin = overlap;
         *time_step = time_step.min(motion.longest_step(LONGEST_STEP));
@@ -309,7 +329,7 @@ impl Integration {
                     let growth = (SAFETY / error).cbrt().clamp(SMALLEST_GROWTH, LARGEST_GROWTH);
                     if error <= 1.0 {
                         *time_step *= if rejected { growth.min(1.0) } else { growth };
-                        return Ok(Ok(reached));
+                        return Ok(Ok(Some(reached)));
                     }
                     if growth.is_nan() { SMALLEST_GROWTH } else { growth }
                 }
@@ -318,6 +338,9 @@ impl Integration {
             rejected = true;
             motion.take_back()?;
             *time_step *= growth;
+            if *time_step < shortest {
+                return Ok(Ok(None));
+            }
         }
     }
 
