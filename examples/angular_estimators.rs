@@ -20,8 +20,8 @@ use std::time::Instant;
 
 use jamscope::observe::angular::synthetic::{SyntheticRing, SyntheticSettings, gaussian_rings};
 use jamscope::observe::angular::{
-    AngularCorrelation, CorrelationEstimator, CorrelationSettings, FrequencyLimit, Leakage, PowerSpectrum,
-    SpectrumEstimator, SpectrumSettings, Weights,
+    AngularCorrelation, CorrelationEstimator, CorrelationSettings, FrequencyLimit, Leakage, PowerSpectrum, RingSample,
+    SpectrumEstimator, SpectrumSettings, Weights, fourier_sums,
 };
 use plotters::prelude::*;
 
@@ -62,6 +62,7 @@ fn estimators() -> Vec<(&'static str, Option<SpectrumEstimator>, f64)> {
         ("binned, n/2", Some(SpectrumEstimator::Binned { bins_per_disk: 0.5 }), 0.25),
         ("binned, n", Some(SpectrumEstimator::Binned { bins_per_disk: 1.0 }), 0.5),
         ("pairs, 2° bins", None, 0.0),
+        ("least squares, gaps, to n/8", None, 0.125),
     ]
 }
 
@@ -93,12 +94,11 @@ fn compare(
     for (index, (name, estimator, share)) in estimators().into_iter().enumerate() {
         let mut line = format!("{name:<30}");
         let mut spectrum_time = f64::INFINITY;
-        if let Some(estimator) = estimator {
-            let settings = SpectrumSettings { estimator, frequency_limit: FrequencyLimit::PerDisk(share) };
+        if share > 0.0 {
             let mut spectra = Vec::new();
             for ring in &rings {
                 let start = Instant::now();
-                spectra.push(PowerSpectrum::of(&ring.ring, &settings)?);
+                spectra.push(spectrum_of(&ring.ring, estimator, share)?);
                 spectrum_time = spectrum_time.min(start.elapsed().as_secs_f64());
             }
             for (from, to) in bands {
@@ -111,18 +111,17 @@ fn compare(
         } else {
             line += &" ".repeat(42);
         }
-        let estimator = match estimator {
-            Some(estimator) => CorrelationEstimator::Spectral(SpectrumSettings {
-                estimator,
-                frequency_limit: FrequencyLimit::PerDisk(share),
-            }),
-            None => CorrelationEstimator::Pairs { bin_count: STEPS },
-        };
+        let spectral = estimator;
+        let estimator = CorrelationEstimator::Pairs { bin_count: STEPS };
         let settings = CorrelationSettings { estimator, step_count: STEPS, thresholds: vec![0.1] };
         let (mut errors, mut angle_errors, mut missed, mut seconds) = (Vec::new(), Vec::new(), 0, f64::INFINITY);
         for (ring, truth) in rings.iter().zip(&truths) {
             let start = Instant::now();
-            let found = AngularCorrelation::of(&ring.ring, &settings)?;
+            let found = if share > 0.0 {
+                AngularCorrelation::of_spectrum(&spectrum_of(&ring.ring, spectral, share)?, &settings)?
+            } else {
+                AngularCorrelation::of(&ring.ring, &settings)?
+            };
             seconds = seconds.min(start.elapsed().as_secs_f64());
             for (angle, value) in found.angles.iter().zip(&found.values).skip(1) {
                 errors.push(value - truth.correlation(*angle));
@@ -141,6 +140,73 @@ fn compare(
         marks.push(Mark { disk_count, noise: noise_share > 0.0, estimator: index, seconds, error });
     }
     Ok(())
+}
+
+/// A spectrum up to so many frequencies a disk; by least squares if no estimator is named.
+fn spectrum_of(
+    ring: &RingSample,
+    estimator: Option<SpectrumEstimator>,
+    share: f64,
+) -> Result<PowerSpectrum, Box<dyn Error>> {
+    let frequency_limit = FrequencyLimit::PerDisk(share);
+    let settings = SpectrumSettings {
+        estimator: estimator.unwrap_or(SpectrumEstimator::Direct { weights: Weights::Gaps, leakage: Leakage::Kept }),
+        frequency_limit,
+    };
+    let mut spectrum = PowerSpectrum::of(ring, &settings)?;
+    if estimator.is_none() {
+        let power = least_squares(ring, spectrum.frequency_limit());
+        spectrum.unresolved = spectrum.variance - power[1..].iter().sum::<f64>();
+        spectrum.power = power;
+    }
+    Ok(spectrum)
+}
+
+/// Powers of the constant, cosines and sines that are nearest to the values, gaps as weights: the normal equations, whose
+/// coefficients are Fourier sums of the weights.
+fn least_squares(ring: &RingSample, limit: usize) -> Vec<f64> {
+    let weights = ring.weights(Weights::Gaps);
+    let sums = fourier_sums(ring.angles(), &weights, 2 * limit);
+    let strengths: Vec<f64> = weights.iter().zip(ring.values()).map(|(w, x)| w * x).collect();
+    let right = fourier_sums(ring.angles(), &strengths, limit);
+    // Σ w cos hθ and Σ w sin hθ for h of either sign.
+    let even = |h: i64| sums[h.unsigned_abs() as usize].re;
+    let odd = |h: i64| -(h.signum() as f64) * sums[h.unsigned_abs() as usize].im;
+    // Column 0 is the constant, then cosines, then sines.
+    let size = 2 * limit + 1;
+    let mode = |column: usize| if column > limit { (true, (column - limit) as i64) } else { (false, column as i64) };
+    let mut rows: Vec<Vec<f64>> = (0..size)
+        .map(|row| {
+            let entry = |column: usize| {
+                let ((sine_f, f), (sine_g, g)) = (mode(row), mode(column));
+                0.5 * match (sine_f, sine_g) {
+                    (false, false) => even(f - g) + even(f + g),
+                    (true, true) => even(f - g) - even(f + g),
+                    (false, true) => odd(f + g) + odd(g - f),
+                    (true, false) => odd(f + g) + odd(f - g),
+                }
+            };
+            let (sine, f) = mode(row);
+            let sum = right[f as usize];
+            (0..size).map(entry).chain([if sine { -sum.im } else { sum.re }]).collect()
+        })
+        .collect();
+    // Symmetric and positive definite: elimination without exchanges.
+    for pivot in 0..size {
+        let (above, below) = rows.split_at_mut(pivot + 1);
+        let first = &above[pivot];
+        for row in below {
+            let factor = row[pivot] / first[pivot];
+            row[pivot..].iter_mut().zip(&first[pivot..]).for_each(|(a, p)| *a -= factor * p);
+        }
+    }
+    for pivot in (0..size).rev() {
+        let known: f64 = (pivot + 1..size).map(|column| rows[pivot][column] * rows[column][size]).sum();
+        rows[pivot][size] = (rows[pivot][size] - known) / rows[pivot][pivot];
+    }
+    let amplitude = |column: usize| rows[column][size];
+    let of_mode = |f: usize| 0.5 * (amplitude(f).powi(2) + amplitude(limit + f).powi(2));
+    std::iter::once(amplitude(0).powi(2)).chain((1..=limit).map(of_mode)).collect()
 }
 
 /// G of the very field, on a fine grid.

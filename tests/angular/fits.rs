@@ -98,6 +98,25 @@ fn power_law_interval_of_few_powers_holds_two_standard_errors() {
 }
 
 #[test]
+fn powers_above_a_sixteenth_claim_too_much() {
+    // Angles anywhere, 1000 disks: the scatter of s over its stated error, known to 1/√398 = 5 %.
+    let settings = SyntheticSettings { seed: 14, ..SyntheticSettings::default() };
+    let rings = gaussian_rings(&settings, 200, |f| f.powf(-1.5)).expect("enough disks");
+    let ratio = |highest: HighestFrequency| {
+        let window = SpectrumWindowSettings { highest, ..SpectrumWindowSettings::default() };
+        let fit = |ring: &RingSample| fit_slope(std::slice::from_ref(ring), &window).expect("enough powers");
+        let found: Vec<_> =
+            rings.iter().map(|synthetic| fit(&synthetic.ring).exponent.estimate().expect("closed")).collect();
+        let mean = found.iter().map(|s| s.value).sum::<f64>() / 200.0;
+        let scatter = (found.iter().map(|s| (s.value - mean).powi(2)).sum::<f64>() / 199.0).sqrt();
+        scatter / (found.iter().map(|s| s.standard_error).sum::<f64>() / 200.0)
+    };
+    let (sixteenth, eighth) = (ratio(HighestFrequency::Resolved), ratio(HighestFrequency::Fixed(125)));
+    println!("scatter over stated error: n/16 {sixteenth}, n/8 {eighth}");
+    assert!(sixteenth < 1.15 && eighth > 1.15, "n/16 {sixteenth}, n/8 {eighth}");
+}
+
+#[test]
 fn refusals_have_their_names() {
     let settings = SyntheticSettings { disk_count: 4000, seed: 5, ..SyntheticSettings::default() };
     let of = |noise: f64, spectrum: &dyn Fn(f64) -> f64| {

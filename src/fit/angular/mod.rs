@@ -16,7 +16,7 @@
 //! A, of each ring its own, has its best value in closed form, P/E in the mean 1. Several rings, those of samples, are fitted
 //! together. The interval of a parameter holds where −2 ln L, all other parameters at their best, rises by no more than
 //! 4 (1 + 0.4/m), m the number of powers: two standard errors, with the correction of a small m (Bartlett's; 0.4 measured,
-//! `angular::power_law_interval_of_few_powers_holds_two_standard_errors`). The standard error is a fourth of the interval.
+//! `fits::power_law_interval_of_few_powers_holds_two_standard_errors`). The standard error is a fourth of the interval.
 //!
 //! Source: Whittle (1953), Ark. Mat. 2, 423; Sykulski et al. (2019), Biometrika 106, 251.
 
@@ -46,7 +46,7 @@ pub struct SpectrumWindowSettings {
     pub highest: HighestFrequency,
     /// Values of single disks.
     pub noise: SingleDiskNoise,
-    /// Highest frequency of the field itself over the number of disks \[1\]: the model ends there. Matters little above 4.
+    /// Highest frequency of the field itself over the number of disks \[1\]: the model ends there.
     pub frequencies_per_disk: f64,
 }
 
@@ -67,7 +67,7 @@ impl Default for SpectrumWindowSettings {
 #[serde(rename_all = "snake_case")]
 pub enum HighestFrequency {
     /// n/16, but n/4 or 15, whichever is less, where that is more. Above n/16 leakage makes powers depend on each other, and
-    /// the errors come out too small: 0.10 for 0.13 at 1000 random angles and n/8.
+    /// the errors come out too small (`fits::powers_above_a_sixteenth_claim_too_much`).
     #[default]
     Resolved,
     /// This one, at most n/2.

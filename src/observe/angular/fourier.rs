@@ -56,7 +56,8 @@ pub fn fourier_sums(angles: &[f64], strengths: &[f64], frequency_limit: usize) -
 /// The same by the route named.
 ///
 /// # Accuracy
-/// In units of Σ|a|: direct 10⁻¹⁴, fast 10⁻¹³ (`angular::both_routes_give_the_sums`).
+/// In units of Σ|a|: (2πf + 128)·2⁻⁵², fast 5·10⁻¹⁴ more (`fourier::both_routes_give_the_sums`); the angles themselves are
+/// rounded to as much.
 ///
 /// # Panics
 /// If there are not as many strengths as angles.

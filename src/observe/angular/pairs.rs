@@ -69,7 +69,7 @@ impl PairSums {
 
     /// Products over counts and the variance; a bin without pairs takes the one before it.
     pub(super) fn correlation(&self, variance: f64) -> Vec<f64> {
-        let mut last = 1.0;
+        let mut last = if variance > 0.0 { 1.0 } else { f64::NAN };
         let bins = self.products.iter().zip(&self.counts);
         bins.map(|(product, count)| {
             if *count > 0.0 {

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::observe::angular::AngularError;
 use crate::observe::angular::even_grid::{binned, interpolated};
 use crate::observe::angular::fourier::{fourier_sums, transform};
-use crate::observe::angular::ring::{RingSample, Weights};
+use crate::observe::angular::ring::{Centred, RingSample, Weights};
 use crate::observe::angular::unmixing::{Shares, unmix};
 use crate::observe::angular::window::SpectralWindow;
 
@@ -204,8 +204,8 @@ impl PowerSpectrum {
     fn on_grid(values: &[f64], estimator: SpectrumEstimator, ring: &RingSample, frequency_limit: usize) -> Self {
         let count = values.len() as f64;
         let mean = values.iter().sum::<f64>() / count;
-        let centred: Vec<f64> = values.iter().map(|value| value - mean).collect();
-        let variance = centred.iter().map(|value| value * value).sum::<f64>() / count;
+        let Centred { values: centred, variance, .. } =
+            Centred::of(mean, values, |values| values.iter().map(|value| value * value).sum::<f64>() / count);
         let sums = transform(&centred);
         let mut power: Vec<f64> = (0..=frequency_limit)
             // The highest frequency of an even grid is its own mirror image.

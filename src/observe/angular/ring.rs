@@ -122,17 +122,31 @@ impl RingSample {
     /// Values less their weighted mean, the mean, and the weighted variance.
     pub(super) fn centred(&self, weights: &[f64]) -> Centred {
         let mean: f64 = weights.iter().zip(&self.values).map(|(w, x)| w * x).sum();
-        let values: Vec<f64> = self.values.iter().map(|x| x - mean).collect();
-        let variance = weights.iter().zip(&values).map(|(w, x)| w * x * x).sum();
-        Centred { mean, values, variance }
+        Centred::of(mean, &self.values, |values| weights.iter().zip(values).map(|(w, x)| w * x * x).sum())
     }
 }
+
+/// A standard deviation below this share of the mean is rounding: values without variance.
+const LEAST_SPREAD: f64 = 8.0 * f64::EPSILON;
 
 /// Values about their mean.
 pub(super) struct Centred {
     pub mean: f64,
     pub values: Vec<f64>,
     pub variance: f64,
+}
+
+impl Centred {
+    /// Values about a mean; all zero if what is left is rounding.
+    pub(super) fn of(mean: f64, values: &[f64], variance: impl Fn(&[f64]) -> f64) -> Self {
+        let mut values: Vec<f64> = values.iter().map(|x| x - mean).collect();
+        let mut found = variance(&values);
+        if found.sqrt() <= LEAST_SPREAD * mean.abs() {
+            values.fill(0.0);
+            found = 0.0;
+        }
+        Centred { mean, values, variance: found }
+    }
 }
 
 /// Half of both gaps of every angle over 2π.
