@@ -16,6 +16,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::observe::RadialProfile;
+use crate::vector::larger;
 
 /// Thresholds of a penetration length.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -139,7 +140,7 @@ impl PenetrationLength {
 fn penetration(profile: &RadialProfile, threshold: f64) -> Penetration {
     let rings = &profile.rings;
     let Some(last) = rings.iter().rposition(|ring| ring.mean.abs() >= threshold) else {
-        let largest = rings.iter().map(|ring| ring.mean.abs()).reduce(f64::max);
+        let largest = rings.iter().map(|ring| ring.mean.abs()).reduce(|most, mean| larger(mean, most));
         return Penetration::NeverAbove { largest };
     };
     let Some(next) = rings.get(last + 1) else {

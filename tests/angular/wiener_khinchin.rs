@@ -6,6 +6,7 @@ use jamscope::observe::angular::{
     AngularCorrelation, CorrelationEstimator, CorrelationSettings, FrequencyLimit, Leakage, PowerSpectrum, RingSample,
     SpectrumEstimator, SpectrumSettings, Weights,
 };
+use jamscope::vector::larger;
 use proptest::prelude::*;
 
 use crate::{all_estimators, direct, even_angles};
@@ -98,7 +99,7 @@ fn pairs_violate_it_by_a_measured_size() {
     };
     let violation = (1..=20)
         .map(|f| (coefficient(f) - (spectrum.power[f] / spectrum.variance - 2.0 / 1000.0)).abs())
-        .fold(0.0, f64::max);
+        .fold(0.0, larger);
     println!("largest violation {violation}");
     assert!(violation > 1e-3 && violation < 0.1, "{violation}");
 }

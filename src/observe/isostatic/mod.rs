@@ -22,6 +22,7 @@ use crate::observe::ExcessCoordination;
 use crate::observe::bond_changes::BondChanges;
 use crate::observe::fluctuations::{FluctuationRing, Fluctuations};
 use crate::observe::state::State;
+use crate::vector::larger;
 
 /// One ring, scaled.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -166,7 +167,8 @@ impl IsostaticLength {
 fn outcome(curve: &[IsostaticPoint], threshold: f64, excess: f64) -> IsostaticOutcome {
     match curve.iter().position(|point| point.scaled_fluctuation >= threshold) {
         None => {
-            let largest = curve.iter().map(|point| point.scaled_fluctuation).fold(0.0, f64::max);
+            let largest =
+                curve.iter().map(|point| point.scaled_fluctuation).fold(0.0, |most, value| larger(value, most));
             IsostaticOutcome::NeverReached { largest }
         }
         Some(0) => IsostaticOutcome::AboveFromTheStart { innermost: curve[0].radius },

@@ -46,7 +46,7 @@ pub struct ImplicitDynamics {
     pub tolerance: f64,
     /// What the last part of the way is left to.
     pub finish: Finish,
-    /// Steps allowed, rejected ones included.
+    /// Steps allowed, rejected ones included; a stretch of explicit steps counts as one.
     pub step_limit: usize,
 }
 
@@ -439,7 +439,7 @@ fn mean_overlap<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, totals: &
 /// The step in which the largest force moves a disk by as much as an error may be.
 fn first_step<const D: usize, L: PairLaw, C: DampingLaw>(motion: &ImplicitMotion<D, L, C>, allowed: f64) -> f64 {
     let largest = motion.net_forces().iter().fold(0.0, |most, &force| larger(norm(force), most));
-    let step = (2.0 * allowed / largest).sqrt();
+    let step = motion.time_of_way(allowed, largest);
     // Nothing pushes: any step is as good, and the look that follows finds it at rest.
     if step.is_finite() && step > 0.0 { step } else { 1.0 }
 }

@@ -235,8 +235,17 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     }
 
     /// The longest stable explicit step, as [`Motion::stable_step`].
-    pub(super) fn stable_step(&self) -> f64 {
+    pub(super) fn stable_step(&mut self) -> f64 {
+        self.work.evaluation_count += 1;
         Motion::of(self.assembly.clone(), &self.damping).stable_step()
+    }
+
+    /// The time in which this force moves a disk at rest by this way \[time\].
+    pub(super) fn time_of_way(&self, way: f64, force: f64) -> f64 {
+        match self.inertia {
+            Inertia::Massive => (2.0 * way / force).sqrt(),
+            Inertia::Friction(friction) => way * friction / force,
+        }
     }
 
     /// Whether there are masses.

@@ -32,6 +32,7 @@ const STRETCHES: (usize, usize) = (2, 8);
 /// Implicit steps after which the next stretch is a short one again.
 const SETTLED: usize = 4;
 
+/// Which kind of steps pays.
 #[derive(Debug)]
 pub(super) struct Pace {
     /// E; 0 where there is nothing to choose.
@@ -45,7 +46,7 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    pub(super) fn new<const D: usize, L: PairLaw, C: DampingLaw>(motion: &ImplicitMotion<D, L, C>) -> Self {
+    pub(super) fn new<const D: usize, L: PairLaw, C: DampingLaw>(motion: &mut ImplicitMotion<D, L, C>) -> Self {
         let worth = (WORTH * (motion.assembly.mobile_count() as f64).powf(0.25)) as usize;
         let explicit_step = if motion.has_masses() { SHARE * motion.stable_step() } else { 0.0 };
         let explicit_step = if explicit_step.is_finite() { explicit_step } else { 0.0 };
