@@ -30,7 +30,7 @@ impl Default for PrecisionSettings {
             time_steps: vec![0.45, 0.225],
             tolerances: vec![0.3, 0.1, 0.03, 0.01, 0.003],
             explicit_step_limit: 50_000,
-            implicit_step_limit: 2000,
+            implicit_step_limit: 4000,
             reference_limit: 1e-13,
         }
     }
