@@ -118,6 +118,7 @@ pub mod protocol;
 pub mod reference;
 pub mod relax;
 pub mod report;
+pub mod response;
 pub mod run;
 pub mod scene;
 #[cfg(feature = "linear")]

@@ -88,44 +88,84 @@ fn text(files: &BTreeMap<String, Vec<u8>>, name: &str) -> String {
 fn the_files_are_those_asked_for() {
     let always = ["report.json", "timings.json"];
     let page: &[&str] = if cfg!(feature = "plot") { &["report.html"] } else { &[] };
-    let nothing = Observables {
-        radial_profile: None,
-        #[cfg(feature = "fit")]
-        profile_fit: None,
-        angular_profiles: None,
-        #[cfg(feature = "linear")]
-        plastic_part: None,
-        #[cfg(feature = "linear")]
-        protocol: None,
-        displacement_field: None,
-    };
-    let all = Observables::default();
-    let radial = Observables { radial_profile: all.radial_profile, ..nothing.clone() };
-    let angular = Observables { angular_profiles: all.angular_profiles.clone(), ..nothing.clone() };
-    let field = Observables { displacement_field: all.displacement_field, ..nothing.clone() };
-    let cases: [(Observables, &[&str], &[&str]); 5] = [
-        (nothing, &[], &[]),
-        (radial, &["loose.radial_profile.csv"], &["radial profile"]),
-        (angular, &["loose.angular_profiles.csv"], &["angular profiles"]),
-        (field, &["loose.packing.xyz", "loose.displacement.xyz"], &["map of"]),
+    let (all, nothing) = (Observables::default(), Observables::none());
+    let cases: Vec<(Observables, &[&str], &[&str])> = vec![
+        (nothing.clone(), &[], &[]),
+        (
+            Observables { radial_profile: all.radial_profile, ..nothing.clone() },
+            &["radial_profile.csv"],
+            &["radial profile"],
+        ),
+        (
+            Observables { angular_profiles: all.angular_profiles.clone(), ..nothing.clone() },
+            &["angular_profiles.csv"],
+            &["angular profiles"],
+        ),
+        (
+            Observables { angular_correlation: all.angular_correlation.clone(), ..nothing.clone() },
+            &["angular_correlation.csv", "power_spectrum.csv"],
+            &["angular correlation<", "angular power spectrum"],
+        ),
+        (
+            Observables { radial_dependence: all.radial_dependence.clone(), ..nothing.clone() },
+            &["radial_dependence.csv"],
+            &["angular correlation by distance"],
+        ),
+        (
+            Observables { multipoles: all.multipoles, ..nothing.clone() },
+            &["multipoles.csv"],
+            &["angular modes, radial"],
+        ),
+        // An unjammed packing has no contacts, no bonds and no isostatic length to draw.
+        (Observables { contact_changes: all.contact_changes, ..nothing.clone() }, &["contact_changes.csv"], &[]),
+        (Observables { bond_changes: all.bond_changes, ..nothing.clone() }, &["bond_changes.csv"], &[]),
+        (Observables { isostatic_length: all.isostatic_length, ..nothing.clone() }, &["isostatic_length.csv"], &[]),
+        (
+            Observables { displacement_field: all.displacement_field, ..nothing.clone() },
+            &["packing.xyz", "before.xyz", "displacement.xyz"],
+            &["map of"],
+        ),
         (
             all,
-            &["loose.radial_profile.csv", "loose.angular_profiles.csv", "loose.packing.xyz", "loose.displacement.xyz"],
-            &["radial profile", "angular profiles", "map of"],
+            &[
+                "radial_profile.csv",
+                "angular_profiles.csv",
+                "angular_correlation.csv",
+                "power_spectrum.csv",
+                "radial_dependence.csv",
+                "multipoles.csv",
+                "contact_changes.csv",
+                "bond_changes.csv",
+                "isostatic_length.csv",
+                "packing.xyz",
+                "before.xyz",
+                "displacement.xyz",
+            ],
+            &[
+                "radial profile",
+                "angular profiles",
+                "angular correlation<",
+                "angular power spectrum",
+                "angular correlation by distance",
+                "angular modes, radial",
+                "map of",
+            ],
         ),
     ];
+    let every = cases.last().map_or(&[] as &[&str], |case| case.2);
     for (observables, names, pictures) in cases {
         let mut scene = Scene { observables, ..scene() };
         scene.inflation.deflate = false;
         scene.sample.truncate(1);
         let files = written(&run(&scene, &()).expect("the scene makes sense"));
-        let expected: BTreeSet<&str> = always.iter().chain(page).chain(names).copied().collect();
-        assert_eq!(files.keys().map(String::as_str).collect::<BTreeSet<_>>(), expected);
+        let mut expected: BTreeSet<String> = always.iter().chain(page).map(|name| (*name).to_string()).collect();
+        expected.extend(names.iter().map(|ending| format!("loose.{ending}")));
+        assert_eq!(files.keys().cloned().collect::<BTreeSet<_>>(), expected);
         if cfg!(feature = "plot") {
             let page = text(&files, "report.html");
-            for picture in ["radial profile", "angular profiles", "map of"] {
+            for picture in every {
                 let there = page.contains(&format!("<title>loose: {picture}"));
-                assert_eq!(there, pictures.contains(&picture), "{picture} on the page of {names:?}");
+                assert_eq!(there, pictures.contains(picture), "{picture} on the page of {names:?}");
             }
             assert_eq!(page.matches("<svg").count(), pictures.len());
         }
@@ -148,7 +188,7 @@ fn json_has_every_number_to_the_bit_and_no_wall_time() {
     let dense = &read["samples"][1]["done"];
     let bits = |value: &serde_json::Value| value.as_f64().expect("a number").to_bits();
     assert_eq!(bits(&dense["packing"]["pressure"]), result("dense").packing.pressure.to_bits());
-    let rings = &result("dense").radial_profile.as_ref().expect("asked for").rings;
+    let rings = &result("dense").response.radial_profile.as_ref().expect("asked for").rings;
     for (index, ring) in rings.iter().enumerate() {
         let read = &dense["radial_profile"]["rings"][index];
         assert_eq!(bits(&read["mean"]), ring.mean.to_bits());
@@ -182,14 +222,14 @@ fn csv(files: &BTreeMap<String, Vec<u8>>, name: &str) -> (Vec<String>, Vec<Vec<f
 #[cfg(feature = "linear")]
 #[test]
 fn the_plastic_part_is_in_the_report_where_there_is_a_linear_response() {
-    use jamscope::run::PlasticResult;
+    use jamscope::response::Measurement;
     let files = written(report());
-    let Some(PlasticResult::Refused(reason)) = &result("loose").plastic_part else { panic!("unjammed") };
+    let Some(Measurement::Refused(reason)) = &result("loose").plastic_part else { panic!("unjammed") };
     // The table breaks lines; the reason is there in its words.
     let table = terminal_table(report()).split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(table.contains(&format!("loose, no linear response: {reason}")), "{table}");
     assert!(!files.contains_key("loose.plastic_profile.csv"));
-    let Some(PlasticResult::Measured(plastic)) = &result("dense").plastic_part else { panic!("jammed") };
+    let Some(Measurement::Measured(plastic)) = &result("dense").plastic_part else { panic!("jammed") };
     assert_eq!(plastic.negative_eigenvalue_count, 0);
     assert!(plastic.share > 0.0 && plastic.participation_ratio > 0.0 && plastic.participation_ratio <= 1.0);
     let (names, rows) = csv(&files, "dense.plastic_profile.csv");
@@ -202,7 +242,7 @@ fn the_plastic_part_is_in_the_report_where_there_is_a_linear_response() {
 fn csv_profiles_have_names_units_and_the_numbers_to_the_bit() {
     let files = written(report());
     for sample in ["loose", "dense"] {
-        let rings = &result(sample).radial_profile.as_ref().expect("asked for").rings;
+        let rings = &result(sample).response.radial_profile.as_ref().expect("asked for").rings;
         let (names, rows) = csv(&files, &format!("{sample}.radial_profile.csv"));
         assert_eq!(names[..3], ["radius", "disk_count", "radial_displacement"]);
         assert_eq!(rows.len(), rings.len());
@@ -212,7 +252,7 @@ fn csv_profiles_have_names_units_and_the_numbers_to_the_bit() {
             assert_eq!(row[2].to_bits(), ring.mean.to_bits());
             assert_eq!(row[5].to_bits(), (ring.radius * ring.mean).to_bits());
         }
-        let profiles = result(sample).angular_profiles.as_ref().expect("asked for");
+        let profiles = result(sample).response.angular_profiles.as_ref().expect("asked for");
         let (_, rows) = csv(&files, &format!("{sample}.angular_profiles.csv"));
         let angles: Vec<f64> = profiles.iter().flat_map(|profile| profile.angles.iter().copied()).collect();
         assert_eq!(rows.iter().map(|row| row[1].to_bits()).collect::<Vec<_>>(), angles.map_bits());
@@ -234,10 +274,12 @@ impl MapBits for [f64] {
 #[test]
 fn fitted_solutions_stand_beside_the_profile() {
     use jamscope::reference::{Annulus, RadialSolution, elastic::Elastic};
-    use jamscope::run::FitResult;
+    use jamscope::response::Measurement;
 
     let result = result("dense");
-    let Some(FitResult::Fitted(fit)) = &result.profile_fit else { panic!("no fit: {:?}", result.profile_fit) };
+    let Some(Measurement::Measured(fit)) = &result.response.profile_fit else {
+        panic!("no fit: {:?}", result.response.profile_fit)
+    };
     let annulus = Annulus::new(result.inflation.inner_radius, result.inflation.outer_radius).expect("an annulus");
     let elastic = Elastic::<2>::new(annulus, fit.elastic.amplitude.value).expect("finite");
     let (names, rows) = csv(&written(report()), "dense.radial_profile.csv");
@@ -296,9 +338,10 @@ fn packings_are_read_back_to_the_same_bits() {
         let result = result(sample);
         let path = |ending: &str| folder.path().join(format!("{sample}.{ending}"));
         check_same(&read_packing(path("packing.xyz")).expect("readable"), &result.prepared);
+        check_same(&read_packing(path("before.xyz")).expect("readable"), result.inflated.before.packing.get());
         let after = result.inflated.after.packing.get();
         check_same(&read_packing(path("displacement.xyz")).expect("readable"), after);
-        check_field(&path("displacement.xyz"), &result.field);
+        check_field(&path("displacement.xyz"), &result.response.field);
         let deflated = result.inflated.deflated.as_ref().expect("deflated").packing.get();
         check_same(&read_packing(path("deflated.xyz")).expect("readable"), deflated);
         check_field(&path("deflated.xyz"), result.cycle_field.as_ref().expect("deflated"));
@@ -347,9 +390,9 @@ fn the_table_fits_a_terminal_and_has_every_sample() {
     assert!(table.contains("at a minimum") && table.contains("plastic share"), "{table}");
     #[cfg(feature = "fit")]
     {
-        use jamscope::run::FitResult;
+        use jamscope::response::Measurement;
         let SampleOutcome::Done(dense) = &mut report.samples[1].result else { panic!("dense has a result") };
-        dense.profile_fit = Some(FitResult::Refused("too few rings".into()));
+        dense.response.profile_fit = Some(Measurement::Refused("too few rings".into()));
         assert!(terminal_table(&report).contains("\ndense, no fit: too few rings\n"));
     }
     // More samples than stand side by side, and a name that fits no column.
@@ -364,7 +407,8 @@ fn the_table_fits_a_terminal_and_has_every_sample() {
 mod plot {
     use super::*;
     use jamscope::inflation::Boundary;
-    use jamscope::report::figures::{angular::angular_figure, heat_map::heat_map, radial::radial_figure};
+    use jamscope::report::figures::map::MapFrame;
+    use jamscope::report::figures::{Figure, angular::angular_figure, heat_map::heat_map, radial::radial_figure};
     use jamscope::report::page::page;
 
     /// Elements of HTML that are never closed.
@@ -420,16 +464,23 @@ mod plot {
         }
     }
 
+    /// The map of a sample.
+    fn map(name: &str, result: &SampleResult, boundary: Boundary) -> Figure {
+        let radii = result.inflated.before.packing.get().radii();
+        let frame = MapFrame::new(boundary, result.response.field.outer_radius, result.packing.box_sides, 0.7);
+        heat_map(name, &result.response.field, radii, &frame)
+    }
+
     #[test]
     fn figures_are_well_formed_and_small() {
         for sample in ["loose", "dense"] {
             let result = result(sample);
-            let profile = result.radial_profile.as_ref().expect("asked for");
-            let profiles = result.angular_profiles.as_ref().expect("asked for");
+            let profile = result.response.radial_profile.as_ref().expect("asked for");
+            let profiles = result.response.angular_profiles.as_ref().expect("asked for");
             let figures = [
-                heat_map(sample, result, Boundary::default()),
-                heat_map(sample, result, Boundary::Periodic),
-                radial_figure(sample, result, profile).expect("finite"),
+                map(sample, result, Boundary::default()),
+                map(sample, result, Boundary::Periodic),
+                radial_figure(sample, &result.response, profile).expect("finite"),
                 angular_figure(sample, profiles).expect("finite"),
             ];
             for figure in figures {
@@ -451,20 +502,20 @@ mod plot {
     #[test]
     fn the_map_shows_every_mobile_disk() {
         let result = result("dense");
-        let svg = heat_map("dense", result, Boundary::default()).to_svg();
+        let svg = map("dense", result, Boundary::default()).to_svg();
         let disks = svg.matches("h0").count();
-        assert_eq!(disks, result.field.disks.len() + 1, "one stroke a disk, and the inflated one");
+        assert_eq!(disks, result.response.field.disks.len() + 1, "one stroke a disk, and the inflated one");
         let grey = svg.split("<path ").find(|path| path.starts_with("stroke=\"#c4c8cc\""));
-        let rattlers = result.field.disks.iter().filter(|disk| !disk.counted).count();
+        let rattlers = result.response.field.disks.iter().filter(|disk| !disk.counted).count();
         assert_eq!(grey.is_some(), rattlers > 0);
     }
 
     #[test]
     fn numbers_that_are_none_are_not_drawn() {
         let result = result("dense");
-        let mut profile = result.radial_profile.clone().expect("asked for");
+        let mut profile = result.response.radial_profile.clone().expect("asked for");
         let count = |profile: &RadialProfile| {
-            let svg = radial_figure("a < b & c", result, profile).expect("axes around zero").to_svg();
+            let svg = radial_figure("a < b & c", &result.response, profile).expect("axes around zero").to_svg();
             check_markup(&svg);
             assert!(svg.contains("<title>a &lt; b &amp; c"));
             svg.matches("<circle").count()

@@ -9,7 +9,8 @@ use jamscope::scene::{Scene, SceneError};
 /// Tables are parted by blank lines; those this build knows nothing of are left out.
 pub fn commented_scene() -> String {
     let known = |table: &&str| {
-        (cfg!(feature = "fit") || !table.starts_with("[observables.profile_fit]"))
+        let fitted = ["[observables.profile_fit]", "[observables.spectrum_fit]"].iter().any(|it| table.starts_with(it));
+        (cfg!(feature = "fit") || !fitted)
             && (cfg!(feature = "linear") || !table.starts_with("[observables.plastic_part]"))
     };
     include_str!("default_scene.toml").split("\n\n").filter(known).collect::<Vec<_>>().join("\n\n")

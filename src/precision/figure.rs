@@ -7,23 +7,8 @@ use std::fmt::Write as _;
 use crate::precision::ladder::{Method, Varied};
 use crate::precision::results::{Run, SamplePrecision};
 use crate::relax::Stop;
-use crate::report::figures::{Figure, HEIGHT, INK, WIDTH};
-use crate::report::number::superscript;
-
-/// Ends of the axes \[px\].
-const LEFT: f64 = 66.0;
-const RIGHT: f64 = WIDTH as f64 - 14.0;
-const TOP: f64 = 96.0;
-const BOTTOM: f64 = HEIGHT as f64 - 50.0;
-
-/// Font size of all text \[px\].
-const FONT_SIZE: u32 = 13;
-
-/// Decades below the largest error that are drawn: what lies lower, zero included, stands on the lower edge.
-const MOST_DECADES: i32 = 16;
-
-/// Labels of an axis, at most.
-const MOST_LABELS: i32 = 8;
+use crate::report::figures::log_axes::{BOTTOM, FONT_SIZE, LEFT, LogAxis, RIGHT, TOP, axes};
+use crate::report::figures::{Figure, INK};
 
 /// What is on the vertical axis.
 #[derive(Clone, Copy)]
@@ -82,8 +67,8 @@ fn figure(sample: &SamplePrecision, quantity: Quantity, price: Price) -> Option<
         .filter_map(|run| Some((run, (price.of)(run), (quantity.of)(run)?)))
         .filter(|&(_, x, y)| x > 0.0 && x.is_finite() && y.is_finite())
         .collect();
-    let x_axis = Axis::over(points.iter().map(|point| point.1), [LEFT, RIGHT])?;
-    let y_axis = Axis::over(points.iter().map(|point| point.2), [BOTTOM, TOP])?;
+    let x_axis = LogAxis::over(points.iter().map(|point| point.1), [LEFT, RIGHT])?;
+    let y_axis = LogAxis::over(points.iter().map(|point| point.2), [BOTTOM, TOP])?;
     let mut svg = axes(&x_axis, &y_axis, price.label, quantity.label);
     for method in Method::ALL {
         for varied in [Varied::ForceLimit, Varied::TimeStep, Varied::Tolerance] {
@@ -106,74 +91,6 @@ fn figure(sample: &SamplePrecision, quantity: Quantity, price: Price) -> Option<
         ),
         svg,
     ))
-}
-
-/// A logarithmic axis over whole decades.
-struct Axis {
-    first: i32,
-    last: i32,
-    ends: [f64; 2],
-}
-
-impl Axis {
-    fn over(values: impl Iterator<Item = f64>, ends: [f64; 2]) -> Option<Self> {
-        let (low, high) = values
-            .filter(|&value| value > 0.0)
-            .fold((f64::INFINITY, 0.0f64), |(low, high), value| (low.min(value), high.max(value)));
-        if high == 0.0 {
-            return None;
-        }
-        let last = high.log10().ceil() as i32;
-        let first = (low.log10().floor() as i32).min(last - 1).max(last - MOST_DECADES);
-        Some(Axis { first, last, ends })
-    }
-
-    /// Where a value stands \[px\].
-    fn place(&self, value: f64) -> f64 {
-        let share = (value.log10() - f64::from(self.first)) / f64::from(self.last - self.first);
-        self.ends[0] + share.clamp(0.0, 1.0) * (self.ends[1] - self.ends[0])
-    }
-
-    /// The powers of ten that have a label, and where they stand.
-    fn labels(&self) -> impl Iterator<Item = (i32, f64)> + '_ {
-        let stride = (self.last - self.first + MOST_LABELS - 1) / MOST_LABELS;
-        (self.first..=self.last)
-            .filter(move |power| (self.last - power) % stride.max(1) == 0)
-            .map(|power| (power, self.place(10f64.powi(power))))
-    }
-}
-
-fn axes(x_axis: &Axis, y_axis: &Axis, x_label: &str, y_label: &str) -> String {
-    let mut svg = format!("<g font-size=\"{FONT_SIZE}\" stroke-width=\"1\">\n");
-    for (power, x) in x_axis.labels() {
-        let _ = writeln!(
-            svg,
-            "<path d=\"M{x:.1} {TOP}V{BOTTOM}\" stroke=\"#e2e2e2\"/><path d=\"M{x:.1} {BOTTOM}v5\" stroke=\"{INK}\"/>\
-             <text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">10{}</text>",
-            BOTTOM + 19.0,
-            superscript(power)
-        );
-    }
-    for (power, y) in y_axis.labels() {
-        let _ = writeln!(
-            svg,
-            "<path d=\"M{LEFT} {y:.1}H{RIGHT}\" stroke=\"#e2e2e2\"/><path d=\"M{LEFT} {y:.1}h-5\" stroke=\"{INK}\"/>\
-             <text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">10{}</text>",
-            LEFT - 8.0,
-            y + 4.5,
-            superscript(power)
-        );
-    }
-    let _ = write!(
-        svg,
-        "<path d=\"M{LEFT} {TOP}V{BOTTOM}H{RIGHT}\" fill=\"none\" stroke=\"{INK}\"/>\n\
-         <text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{x_label}</text>\n\
-         <text transform=\"translate(15 {}) rotate(-90)\" text-anchor=\"middle\">{y_label}</text>\n</g>\n",
-        0.5 * (LEFT + RIGHT),
-        HEIGHT - 10,
-        0.5 * (TOP + BOTTOM)
-    );
-    svg
 }
 
 /// Where a run stands.
@@ -278,19 +195,4 @@ fn legend(unjammed: bool) -> String {
     let dotted = format!("<path d=\"M{:.1} {y:.1}h14\" stroke=\"{INK}\" stroke-dasharray=\"2 3\"/>", x - 8.0);
     entry(first + 2, dotted, "time step, tolerance");
     svg + "</g>\n"
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn decades_have_their_places_and_zero_stands_on_the_edge() {
-        let axis = Axis::over([0.0, 3e-9, 2e-3].into_iter(), [100.0, 0.0]).expect("positive values");
-        assert_eq!((axis.first, axis.last), (-9, -2));
-        assert_eq!(axis.place(1e-9), 100.0);
-        assert_eq!(axis.place(0.0), 100.0);
-        assert_eq!(axis.place(1e-2), 0.0);
-        assert!(Axis::over([0.0].into_iter(), [0.0, 1.0]).is_none());
-    }
 }

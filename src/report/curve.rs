@@ -6,9 +6,7 @@ use crate::fit::profile::{Decision, ProfileFit};
 use crate::reference::{Annulus, elastic::Elastic, screened::Screened};
 
 use crate::reference::RadialSolution;
-#[cfg(feature = "fit")]
-use crate::run::FitResult;
-use crate::run::SampleResult;
+use crate::response::Response;
 
 /// One fitted solution.
 pub(crate) struct Curve {
@@ -29,18 +27,15 @@ impl Curve {
 
 /// The fit of a sample, if there is one.
 #[cfg(feature = "fit")]
-pub(crate) fn fit_of(result: &SampleResult) -> Option<&ProfileFit> {
-    match &result.profile_fit {
-        Some(FitResult::Fitted(fit)) => Some(fit),
-        _ => None,
-    }
+pub(crate) fn fit_of(response: &Response) -> Option<&ProfileFit> {
+    response.profile_fit.as_ref()?.measured()
 }
 
 /// Fitted solutions of a sample: none without a fit.
 #[cfg(feature = "fit")]
-pub(crate) fn curves(result: &SampleResult) -> Vec<Curve> {
-    let Some(fit) = fit_of(result) else { return Vec::new() };
-    let Ok(annulus) = Annulus::new(result.inflation.inner_radius, result.inflation.outer_radius) else {
+pub(crate) fn curves(response: &Response) -> Vec<Curve> {
+    let Some(fit) = fit_of(response) else { return Vec::new() };
+    let Ok(annulus) = Annulus::new(response.field.inner_radius, response.field.outer_radius) else {
         return Vec::new();
     };
     let elastic = Elastic::<2>::new(annulus, fit.elastic.amplitude.value).ok().map(|solution| Curve {
@@ -62,18 +57,18 @@ pub(crate) fn curves(result: &SampleResult) -> Vec<Curve> {
 
 /// Without the feature `fit` nothing is fitted.
 #[cfg(not(feature = "fit"))]
-pub(crate) fn curves(_result: &SampleResult) -> Vec<Curve> {
+pub(crate) fn curves(_response: &Response) -> Vec<Curve> {
     Vec::new()
 }
 
 /// Inner and outer end of the radii fitted \[length\].
 #[cfg(feature = "fit")]
-pub(crate) fn fitted_range(result: &SampleResult) -> Option<[f64; 2]> {
-    fit_of(result).map(|fit| fit.range)
+pub(crate) fn fitted_range(response: &Response) -> Option<[f64; 2]> {
+    fit_of(response).map(|fit| fit.range)
 }
 
 /// Without the feature `fit` nothing is fitted.
 #[cfg(not(feature = "fit"))]
-pub(crate) fn fitted_range(_result: &SampleResult) -> Option<[f64; 2]> {
+pub(crate) fn fitted_range(_response: &Response) -> Option<[f64; 2]> {
     None
 }

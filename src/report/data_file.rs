@@ -1,15 +1,16 @@
 //! [`DataFile`]: which files a sample writes, and their names.
 
+use crate::report::csv::response::{ResponseFile, files};
 use crate::run::{Report, SampleResult};
 
 /// The data files of a sample.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(crate) enum DataFile {
     Packing,
+    Before,
     Displacement,
     Deflated,
-    RadialProfile,
-    AngularProfiles,
+    OfResponse(&'static ResponseFile),
     #[cfg(feature = "linear")]
     PlasticProfile,
     #[cfg(feature = "linear")]
@@ -19,39 +20,29 @@ pub(crate) enum DataFile {
 impl DataFile {
     /// Those of a sample, by what its scene asked for.
     pub(crate) fn of(report: &Report, result: &SampleResult) -> Vec<DataFile> {
-        let field = report.scene.observables.displacement_field.is_some();
-        let wanted = |file: &DataFile| match file {
-            DataFile::Packing | DataFile::Displacement => field,
-            DataFile::Deflated => field && result.cycle_field.is_some(),
-            DataFile::RadialProfile => result.radial_profile.is_some(),
-            DataFile::AngularProfiles => result.angular_profiles.is_some(),
-            #[cfg(feature = "linear")]
-            DataFile::PlasticProfile => matches!(result.plastic_part, Some(crate::run::PlasticResult::Measured(_))),
-            #[cfg(feature = "linear")]
-            DataFile::Protocol => crate::report::protocol::measured(result).is_some(),
-        };
-        let all = [
-            DataFile::Packing,
-            DataFile::Displacement,
-            DataFile::Deflated,
-            DataFile::RadialProfile,
-            DataFile::AngularProfiles,
-            #[cfg(feature = "linear")]
-            DataFile::PlasticProfile,
-            #[cfg(feature = "linear")]
-            DataFile::Protocol,
-        ];
-        all.into_iter().filter(wanted).collect()
+        let mut all = Vec::new();
+        if report.scene.observables.displacement_field.is_some() {
+            all.extend([DataFile::Packing, DataFile::Before, DataFile::Displacement]);
+            all.extend(result.cycle_field.as_ref().map(|_| DataFile::Deflated));
+        }
+        all.extend(files(&result.response).map(DataFile::OfResponse));
+        #[cfg(feature = "linear")]
+        {
+            let plastic = result.plastic_part.as_ref().and_then(|it| it.measured());
+            all.extend(plastic.map(|_| DataFile::PlasticProfile));
+            all.extend(crate::report::protocol::measured(result).map(|_| DataFile::Protocol));
+        }
+        all
     }
 
     /// Its name for this sample.
     pub(crate) fn name(self, sample: &str) -> String {
         let ending = match self {
             DataFile::Packing => "packing.xyz",
+            DataFile::Before => "before.xyz",
             DataFile::Displacement => "displacement.xyz",
             DataFile::Deflated => "deflated.xyz",
-            DataFile::RadialProfile => "radial_profile.csv",
-            DataFile::AngularProfiles => "angular_profiles.csv",
+            DataFile::OfResponse(file) => file.ending,
             #[cfg(feature = "linear")]
             DataFile::PlasticProfile => "plastic_profile.csv",
             #[cfg(feature = "linear")]

@@ -71,10 +71,15 @@ impl Files<'_> {
                         &origin("prepared", result.packing.pressure, &result.packing.certificate),
                     )?;
                 }
+                DataFile::Before => {
+                    let (before, certificate) = (&result.inflated.before, &result.inflation.before.certificate);
+                    let origin = origin("before", before.pressure, certificate);
+                    self.packing(&path, before.packing.get(), &[], &origin)?;
+                }
                 DataFile::Displacement => {
                     let (after, certificate) = (&result.inflated.after, &result.inflation.after.certificate);
                     let origin = origin("inflated", after.pressure, certificate);
-                    self.field(&path, after.packing.get(), &result.field, &origin)?;
+                    self.field(&path, after.packing.get(), &result.response.field, &origin)?;
                 }
                 DataFile::Deflated => {
                     let rest = result.inflated.deflated.as_ref().zip(result.inflation.deflated.as_ref());
@@ -83,19 +88,14 @@ impl Files<'_> {
                         self.field(&path, rest.packing.get(), field, &origin)?;
                     }
                 }
-                DataFile::RadialProfile => {
-                    if let Some(profile) = &result.radial_profile {
-                        self.text(&path, &csv::radial_profile(result, profile))?;
-                    }
-                }
-                DataFile::AngularProfiles => {
-                    if let Some(profiles) = &result.angular_profiles {
-                        self.text(&path, &csv::angular_profiles(profiles))?;
+                DataFile::OfResponse(file) => {
+                    if let Some(text) = (file.text)(&result.response) {
+                        self.text(&path, &text)?;
                     }
                 }
                 #[cfg(feature = "linear")]
                 DataFile::PlasticProfile => {
-                    if let Some(crate::run::PlasticResult::Measured(plastic)) = &result.plastic_part {
+                    if let Some(plastic) = result.plastic_part.as_ref().and_then(|it| it.measured()) {
                         self.text(&path, &csv::plastic_profile(&plastic.radial_profile))?;
                     }
                 }

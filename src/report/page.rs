@@ -4,11 +4,10 @@ use std::fmt::Write as _;
 
 use crate::inflation::Boundary;
 use crate::report::data_file::DataFile;
-use crate::report::figures::angular::angular_figure;
-use crate::report::figures::heat_map::heat_map;
-use crate::report::figures::radial::radial_figure;
+use crate::report::figures::map::MapFrame;
 use crate::report::figures::{Figure, FigureError, escaped};
 use crate::report::number::{count, significant};
+use crate::report::response_page;
 use crate::report::rows::{Times, done, law, sections, settings};
 use crate::run::{Report, SampleOutcome, SampleReport, SampleResult};
 use crate::scene::Source;
@@ -53,25 +52,8 @@ fn introduction(report: &Report) -> String {
         "A disk {place} grows in radius by d<sub>0</sub> = {} and the packing around it comes to rest again. ",
         significant(scene.inflation.increase, 3)
     );
-    let any = |has: fn(&SampleResult) -> bool| report.samples.iter().filter_map(done).any(has);
-    if scene.observables.displacement_field.is_some() {
-        text.push_str(
-            "The map shows r·d<sub>r</sub>, the radial displacement of each disk times its distance from the centre, \
-             over a size that 98 % of the disks stay below: orange moves outwards, purple inwards; grey disks are rattlers. ",
-        );
-    }
-    if any(|it| it.radial_profile.is_some()) {
-        text.push_str("The radial profile is its mean over rings, with standard errors. ");
-    }
-    if any(|it| !crate::report::curve::curves(it).is_empty()) {
-        text.push_str(
-            "It is held against the elastic solution and the one screened by plastic events with wavenumber κ; the one \
-             that describes it is solid, the other dashed. ",
-        );
-    }
-    if any(|it| it.angular_profiles.is_some()) {
-        text.push_str("The angular profiles show single disks in narrow rings: smooth where the response is elastic, noise-like where it is not. ");
-    }
+    let responses: Vec<_> = report.samples.iter().filter_map(done).map(|result| &result.response).collect();
+    text.push_str(&response_page::legend(&responses, scene.observables.displacement_field.is_some()));
     text.trim_end().into()
 }
 
@@ -140,11 +122,11 @@ fn facts(result: &SampleResult) -> String {
 #[cfg(feature = "fit")]
 fn decided(result: &SampleResult) -> Option<String> {
     use crate::fit::profile::Decision;
-    use crate::run::FitResult;
-    Some(match result.profile_fit.as_ref()? {
-        FitResult::Refused(reason) => format!("no fit: {}", escaped(reason)),
-        FitResult::Fitted(fit) => {
-            let kappa = crate::report::rows::wavenumber(fit).map_or(String::new(), |text| escaped(&text));
+    use crate::response::Measurement;
+    Some(match result.response.profile_fit.as_ref()? {
+        Measurement::Refused(reason) => format!("no fit: {}", escaped(reason)),
+        Measurement::Measured(fit) => {
+            let kappa = crate::report::rows::response::wavenumber(fit).map_or(String::new(), |text| escaped(&text));
             match fit.decision {
                 Decision::Elastic => format!("profile elastic (κ {kappa}, consistent with 0)"),
                 Decision::Screened => format!("profile screened (κ = {kappa})"),
@@ -160,17 +142,13 @@ fn decided(_result: &SampleResult) -> Option<String> {
 }
 
 fn figures(report: &Report, name: &str, result: &SampleResult) -> Result<Vec<Figure>, FigureError> {
-    let mut figures = Vec::new();
-    if report.scene.observables.displacement_field.is_some() {
-        figures.push(heat_map(name, result, report.scene.inflation.boundary));
-    }
-    if let Some(profile) = &result.radial_profile {
-        figures.push(radial_figure(name, result, profile)?);
-    }
-    if let Some(profiles) = &result.angular_profiles {
-        figures.push(angular_figure(name, profiles)?);
-    }
-    Ok(figures)
+    let radii = result.inflated.before.packing.get().radii();
+    // Disks whose centre lies within the boundary reach beyond it by a radius.
+    let widest = radii.iter().copied().fold(0.0, f64::max);
+    let (boundary, outer_radius) = (report.scene.inflation.boundary, result.response.field.outer_radius);
+    let frame = MapFrame::new(boundary, outer_radius, result.packing.box_sides, widest);
+    let heat = report.scene.observables.displacement_field.is_some();
+    response_page::figures(name, &result.response, radii, &frame, heat)
 }
 
 /// All rows of all samples that came to a result.

@@ -10,12 +10,12 @@ use crate::run::{Report, SampleReport, SampleResult};
 
 /// The comparison of a sample, if it was made.
 pub(crate) fn measured(result: &SampleResult) -> Option<&ProtocolSensitivity> {
-    result.protocol.as_ref()?.measured()
+    result.protocol.as_ref()?.measured().map(Box::as_ref)
 }
 
 /// The rows of the table.
 pub(crate) fn section(samples: &[SampleReport]) -> Section {
-    let mut rows = Rows::new(samples);
+    let mut rows = Rows::of_samples(samples);
     let deviation = |spread: Option<Spread>| {
         spread.filter(|spread| spread.count > 1).map(|spread| significant(spread.standard_deviation, 2))
     };

@@ -9,27 +9,23 @@ use std::path::{Path, PathBuf};
 use crate::certificate::Certificate;
 use crate::contact::{ContactNetwork, LawChoice, OnSite, PairLaw};
 use crate::displacement::DisplacementField;
-#[cfg(feature = "fit")]
-use crate::fit::profile::fit_radial_profile;
 use crate::inflation::{Inflated, InflationError, Rest, inflate};
 use crate::io::{ReadError, read_packing};
-use crate::observe::{AngularProfile, PressureChange, RadialProfile};
+use crate::observe::PressureChange;
+use crate::observe::state::State;
 use crate::packing::{Packing, PackingError};
 use crate::preparation::{Preparation, PreparationError, Target, prepare};
 #[cfg(feature = "linear")]
 use crate::protocol::{Compared, Protocol, ProtocolSensitivity, ProtocolSettings, ProtocolSummary, chosen};
-#[cfg(feature = "fit")]
-use crate::reference::Annulus;
 use crate::relax::{Criterion, Look, Outcome, Relaxer, RelaxerChoice, Stop, Trace};
+use crate::response::{Response, Subject};
 use crate::scene::{Sample, Scene, SceneError, Source};
 
-#[cfg(feature = "fit")]
-pub use report_data::FitResult;
+#[cfg(feature = "linear")]
+pub use report_data::PlasticSummary;
 pub use report_data::{
     InflationSummary, PackingSummary, Report, RestSummary, SampleOutcome, SampleReport, SampleResult, StateSummary,
 };
-#[cfg(feature = "linear")]
-pub use report_data::{PlasticResult, PlasticSummary, ProtocolResult};
 
 /// Why a run, or one sample of it, came to nothing.
 #[derive(Debug, thiserror::Error)]
@@ -150,7 +146,7 @@ pub fn run(scene: &Scene, progress: &impl Progress) -> Result<Report, RunError> 
 #[cfg(feature = "linear")]
 fn protocol_summary(samples: &[SampleReport]) -> Option<ProtocolSummary> {
     let compared = samples.iter().filter_map(|sample| match &sample.result {
-        SampleOutcome::Done(result) => result.protocol.as_ref()?.measured(),
+        SampleOutcome::Done(result) => result.protocol.as_ref()?.measured().map(Box::as_ref),
         SampleOutcome::Failed(_) => None,
     });
     ProtocolSummary::of(samples.len(), &compared.collect::<Vec<_>>())
@@ -186,21 +182,8 @@ fn run_with<L: PairLaw>(
     let (prepared, packing) = packing_of(scene, sample, law, trace)?;
     let trace = &mut watch("inflation", &sample.relaxer);
     let inflated = inflate(&scene.inflation, &prepared, law, &sample.relaxer, sample.seed, trace)?;
-    let field = DisplacementField::of_inflation(&inflated);
     let observables = &scene.observables;
-    let radial_profile = observables.radial_profile.map(|settings| RadialProfile::of(&field, settings.ring_width));
-    let angular_profiles = observables
-        .angular_profiles
-        .as_ref()
-        .map(|settings| settings.relative_radii.iter().map(|&radius| AngularProfile::of(&field, radius)).collect());
-    #[cfg(feature = "fit")]
-    let profile_fit =
-        observables.profile_fit.zip(radial_profile.as_ref()).map(|(settings, profile)| {
-            match Annulus::new(field.inner_radius, field.outer_radius) {
-                Ok(annulus) => fit_radial_profile(profile, annulus, &settings).into(),
-                Err(error) => FitResult::Refused(error.to_string()),
-            }
-        });
+    let response = Response::of(subject(&inflated, law)?, observables);
     #[cfg(feature = "linear")]
     let plastic_part = observables
         .plastic_part
@@ -208,24 +191,32 @@ fn run_with<L: PairLaw>(
     #[cfg(feature = "linear")]
     let protocol = observables.protocol.filter(|settings| takes(scene, sample, settings)).map(|settings| {
         let trace = &mut watch("protocols", &sample.relaxer);
-        protocol_of(scene, sample, &inflated, law, &settings, trace).into()
+        protocol_of(scene, sample, &inflated, law, &settings, trace).map(Box::new).into()
     });
     Ok(SampleResult {
         packing,
         inflation: summary(&inflated, law, scene.inflation.on_site_coupling)?,
-        measured_on: field.measured_on,
-        radial_profile,
-        #[cfg(feature = "fit")]
-        profile_fit,
-        angular_profiles,
+        response,
         #[cfg(feature = "linear")]
         plastic_part,
         #[cfg(feature = "linear")]
         protocol,
         cycle_field: DisplacementField::of_cycle(&inflated),
-        field,
         inflated,
         prepared,
+    })
+}
+
+/// An inflation as the observables see it.
+fn subject<'a, L: PairLaw>(inflated: &'a Inflated<2>, law: &L) -> Result<Subject<'a>, PackingError> {
+    let state = |rest: &'a Rest<2>| State::new(rest.packing.get(), law);
+    Ok(Subject {
+        field: DisplacementField::of_inflation(inflated),
+        before: state(&inflated.before)?,
+        after: state(&inflated.after)?,
+        deflated: inflated.deflated.as_ref().map(state).transpose()?,
+        centre: inflated.centre,
+        pressure_change: inflated.after.pressure - inflated.before.pressure,
     })
 }
 

@@ -7,7 +7,7 @@ use crate::linear::{LinearError, LinearResponse};
 use crate::observe::RadialProfile;
 use crate::packing::ball_volume;
 use crate::plastic::PlasticPart;
-use crate::run::{PlasticResult, PlasticSummary};
+use crate::run::PlasticSummary;
 
 /// Against the linear response of the state before, with the sites of the scene if it has any.
 pub(super) fn of<L: PairLaw>(
@@ -53,10 +53,4 @@ fn with_law<L: PairLaw>(
         negative_eigenvalue_count: response.negative_eigenvalue_count,
         backward_error: response.backward_error,
     })
-}
-
-impl From<Result<PlasticSummary, LinearError>> for PlasticResult {
-    fn from(result: Result<PlasticSummary, LinearError>) -> Self {
-        result.map_or_else(|error| PlasticResult::Refused(error.to_string()), PlasticResult::Measured)
-    }
 }

@@ -3,19 +3,17 @@
 use serde::Serialize;
 
 use crate::certificate::Certificate;
-use crate::displacement::{DisplacementField, MeasuredOn};
-#[cfg(feature = "fit")]
-use crate::fit::FitError;
-#[cfg(feature = "fit")]
-use crate::fit::profile::ProfileFit;
+use crate::displacement::DisplacementField;
 use crate::inflation::Inflated;
-use crate::observe::{AngularProfile, RadialProfile};
-use crate::packing::Packing;
 #[cfg(feature = "linear")]
-use crate::packing::PackingError;
+use crate::observe::RadialProfile;
+use crate::packing::Packing;
 #[cfg(feature = "linear")]
 use crate::protocol::{ProtocolSensitivity, ProtocolSummary};
 use crate::relax::{Cost, Criterion};
+#[cfg(feature = "linear")]
+use crate::response::Measurement;
+use crate::response::Response;
 use crate::scene::Scene;
 
 /// What a run gives.
@@ -62,29 +60,17 @@ pub struct SampleResult {
     pub packing: PackingSummary,
     /// The inflation.
     pub inflation: InflationSummary,
-    /// Which disks the observables below are measured on.
-    pub measured_on: MeasuredOn,
-    /// Mean radial displacement in rings.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub radial_profile: Option<RadialProfile>,
-    /// The fits of it.
-    #[cfg(feature = "fit")]
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub profile_fit: Option<FitResult>,
-    /// Radial displacement against angle.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub angular_profiles: Option<Vec<AngularProfile>>,
+    /// All that is measured on it.
+    #[serde(flatten)]
+    pub response: Response,
     /// What of the response is not in the linear one.
     #[cfg(feature = "linear")]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub plastic_part: Option<PlasticResult>,
+    pub plastic_part: Option<Measurement<PlasticSummary>>,
     /// Whether other relaxers end in the same minimum.
     #[cfg(feature = "linear")]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub protocol: Option<ProtocolResult>,
-    /// The displacement field.
-    #[serde(skip)]
-    pub field: DisplacementField<2>,
+    pub protocol: Option<Measurement<Box<ProtocolSensitivity>>>,
     /// What the deflation leaves of it.
     #[serde(skip)]
     pub cycle_field: Option<DisplacementField<2>>,
@@ -94,67 +80,6 @@ pub struct SampleResult {
     /// The packing itself.
     #[serde(skip)]
     pub prepared: Packing<2>,
-}
-
-/// A fit, or why there is none.
-#[cfg(feature = "fit")]
-#[derive(Debug, Clone, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum FitResult {
-    /// The fit.
-    Fitted(ProfileFit),
-    /// Why there is none.
-    Refused(String),
-}
-
-#[cfg(feature = "fit")]
-impl From<Result<ProfileFit, FitError>> for FitResult {
-    fn from(result: Result<ProfileFit, FitError>) -> Self {
-        result.map_or_else(|error| FitResult::Refused(error.to_string()), FitResult::Fitted)
-    }
-}
-
-/// The plastic part, or why there is none.
-#[cfg(feature = "linear")]
-#[derive(Debug, Clone, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum PlasticResult {
-    /// The plastic part in numbers.
-    Measured(PlasticSummary),
-    /// Why there is none: no linear response.
-    Refused(String),
-}
-
-/// Where the protocols ended, or why that is not known.
-#[cfg(feature = "linear")]
-#[derive(Debug, Clone, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ProtocolResult {
-    /// Where they ended.
-    Measured(Box<ProtocolSensitivity>),
-    /// Why that is not known.
-    Refused(String),
-}
-
-#[cfg(feature = "linear")]
-impl ProtocolResult {
-    /// Where they ended, if known.
-    pub fn measured(&self) -> Option<&ProtocolSensitivity> {
-        match self {
-            ProtocolResult::Measured(sensitivity) => Some(sensitivity),
-            ProtocolResult::Refused(_) => None,
-        }
-    }
-}
-
-#[cfg(feature = "linear")]
-impl From<Result<ProtocolSensitivity, PackingError>> for ProtocolResult {
-    fn from(result: Result<ProtocolSensitivity, PackingError>) -> Self {
-        result.map_or_else(
-            |error| ProtocolResult::Refused(error.to_string()),
-            |sensitivity| ProtocolResult::Measured(Box::new(sensitivity)),
-        )
-    }
 }
 
 /// The plastic part in numbers: what of the response is not in the linear one.

@@ -38,6 +38,23 @@ impl Default for CrossoverSettings {
     }
 }
 
+impl CrossoverSettings {
+    /// Whether every number makes sense, whatever the rings.
+    pub(crate) fn check(&self) -> Result<(), SpectrumFitError> {
+        self.window.check()?;
+        let factor = self.angle_factor;
+        if !(factor > 0.0 && factor.is_finite()) {
+            return Err(SpectrumFitError::SettingOutOfRange { setting: "angle_factor", value: factor });
+        }
+        match self.exponent {
+            ExponentChoice::Fixed(value) if !(value > 0.0 && value <= 100.0) => {
+                Err(SpectrumFitError::SettingOutOfRange { setting: "exponent", value })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 /// The exponent of the Lorentzian.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -129,15 +146,8 @@ impl CrossoverOutcome {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn fit_crossover(rings: &[RingSample], settings: &CrossoverSettings) -> Result<CrossoverFit, SpectrumFitError> {
+    settings.check()?;
     let factor = settings.angle_factor;
-    if !(factor > 0.0 && factor.is_finite()) {
-        return Err(SpectrumFitError::SettingOutOfRange { setting: "angle_factor", value: factor });
-    }
-    if let ExponentChoice::Fixed(value) = settings.exponent
-        && !(value > 0.0 && value <= 100.0)
-    {
-        return Err(SpectrumFitError::SettingOutOfRange { setting: "exponent", value });
-    }
     let powers = Powers::of(rings, &settings.window)?;
     let [_, highest] = powers.window();
     let deviance = |shape: Shape| powers.best(|logarithm| shape.at(logarithm)).deviance;

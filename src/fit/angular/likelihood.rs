@@ -49,10 +49,7 @@ pub(super) struct Best {
 
 impl Powers {
     pub(super) fn of(rings: &[RingSample], settings: &SpectrumWindowSettings) -> Result<Self, SpectrumFitError> {
-        let extent = settings.frequencies_per_disk;
-        if !(1.0..=1e3).contains(&extent) {
-            return Err(SpectrumFitError::SettingOutOfRange { setting: "frequencies_per_disk", value: extent });
-        }
+        settings.check()?;
         if rings.is_empty() {
             return Err(SpectrumFitError::NoRing);
         }

@@ -62,6 +62,18 @@ impl Default for SpectrumWindowSettings {
     }
 }
 
+impl SpectrumWindowSettings {
+    /// Whether every number makes sense, whatever the rings.
+    pub(crate) fn check(&self) -> Result<(), SpectrumFitError> {
+        let value = self.frequencies_per_disk;
+        if (1.0..=1e3).contains(&value) {
+            Ok(())
+        } else {
+            Err(SpectrumFitError::SettingOutOfRange { setting: "frequencies_per_disk", value })
+        }
+    }
+}
+
 /// The highest frequency fitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

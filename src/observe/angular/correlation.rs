@@ -162,10 +162,14 @@ fn spectrum_correlation(spectrum: &PowerSpectrum, angle: f64) -> f64 {
 }
 
 impl CorrelationSettings {
-    fn check(&self) -> Result<(), AngularError> {
+    /// Whether every number makes sense, whatever the ring.
+    pub(crate) fn check(&self) -> Result<(), AngularError> {
         let bin_count = match self.estimator {
             CorrelationEstimator::Pairs { bin_count } => bin_count,
-            CorrelationEstimator::Spectral(_) => 1,
+            CorrelationEstimator::Spectral(spectrum) => {
+                spectrum.check()?;
+                1
+            }
         };
         for (setting, count) in [("steps", self.step_count), ("bins", bin_count)] {
             if count == 0 {

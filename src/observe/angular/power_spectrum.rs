@@ -117,6 +117,18 @@ pub struct PowerSpectrum {
     pub white_floor: f64,
 }
 
+impl SpectrumSettings {
+    /// Whether every number makes sense, whatever the ring.
+    pub(crate) fn check(&self) -> Result<(), AngularError> {
+        self.frequency_limit.of(1)?;
+        match self.estimator {
+            SpectrumEstimator::Direct { .. } => Ok(()),
+            SpectrumEstimator::Interpolated { points_per_disk: value } => positive("points per disk", value).map(drop),
+            SpectrumEstimator::Binned { bins_per_disk: value } => positive("bins per disk", value).map(drop),
+        }
+    }
+}
+
 impl PowerSpectrum {
     /// The spectrum of a ring.
     ///

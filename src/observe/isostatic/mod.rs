@@ -103,15 +103,31 @@ impl IsostaticLength {
         law: &L,
         settings: &IsostaticSettings,
     ) -> Result<Self, IsostaticError> {
-        settings.check()?;
         let before = State::new(inflated.before.packing.get(), law)?;
         let after = State::new(inflated.after.packing.get(), law)?;
-        let changes = BondChanges::between(&before, &after, inflated.centre, settings.bonds);
-        let fluctuations =
-            Fluctuations::of_bonds(&changes, settings.measure, inflated.outer_radius, settings.ring_width);
+        Self::between(&before, &after, inflated.centre, inflated.outer_radius, settings)
+    }
+
+    /// ℓ_iso from one state to another of the same disks; distances are from disk `centre`, which grew.
+    ///
+    /// # Errors
+    /// Settings that make no sense.
+    ///
+    /// # Panics
+    /// If the packings differ in their number of disks.
+    pub fn between<const D: usize>(
+        before: &State<D>,
+        after: &State<D>,
+        centre: usize,
+        outer_radius: f64,
+        settings: &IsostaticSettings,
+    ) -> Result<Self, IsostaticError> {
+        settings.check()?;
+        let changes = BondChanges::between(before, after, centre, settings.bonds);
+        let fluctuations = Fluctuations::of_bonds(&changes, settings.measure, outer_radius, settings.ring_width);
         let excess = ExcessCoordination::of(&before.network).map(|excess| excess.value);
-        let increase = after.packing.radii()[inflated.centre] - inflated.inner_radius;
-        Self::of(&fluctuations, excess, increase, inflated.outer_radius, settings)
+        let increase = after.packing.radii()[centre] - before.packing.radii()[centre];
+        Self::of(&fluctuations, excess, increase, outer_radius, settings)
     }
 
     /// ℓ_iso of a fluctuation against r, which may be a mean over samples, or h_r to see that it does not collapse.

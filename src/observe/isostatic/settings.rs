@@ -144,7 +144,8 @@ impl IsostaticRule {
 }
 
 impl IsostaticSettings {
-    pub(super) fn check(&self) -> Result<(), IsostaticError> {
+    /// Whether every number makes sense.
+    pub(crate) fn check(&self) -> Result<(), IsostaticError> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         if !positive(self.ring_width) {
             return Err(IsostaticError::RingWidthNotPositive { ring_width: self.ring_width });

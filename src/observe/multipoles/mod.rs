@@ -191,7 +191,8 @@ impl Member {
 }
 
 impl MultipoleSettings {
-    fn check(&self) -> Result<(), MultipoleError> {
+    /// Whether every number makes sense.
+    pub(crate) fn check(&self) -> Result<(), MultipoleError> {
         let Self { highest_mode, ring_width, disks_per_coefficient } = *self;
         if !(2..=HIGHEST_MODE).contains(&highest_mode) {
             return Err(MultipoleError::HighestModeOutOfRange { highest_mode });

@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use crate::inflation::Boundary;
+use crate::displacement::DisplacementField;
 use crate::report::figures::map::{MapFrame, Range, colour_bar, level, map_label};
 use crate::report::figures::palette::{diverging, hexadecimal};
 use crate::report::figures::{Figure, RESCALED, escaped};
 use crate::report::number::significant;
-use crate::run::SampleResult;
 
 /// Colours on either side of zero.
 const LEVELS: i32 = 32;
@@ -21,14 +20,15 @@ const RATTLER: &str = "#c4c8cc";
 ///
 /// Disks stand at their positions before the inflation, with their radii. Grey: not counted (rattlers). Black: the
 /// inflated disk. Each disk is a line of no length with round ends, as wide as the disk: ten letters instead of sixty.
-pub fn heat_map(name: &str, result: &SampleResult, boundary: Boundary) -> Figure {
-    let field = &result.field;
+///
+/// `radii` are those of the packing the field was made from, in its order.
+///
+/// # Panics
+/// If there are fewer radii than disks.
+pub fn heat_map(name: &str, field: &DisplacementField<2>, radii: &[f64], frame: &MapFrame) -> Figure {
     let range = Range::of(field.counted().map(|disk| disk.distance * disk.radial));
-    // Disks whose centre lies within the boundary reach beyond it by a radius.
-    let widest = result.inflated.before.packing.get().radii().iter().copied().fold(0.0, f64::max);
-    let frame = MapFrame::new(boundary, field.outer_radius, result.packing.box_sides, widest);
     let elements = [
-        disks(&frame, result, range.shown),
+        disks(frame, field, radii, range.shown),
         frame.boundary(),
         frame.scale_bar(),
         colour_bar(diverging, LEVELS),
@@ -52,11 +52,10 @@ pub fn heat_map(name: &str, result: &SampleResult, boundary: Boundary) -> Figure
 }
 
 /// All mobile disks and the inflated one, in a group whose origin is the centre.
-fn disks(frame: &MapFrame, result: &SampleResult, full: f64) -> String {
-    let radii = result.inflated.before.packing.get().radii();
+fn disks(frame: &MapFrame, field: &DisplacementField<2>, radii: &[f64], full: f64) -> String {
     // Colour level, then width: few groups, in an order that does not depend on the disks.
     let mut groups: BTreeMap<(Option<i32>, i64), String> = BTreeMap::new();
-    for disk in &result.field.disks {
+    for disk in &field.disks {
         let level = disk.counted.then(|| level(disk.distance * disk.radial, full, LEVELS));
         let path = groups.entry((level, frame.tenths(2.0 * radii[disk.disk]))).or_default();
         let [x, y] = frame.place(disk.position);
@@ -67,7 +66,7 @@ fn disks(frame: &MapFrame, result: &SampleResult, full: f64) -> String {
         let colour = level.map_or(RATTLER.into(), |level| hexadecimal(diverging(f64::from(level) / f64::from(LEVELS))));
         let _ = writeln!(markup, "<path stroke=\"{colour}\" stroke-width=\"{width}\" d=\"{path}\"/>");
     }
-    let inflated = frame.tenths(2.0 * result.inflation.inner_radius);
+    let inflated = frame.tenths(2.0 * field.inner_radius);
     let _ = writeln!(markup, "<path stroke=\"#000000\" stroke-width=\"{inflated}\" d=\"M0 0h0\"/>");
     frame.group(&markup)
 }

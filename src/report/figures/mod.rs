@@ -1,6 +1,8 @@
 //! Figures of one sample as SVG: [`heat_map`](heat_map::heat_map), [`radial`](radial::radial_figure),
 //! [`angular`](angular::angular_figure), [`bond_map`](bond_map::bond_map), [`contact_map`](contact_map::contact_map),
-//! [`isostatic`](isostatic::isostatic_figure), [`multipoles`](multipoles::multipole_figure).
+//! [`isostatic`](isostatic::isostatic_figure), [`multipoles`](multipoles::multipole_figure),
+//! [`correlation`](correlation::correlation_figure), [`spectrum`](spectrum::spectrum_figure),
+//! [`radial_dependence`](radial_dependence::radial_dependence_figure).
 //!
 //! All have one height and one style, so that they stand in a row. The charts are drawn by plotters, on a canvas
 //! ten times finer than the picture, because plotters places points on whole pixels; maps are written directly, one
@@ -10,12 +12,16 @@ pub mod angular;
 pub mod bond_map;
 mod chart;
 pub mod contact_map;
+pub mod correlation;
 pub mod heat_map;
 pub mod isostatic;
+pub(crate) mod log_axes;
 pub mod map;
 pub mod multipoles;
 mod palette;
 pub mod radial;
+pub mod radial_dependence;
+pub mod spectrum;
 
 /// Height of every figure \[px\].
 pub const HEIGHT: u32 = 440;

@@ -9,7 +9,7 @@ use crate::report::figures::AMPLITUDE;
 use crate::report::figures::chart::{Axes, Chart, Drawn, Entry, LegendLine, SCALE, Scaling, Sign};
 use crate::report::figures::palette::{BLUE, VERMILLION};
 use crate::report::figures::{Figure, FigureError, RESCALED};
-use crate::run::SampleResult;
+use crate::response::Response;
 
 /// Points of a fitted curve: two pixels apart.
 const CURVE_POINTS: usize = 200;
@@ -22,11 +22,11 @@ const MEASURED: [u8; 3] = [0x22, 0x22, 0x22];
 ///
 /// # Errors
 /// A profile without a finite number.
-pub fn radial_figure(name: &str, result: &SampleResult, profile: &RadialProfile) -> Result<Figure, FigureError> {
-    let range = fitted_range(result);
-    let curves: Vec<Curve> = curves(result).into_iter().filter(|curve| distinct(result, curve)).collect();
+pub fn radial_figure(name: &str, response: &Response, profile: &RadialProfile) -> Result<Figure, FigureError> {
+    let range = fitted_range(response);
+    let curves: Vec<Curve> = curves(response).into_iter().filter(|curve| distinct(response, curve)).collect();
     let fitted = |radius: f64| range.is_none_or(|[from, to]| from <= radius && radius <= to);
-    let outer_radius = result.inflation.outer_radius;
+    let outer_radius = response.field.outer_radius;
     let y_range = y_range(profile, &curves, outer_radius);
     let chart = Chart {
         title: format!("{name}: radial profile"),
@@ -41,11 +41,11 @@ pub fn radial_figure(name: &str, result: &SampleResult, profile: &RadialProfile)
         y_label: RESCALED,
         y_unit: "length²",
         y_range,
-        legend: legend(result, &curves),
+        legend: legend(response, &curves),
     };
     chart.draw(|axes, scaling| {
         for curve in curves.iter().filter(|curve| !curve.decided).chain(curves.iter().filter(|curve| curve.decided)) {
-            draw_curve(axes, scaling, curve, result, y_range)?;
+            draw_curve(axes, scaling, curve, response, y_range)?;
         }
         draw_rings(axes, scaling, profile, fitted)
     })
@@ -76,39 +76,39 @@ pub(crate) fn with_margin(values: impl Iterator<Item = f64>) -> [f64; 2] {
     [low - 0.06 * span, high + 0.06 * span]
 }
 
-fn legend(result: &SampleResult, curves: &[Curve]) -> Vec<LegendLine> {
+fn legend(response: &Response, curves: &[Curve]) -> Vec<LegendLine> {
     let point = |filled: bool, text: &str| Entry { sign: Sign::Point { colour: MEASURED, filled }, text: text.into() };
     let mut measured = vec![point(true, "rings ± standard error")];
-    if fitted_range(result).is_some() {
+    if fitted_range(response).is_some() {
         measured.push(point(false, "not fitted"));
     }
     let mut lines = vec![LegendLine(measured)];
     for curve in curves {
         let sign = Sign::Line { colour: colour(curve), dashed: !curve.decided };
-        lines.push(LegendLine(vec![Entry { sign, text: parameters(result, curve) }]));
+        lines.push(LegendLine(vec![Entry { sign, text: parameters(response, curve) }]));
     }
     lines
 }
 
 /// Whether a curve says more than the elastic one: a screened one with κ far below its error lies upon it.
 #[cfg(feature = "fit")]
-fn distinct(result: &SampleResult, curve: &Curve) -> bool {
-    let screened = crate::report::curve::fit_of(result).and_then(|fit| fit.screened);
+fn distinct(response: &Response, curve: &Curve) -> bool {
+    let screened = crate::report::curve::fit_of(response).and_then(|fit| fit.screened);
     let undetermined = screened.is_some_and(|fit| fit.wavenumber.standard_error > 10.0 * fit.wavenumber.value);
     curve.decided || curve.name == "elastic" || !undetermined
 }
 
 #[cfg(not(feature = "fit"))]
-fn distinct(_result: &SampleResult, _curve: &Curve) -> bool {
+fn distinct(_response: &Response, _curve: &Curve) -> bool {
     true
 }
 
 /// The parameters of a solution, in words.
 #[cfg(feature = "fit")]
-fn parameters(result: &SampleResult, curve: &Curve) -> String {
+fn parameters(response: &Response, curve: &Curve) -> String {
     use crate::report::number::with_error;
     let with = |estimate: crate::fit::Estimate| with_error(estimate.value, estimate.standard_error);
-    let fit = crate::report::curve::fit_of(result);
+    let fit = crate::report::curve::fit_of(response);
     match fit.and_then(|fit| if curve.name == "screened" { fit.screened } else { None }) {
         Some(fit) => format!("screened: {AMPLITUDE} = {}, κ = {}", with(fit.amplitude), with(fit.wavenumber)),
         None => format!("elastic: {AMPLITUDE} = {}", fit.map_or(String::new(), |fit| with(fit.elastic.amplitude))),
@@ -116,7 +116,7 @@ fn parameters(result: &SampleResult, curve: &Curve) -> String {
 }
 
 #[cfg(not(feature = "fit"))]
-fn parameters(_result: &SampleResult, curve: &Curve) -> String {
+fn parameters(_response: &Response, curve: &Curve) -> String {
     curve.name.into()
 }
 
@@ -128,10 +128,10 @@ fn draw_curve(
     axes: &mut Axes<'_, '_>,
     scaling: Scaling,
     curve: &Curve,
-    result: &SampleResult,
+    response: &Response,
     [low, high]: [f64; 2],
 ) -> Drawn {
-    let (inner, outer) = (result.inflation.inner_radius, result.inflation.outer_radius);
+    let (inner, outer) = (response.field.inner_radius, response.field.outer_radius);
     let [red, green, blue] = colour(curve);
     let style = RGBColor(red, green, blue).stroke_width(2 * SCALE);
     let point = |i: usize| {

@@ -1,229 +1,12 @@
-//! [`Scene`]: everything a run needs, as plain data, checked once.
-//!
-//! A scene has one law, one mixture, one inflation, and one or more samples: packings to which the same thing is done.
-//! What an observable needs and the scene does not name is not computed.
+//! [`SceneError`]: whether every number of a scene makes sense.
 
-use serde::{Deserialize, Serialize};
-
-use crate::contact::law::{LawChoice, LawError};
-use crate::inflation::{Boundary, Inflation};
-use crate::packing::{Mixture, PackingError};
+use crate::contact::law::LawError;
+use crate::inflation::Boundary;
+use crate::packing::PackingError;
 #[cfg(feature = "linear")]
 use crate::relax::implicit::Finish;
-use crate::relax::{DampedDynamics, Fire, ForceLimit, RelaxerChoice, TimeStep};
-
-/// Everything a run needs.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Scene {
-    /// Number of disks in the box.
-    pub disk_count: usize,
-    /// The contact law.
-    pub law: LawChoice,
-    /// The distribution of radii.
-    pub mixture: Mixture,
-    /// How packings are made.
-    pub preparation: PreparationSettings,
-    /// The inflation.
-    pub inflation: Inflation,
-    /// What is measured.
-    pub observables: Observables,
-    /// The packings.
-    pub sample: Vec<Sample>,
-}
-
-/// How packings are made.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct PreparationSettings {
-    /// Largest relative deviation of a pressure from the one asked for \[1\].
-    pub pressure_tolerance: f64,
-    /// How they come to rest.
-    pub relaxer: RelaxerChoice,
-}
-
-impl Default for PreparationSettings {
-    fn default() -> Self {
-        PreparationSettings { pressure_tolerance: 0.01, relaxer: RelaxerChoice::default() }
-    }
-}
-
-/// One packing of a scene.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Sample {
-    /// Its name in reports and file names.
-    pub name: String,
-    /// Seed of the random points and of the choice of the inflated disk.
-    #[serde(default = "first_seed")]
-    pub seed: u64,
-    /// Where the packing comes from.
-    pub source: Source,
-    /// How it comes to rest after the inflation.
-    #[serde(default)]
-    pub relaxer: RelaxerChoice,
-}
-
-fn first_seed() -> u64 {
-    1
-}
-
-/// Where a packing comes from.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Source {
-    /// Random points quenched at this packing fraction \[1\].
-    PackingFraction(f64),
-    /// Random points quenched, then brought to this pressure \[force / length\].
-    Pressure(f64),
-    /// A packing from a file.
-    File(std::path::PathBuf),
-}
-
-/// What is measured; what is absent is not computed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Observables {
-    /// Mean radial displacement in rings.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub radial_profile: Option<RadialProfileSettings>,
-    /// Fits of the radial profile to the elastic and the screened solution.
-    #[cfg(feature = "fit")]
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub profile_fit: Option<ProfileFitSettings>,
-    /// Radial displacement against angle in rings.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub angular_profiles: Option<AngularProfileSettings>,
-    /// What of the response is not in the linear one.
-    #[cfg(feature = "linear")]
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub plastic_part: Option<PlasticPartSettings>,
-    /// Whether other relaxers end in the same minimum; absent by default.
-    #[cfg(feature = "linear")]
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub protocol: Option<ProtocolSettings>,
-    /// The packing before and after the inflation, with its displacement field, as files; the map of r d_r.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub displacement_field: Option<DisplacementFieldSettings>,
-}
-
-impl Default for Observables {
-    fn default() -> Self {
-        Observables {
-            radial_profile: Some(RadialProfileSettings::default()),
-            #[cfg(feature = "fit")]
-            profile_fit: Some(ProfileFitSettings::default()),
-            angular_profiles: Some(AngularProfileSettings::default()),
-            #[cfg(feature = "linear")]
-            plastic_part: Some(PlasticPartSettings::default()),
-            #[cfg(feature = "linear")]
-            protocol: None,
-            displacement_field: Some(DisplacementFieldSettings::default()),
-        }
-    }
-}
-
-/// The radial profile.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct RadialProfileSettings {
-    /// Width of a ring \[length\].
-    pub ring_width: f64,
-}
-
-impl Default for RadialProfileSettings {
-    /// One diameter of a small disk: at r = 10 a ring holds 50 disks.
-    fn default() -> Self {
-        RadialProfileSettings { ring_width: 1.0 }
-    }
-}
-
-/// The fits of the radial profile.
-#[cfg(feature = "fit")]
-pub type ProfileFitSettings = crate::fit::profile::ProfileFitSettings;
-
-/// The angular profiles.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct AngularProfileSettings {
-    /// Middles of the rings, r̂ = r/R \[1\].
-    pub relative_radii: Vec<f64>,
-}
-
-impl Default for AngularProfileSettings {
-    /// Source: the study, fig. 1.
-    fn default() -> Self {
-        AngularProfileSettings { relative_radii: vec![0.15, 0.5, 0.85] }
-    }
-}
-
-/// The plastic part.
-#[cfg(feature = "linear")]
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct PlasticPartSettings {
-    /// Width of a ring of its radial profile \[length\].
-    pub ring_width: f64,
-}
-
-#[cfg(feature = "linear")]
-impl Default for PlasticPartSettings {
-    /// As the radial profile has it.
-    fn default() -> Self {
-        PlasticPartSettings { ring_width: RadialProfileSettings::default().ring_width }
-    }
-}
-
-/// The comparison of protocols.
-#[cfg(feature = "linear")]
-pub type ProtocolSettings = crate::protocol::ProtocolSettings;
-
-/// The displacement field has nothing to set.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct DisplacementFieldSettings {}
-
-impl Default for Scene {
-    /// The three phases at the study's smallest size: unjammed, plastic and quasielastic.
-    ///
-    /// The transition lies at p_c = p̂_c N^(−3/2) with p̂_c from 8·10⁷ to 3·10⁸ and N = 4016 disks in the circle: 300 to
-    /// 1200. As in the study, FIRE relaxes the unjammed packing and damped dynamics the quasielastic one; in the plastic
-    /// one damped dynamics would take 10⁶ steps, so FIRE does it there too.
-    ///
-    /// Samples differ a lot at this size; the seeds are those of samples that show what their phase is known for. Relaxed by
-    /// FIRE, 24 of 38 unjammed packings answer like this one (neither solution describes the profile; the others feel the
-    /// rim), 11 of 54 at p = 10 (Δp < 0 in 7 of the 54), and 34 of 38 at p = 4000 (elastic).
-    fn default() -> Self {
-        Scene {
-            disk_count: 5548,
-            law: LawChoice::default(),
-            mixture: Mixture::default(),
-            preparation: PreparationSettings::default(),
-            inflation: Inflation::default(),
-            observables: Observables::default(),
-            sample: vec![
-                Sample {
-                    name: "unjammed".into(),
-                    seed: 9,
-                    source: Source::PackingFraction(0.82),
-                    relaxer: RelaxerChoice::Fire(Fire::default()),
-                },
-                Sample {
-                    name: "plastic".into(),
-                    seed: 48,
-                    source: Source::Pressure(10.0),
-                    relaxer: RelaxerChoice::Fire(Fire::default()),
-                },
-                Sample {
-                    name: "quasielastic".into(),
-                    seed: 11,
-                    source: Source::Pressure(4000.0),
-                    relaxer: RelaxerChoice::Damped(DampedDynamics::default()),
-                },
-            ],
-        }
-    }
-}
+use crate::relax::{ForceLimit, RelaxerChoice, TimeStep};
+use crate::scene::{Observables, Sample, Scene, Source};
 
 /// A number of a scene that makes no sense.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -259,6 +42,14 @@ pub enum SceneError {
         value: f64,
         /// What it must be.
         range: &'static str,
+    },
+    /// A setting of an observable, in its own words.
+    #[error("observables.{observable}: {reason}")]
+    Observable {
+        /// The observable.
+        observable: &'static str,
+        /// What is wrong, with field and value.
+        reason: String,
     },
     /// One observable needs another.
     #[error("observables.{observable} needs observables.{needed}")]
@@ -313,7 +104,11 @@ impl Scene {
 }
 
 impl Observables {
-    fn check(&self) -> Result<(), SceneError> {
+    /// Whether every setting makes sense.
+    ///
+    /// # Errors
+    /// [`SceneError`] names the field and the value.
+    pub fn check(&self) -> Result<(), SceneError> {
         if let Some(profile) = &self.radial_profile {
             positive("observables.radial_profile.ring_width", profile.ring_width)?;
         }
@@ -321,6 +116,7 @@ impl Observables {
         if self.profile_fit.is_some() && self.radial_profile.is_none() {
             return Err(SceneError::ObservableMissing { observable: "profile_fit", needed: "radial_profile" });
         }
+        self.check_response()?;
         #[cfg(feature = "linear")]
         if let Some(plastic) = &self.plastic_part {
             positive("observables.plastic_part.ring_width", plastic.ring_width)?;
@@ -337,12 +133,60 @@ impl Observables {
         }
         if let Some(profiles) = &self.angular_profiles {
             for &radius in &profiles.relative_radii {
-                let field = "observables.angular_profiles.relative_radii";
-                within(field, radius, "above 0 and below 1", radius > 0.0 && radius < 1.0)?;
+                relative_radius("observables.angular_profiles.relative_radii", radius)?;
             }
         }
         Ok(())
     }
+
+    /// Those of penetration, correlation, modes and isostatic length.
+    fn check_response(&self) -> Result<(), SceneError> {
+        let wrong = |observable, reason: String| SceneError::Observable { observable, reason };
+        if let Some(penetration) = &self.penetration_length {
+            if self.radial_profile.is_none() {
+                let (observable, needed) = ("penetration_length", "radial_profile");
+                return Err(SceneError::ObservableMissing { observable, needed });
+            }
+            for &threshold in &penetration.thresholds {
+                positive("observables.penetration_length.thresholds", threshold)?;
+            }
+        }
+        if let Some(angular) = &self.angular_correlation {
+            relative_radius("observables.angular_correlation.ring.relative_radius", angular.ring.relative_radius)?;
+            positive("observables.angular_correlation.ring.half_width", angular.ring.half_width)?;
+            let checked = angular.spectrum.check().and_then(|()| angular.correlation.check());
+            checked.map_err(|error| wrong("angular_correlation", error.to_string()))?;
+        }
+        #[cfg(feature = "fit")]
+        if let Some(fit) = &self.spectrum_fit {
+            if self.angular_correlation.is_none() {
+                let (observable, needed) = ("spectrum_fit", "angular_correlation");
+                return Err(SceneError::ObservableMissing { observable, needed });
+            }
+            let checked = fit.slope.check().and_then(|()| fit.crossover.check());
+            checked.map_err(|error| wrong("spectrum_fit", error.to_string()))?;
+        }
+        if let Some(rings) = &self.radial_dependence {
+            for &radius in &rings.relative_radii {
+                relative_radius("observables.radial_dependence.relative_radii", radius)?;
+            }
+            positive("observables.radial_dependence.half_width", rings.half_width)?;
+            let checked = rings.spectrum.check().and_then(|()| rings.correlation.check());
+            checked.map_err(|error| wrong("radial_dependence", error.to_string()))?;
+        }
+        if let Some(multipoles) = &self.multipoles {
+            multipoles.check().map_err(|error| wrong("multipoles", error.to_string()))?;
+        }
+        if let Some(isostatic) = &self.isostatic_length {
+            isostatic.check().map_err(|error| wrong("isostatic_length", error.to_string()))?;
+        }
+        Ok(())
+    }
+}
+
+/// The middle of a ring over R.
+fn relative_radius(field: &str, radius: f64) -> Result<(), SceneError> {
+    within(field, radius, "above 0 and below 1", radius > 0.0 && radius < 1.0)
 }
 
 impl Sample {
@@ -435,28 +279,5 @@ fn check_finish(field: &str, finish: Finish) -> Result<(), SceneError> {
     match finish {
         Finish::Motion => Ok(()),
         Finish::Newton(residual) => positive(format!("{field}.finish.newton"), residual),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_built_in_scene_makes_sense() {
-        assert_eq!(Scene::default().check(), Ok(()));
-    }
-
-    #[test]
-    fn nonsense_is_named_with_its_field() {
-        let mut scene = Scene::default();
-        scene.sample[0].source = Source::PackingFraction(4.5);
-        let message = scene.check().expect_err("packing fraction above 4").to_string();
-        assert_eq!(message, "sample \"unjammed\": source.packing_fraction = 4.5: must be above 0 and below 4");
-        let mut scene = Scene::default();
-        scene.mixture.components[1].radius = -0.7;
-        assert!(scene.check().expect_err("negative radius").to_string().contains("radius is -0.7"));
-        let scene = Scene { disk_count: 0, ..Scene::default() };
-        assert!(scene.check().is_err());
     }
 }

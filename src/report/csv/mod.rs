@@ -1,24 +1,43 @@
-//! Profiles as comma-separated values: a row of names, a row of units, then numbers.
+//! Observables as comma-separated values: a row of names, a row of units, then numbers; an empty cell where there is none.
 //!
 //! Numbers are the shortest decimals that give the same `f64` again.
+
+pub(crate) mod response;
 
 use std::fmt::Write as _;
 
 use crate::observe::{AngularProfile, RadialProfile};
 use crate::report::curve::{curves, fitted_range};
-use crate::run::SampleResult;
+use crate::response::Response;
 
 /// Columns of equal length under names and units.
 struct Table {
-    names: Vec<&'static str>,
+    names: Vec<String>,
     units: Vec<&'static str>,
-    rows: Vec<Vec<f64>>,
+    rows: Vec<Vec<Option<f64>>>,
 }
 
 impl Table {
-    fn new(columns: &[(&'static str, &'static str)]) -> Self {
-        let (names, units) = columns.iter().copied().unzip();
+    fn new(columns: &[(&str, &'static str)]) -> Self {
+        let names = columns.iter().map(|(name, _)| (*name).into()).collect();
+        let units = columns.iter().map(|(_, unit)| *unit).collect();
         Table { names, units, rows: Vec::new() }
+    }
+
+    /// One column more.
+    fn column(&mut self, name: &str, unit: &'static str) {
+        self.names.push(name.into());
+        self.units.push(unit);
+    }
+
+    /// A row of numbers.
+    fn row<const N: usize>(&mut self, values: [f64; N]) {
+        self.rows.push(values.map(Some).to_vec());
+    }
+
+    /// A row in which some cells are empty.
+    fn cells(&mut self, cells: Vec<Option<f64>>) {
+        self.rows.push(cells);
     }
 
     fn text(&self) -> String {
@@ -26,8 +45,11 @@ impl Table {
         for row in &self.rows {
             for (column, value) in row.iter().enumerate() {
                 let comma = if column > 0 { "," } else { "" };
-                // Whole numbers below 2⁵³ without a point: counts stay counts.
-                write!(text, "{comma}{value}").expect("a String takes all that is written to it");
+                text.push_str(comma);
+                if let Some(value) = value {
+                    // Whole numbers below 2⁵³ without a point: counts stay counts.
+                    write!(text, "{value}").expect("a String takes all that is written to it");
+                }
             }
             text.push('\n');
         }
@@ -40,7 +62,7 @@ impl Table {
 /// # Shape
 /// One row a ring. `fitted` is 1 for rings the fit used; `elastic` and `screened` are the fitted solutions r·d_r at the
 /// mean radius of the ring. The three are there if there was a fit, `screened` if there is such a solution.
-pub fn radial_profile(result: &SampleResult, profile: &RadialProfile) -> String {
+pub fn radial_profile(response: &Response, profile: &RadialProfile) -> String {
     let mut table = Table::new(&[
         ("radius", "length"),
         ("disk_count", "1"),
@@ -50,14 +72,12 @@ pub fn radial_profile(result: &SampleResult, profile: &RadialProfile) -> String 
         ("rescaled_displacement", "length^2"),
         ("rescaled_standard_error", "length^2"),
     ]);
-    let (curves, range) = (curves(result), fitted_range(result));
+    let (curves, range) = (curves(response), fitted_range(response));
     if range.is_some() {
-        table.names.push("fitted");
-        table.units.push("1");
+        table.column("fitted", "1");
     }
     for curve in &curves {
-        table.names.push(curve.name);
-        table.units.push("length^2");
+        table.column(curve.name, "length^2");
     }
     for ring in &profile.rings {
         let mut row = vec![
@@ -71,7 +91,7 @@ pub fn radial_profile(result: &SampleResult, profile: &RadialProfile) -> String 
         ];
         row.extend(range.map(|[from, to]| f64::from(u8::from(from <= ring.radius && ring.radius <= to))));
         row.extend(curves.iter().map(|curve| curve.rescaled(ring.radius)));
-        table.rows.push(row);
+        table.cells(row.into_iter().map(Some).collect());
     }
     table.text()
 }
@@ -90,7 +110,7 @@ pub fn angular_profiles(profiles: &[AngularProfile]) -> String {
     ]);
     for profile in profiles {
         for ((&angle, &radial), &distance) in profile.angles.iter().zip(&profile.radial).zip(&profile.distances) {
-            table.rows.push(vec![profile.relative_radius, angle, distance, radial, distance * radial]);
+            table.row([profile.relative_radius, angle, distance, radial, distance * radial]);
         }
     }
     table.text()
@@ -110,7 +130,7 @@ pub fn plastic_profile(profile: &RadialProfile) -> String {
         ("standard_error", "length"),
     ]);
     for ring in &profile.rings {
-        table.rows.push(vec![ring.radius, ring.disk_count as f64, ring.mean, ring.spread, ring.standard_error]);
+        table.row([ring.radius, ring.disk_count as f64, ring.mean, ring.spread, ring.standard_error]);
     }
     table.text()
 }

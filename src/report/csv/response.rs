@@ -1,0 +1,203 @@
+//! The tables of a response, one file each.
+
+use crate::observe::angular::RingOutcome;
+use crate::observe::multipoles::MultipoleFit;
+use crate::report::csv::{Table, angular_profiles, radial_profile};
+use crate::response::Response;
+
+/// One file of a response.
+pub(crate) struct ResponseFile {
+    /// What follows the name of the sample.
+    pub ending: &'static str,
+    /// Its text; none where the response does not have it.
+    pub text: fn(&Response) -> Option<String>,
+    /// Whether the response has it.
+    has: fn(&Response) -> bool,
+}
+
+/// The files a response has.
+pub(crate) fn files(response: &Response) -> impl Iterator<Item = &'static ResponseFile> {
+    ALL.iter().filter(|file| (file.has)(response))
+}
+
+const ALL: [ResponseFile; 9] = [
+    ResponseFile {
+        ending: "radial_profile.csv",
+        has: |it| it.radial_profile.is_some(),
+        text: |it| it.radial_profile.as_ref().map(|profile| radial_profile(it, profile)),
+    },
+    ResponseFile {
+        ending: "angular_profiles.csv",
+        has: |it| it.angular_profiles.is_some(),
+        text: |it| it.angular_profiles.as_deref().map(angular_profiles),
+    },
+    ResponseFile {
+        ending: "angular_correlation.csv",
+        has: |it| ring(it).is_some(),
+        text: |it| ring(it).map(angular_correlation),
+    },
+    ResponseFile {
+        ending: "power_spectrum.csv",
+        has: |it| ring(it).is_some(),
+        text: |it| ring(it).map(power_spectrum),
+    },
+    ResponseFile {
+        ending: "radial_dependence.csv",
+        has: |it| it.radial_dependence.as_ref().is_some_and(|it| it.measured().is_some()),
+        text: radial_dependence,
+    },
+    ResponseFile {
+        ending: "multipoles.csv",
+        has: |it| it.multipoles.as_ref().is_some_and(|it| it.measured().is_some()),
+        text: multipoles,
+    },
+    ResponseFile { ending: "contact_changes.csv", has: |it| it.contact_changes.is_some(), text: contact_changes },
+    ResponseFile { ending: "bond_changes.csv", has: |it| it.bond_changes.is_some(), text: bond_changes },
+    ResponseFile {
+        ending: "isostatic_length.csv",
+        has: |it| it.isostatic_length.as_ref().is_some_and(|it| it.measured().is_some()),
+        text: isostatic_length,
+    },
+];
+
+fn ring(response: &Response) -> Option<&crate::response::RingResponse> {
+    response.angular_correlation.as_ref()?.measured()
+}
+
+/// G(θ): one row an angle.
+fn angular_correlation(ring: &crate::response::RingResponse) -> String {
+    let mut table = Table::new(&[("angle", "rad"), ("correlation", "1")]);
+    for (&angle, &value) in ring.correlation.angles.iter().zip(&ring.correlation.values) {
+        table.row([angle, value]);
+    }
+    table.text()
+}
+
+/// S(f): one row a frequency; the relative power is absent where that of f = 1 is not positive.
+fn power_spectrum(ring: &crate::response::RingResponse) -> String {
+    let mut table = Table::new(&[("frequency", "1"), ("power", "length^2"), ("relative_power", "1")]);
+    let relative = ring.spectrum.normalised();
+    for (f, &power) in ring.spectrum.power.iter().enumerate().skip(1) {
+        table.cells(vec![Some(f as f64), Some(power), relative.as_ref().map(|values| values[f])]);
+    }
+    table.text()
+}
+
+/// G*, θ* and the variance in every ring that could be measured: one row a ring, θ* absent where G never falls so low.
+fn radial_dependence(response: &Response) -> Option<String> {
+    let rings = response.radial_dependence.as_ref()?.measured()?;
+    let mut table = Table::new(&[
+        ("relative_radius", "1"),
+        ("disk_count", "1"),
+        ("variance", "length^2"),
+        ("anticorrelation", "1"),
+    ]);
+    let measured = || {
+        rings.iter().filter_map(|ring| match &ring.outcome {
+            RingOutcome::Measured { spectrum, correlation } => Some((ring.relative_radius, spectrum, correlation)),
+            _ => None,
+        })
+    };
+    if let Some((_, _, correlation)) = measured().next() {
+        for crossing in &correlation.crossings {
+            table.column(&format!("correlation_angle_at_{}", crossing.threshold), "rad");
+        }
+    }
+    for (relative_radius, spectrum, correlation) in measured() {
+        let known = [relative_radius, spectrum.disk_count as f64, spectrum.variance, correlation.anticorrelation];
+        let mut cells: Vec<Option<f64>> = known.map(Some).to_vec();
+        cells.extend(correlation.crossings.iter().map(|crossing| crossing.outcome.angle()));
+        table.cells(cells);
+    }
+    Some(table.text())
+}
+
+/// Angular modes: one row a ring and mode; rings without modes are left out.
+fn multipoles(response: &Response) -> Option<String> {
+    let mut table = Table::new(&[
+        ("radius", "length"),
+        ("disk_count", "1"),
+        ("mode", "1"),
+        ("radial_amplitude", "length"),
+        ("radial_amplitude_error", "length"),
+        ("radial_phase", "rad"),
+        ("radial_phase_error", "rad"),
+        ("transverse_amplitude", "length"),
+        ("transverse_amplitude_error", "length"),
+        ("transverse_phase", "rad"),
+        ("transverse_phase_error", "rad"),
+    ]);
+    for ring in &response.multipoles.as_ref()?.measured()?.rings {
+        let MultipoleFit::Fitted { radial, transverse } = &ring.fit else { continue };
+        for (a, b) in radial.modes.iter().zip(&transverse.modes) {
+            table.row([
+                ring.radius,
+                ring.disk_count as f64,
+                a.mode as f64,
+                a.amplitude,
+                a.amplitude_error,
+                a.phase,
+                a.phase_error,
+                b.amplitude,
+                b.amplitude_error,
+                b.phase,
+                b.phase_error,
+            ]);
+        }
+    }
+    Some(table.text())
+}
+
+/// Contacts made (1) and broken (−1): one row a contact, disks by their row in the packing files, from 0, the midpoint from
+/// the inflated disk.
+fn contact_changes(response: &Response) -> Option<String> {
+    let mut table = Table::new(&[
+        ("change", "1"),
+        ("first", "1"),
+        ("second", "1"),
+        ("x", "length"),
+        ("y", "length"),
+        ("distance", "length"),
+    ]);
+    let changes = &response.contact_changes.as_ref()?.changes;
+    for (change, contacts) in [(1.0, &changes.made), (-1.0, &changes.broken)] {
+        for contact in contacts {
+            let [x, y] = contact.midpoint;
+            table.row([change, f64::from(contact.first), f64::from(contact.second), x, y, contact.distance]);
+        }
+    }
+    Some(table.text())
+}
+
+/// Bonds: one row a contact, disks and midpoint as of the contact changes.
+fn bond_changes(response: &Response) -> Option<String> {
+    let mut table = Table::new(&[
+        ("first", "1"),
+        ("second", "1"),
+        ("x", "length"),
+        ("y", "length"),
+        ("distance", "length"),
+        ("parallel_displacement", "length"),
+        ("length_change", "length"),
+    ]);
+    for bond in &response.bond_changes.as_ref()?.bonds {
+        let [x, y] = bond.midpoint;
+        let ends = [f64::from(bond.first), f64::from(bond.second)];
+        table.row([ends[0], ends[1], x, y, bond.distance, bond.parallel, bond.length_change]);
+    }
+    Some(table.text())
+}
+
+/// The curve ℓ_iso is read from: one row a ring.
+fn isostatic_length(response: &Response) -> Option<String> {
+    let mut table = Table::new(&[
+        ("radius", "length"),
+        ("scaled_radius", "1"),
+        ("scaled_fluctuation", "1"),
+        ("standard_error", "1"),
+    ]);
+    for point in &response.isostatic_length.as_ref()?.measured()?.curve {
+        table.row([point.radius, point.scaled_radius, point.scaled_fluctuation, point.standard_error]);
+    }
+    Some(table.text())
+}

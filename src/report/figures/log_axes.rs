@@ -1,0 +1,167 @@
+//! [`LogAxis`]: logarithmic axes over whole decades, or between two values.
+
+use std::fmt::Write as _;
+
+use crate::report::figures::{HEIGHT, INK, WIDTH};
+use crate::report::number::superscript;
+
+/// Ends of the axes \[px\].
+pub(crate) const LEFT: f64 = 66.0;
+pub(crate) const RIGHT: f64 = WIDTH as f64 - 14.0;
+pub(crate) const TOP: f64 = 96.0;
+pub(crate) const BOTTOM: f64 = HEIGHT as f64 - 50.0;
+
+/// Font size of all text \[px\].
+pub(crate) const FONT_SIZE: u32 = 13;
+
+/// Decades below the largest value that are drawn: what lies lower, zero included, stands on the lower edge.
+const MOST_DECADES: i32 = 16;
+
+/// Labels of an axis, at most.
+const MOST_LABELS: i32 = 8;
+
+/// Decades up to which every tick from 2 to 9 is drawn too.
+const FINE_DECADES: f64 = 4.5;
+
+/// Decades up to which 2 and 5 have labels too.
+const LABELLED_DECADES: f64 = 2.0;
+
+/// A logarithmic axis.
+pub(crate) struct LogAxis {
+    /// log₁₀ of its ends.
+    range: [f64; 2],
+    /// Where they stand \[px\].
+    ends: [f64; 2],
+}
+
+impl LogAxis {
+    /// Over the whole decades that hold these values, those above zero; none without such a value.
+    pub(crate) fn over(values: impl Iterator<Item = f64>, ends: [f64; 2]) -> Option<Self> {
+        let (low, high) = values
+            .filter(|&value| value > 0.0)
+            .fold((f64::INFINITY, 0.0f64), |(low, high), value| (low.min(value), high.max(value)));
+        if high == 0.0 || !high.is_finite() {
+            return None;
+        }
+        let last = high.log10().ceil() as i32;
+        let first = (low.log10().floor() as i32).min(last - 1).max(last - MOST_DECADES);
+        Some(LogAxis { range: [f64::from(first), f64::from(last)], ends })
+    }
+
+    /// From one value to another, both above zero.
+    pub(crate) fn between(low: f64, high: f64, ends: [f64; 2]) -> Self {
+        LogAxis { range: [low.log10(), high.log10()], ends }
+    }
+
+    /// Where a value stands \[px\].
+    pub(crate) fn place(&self, value: f64) -> f64 {
+        let share = (value.log10() - self.range[0]) / (self.range[1] - self.range[0]);
+        self.ends[0] + share.clamp(0.0, 1.0) * (self.ends[1] - self.ends[0])
+    }
+
+    /// Whether a value stands on the axis.
+    pub(crate) fn holds(&self, value: f64) -> bool {
+        value > 0.0 && (self.range[0]..=self.range[1]).contains(&value.log10())
+    }
+
+    /// Labels, and where they stand.
+    fn labels(&self) -> Vec<(String, f64)> {
+        let decades = self.range[1] - self.range[0];
+        let [first, last] = [self.range[0].ceil() as i32, self.range[1].floor() as i32];
+        let stride = ((last - first + MOST_LABELS - 1) / MOST_LABELS).max(1);
+        let steps: &[i32] = if decades <= LABELLED_DECADES { &[1, 2, 5] } else { &[1] };
+        let mut labels = Vec::new();
+        for power in (first - 1..=last).filter(|power| (last - power) % stride == 0) {
+            for &step in steps {
+                let value = f64::from(step) * 10f64.powi(power);
+                // Rounding of the logarithm must not cost an end its label.
+                let inside = (self.range[0] - 1e-9..=self.range[1] + 1e-9).contains(&value.log10());
+                let plain = steps.len() > 1 && (0..4).contains(&power);
+                let text = match step {
+                    _ if plain => format!("{value}"),
+                    1 => format!("10{}", superscript(power)),
+                    _ => format!("{step}·10{}", superscript(power)),
+                };
+                if inside {
+                    labels.push((text, self.place(value)));
+                }
+            }
+        }
+        labels
+    }
+
+    /// Where the ticks between powers of ten stand; none on a long axis.
+    fn fine_ticks(&self) -> Vec<f64> {
+        if self.range[1] - self.range[0] > FINE_DECADES {
+            return Vec::new();
+        }
+        let decades = self.range[0].floor() as i32..=self.range[1].floor() as i32;
+        let ticks = decades.flat_map(|power| (2..10).map(move |step| f64::from(step) * 10f64.powi(power)));
+        ticks.filter(|&value| self.holds(value)).map(|value| self.place(value)).collect()
+    }
+}
+
+/// Both axes with ticks, labels and thin lines across, as SVG elements.
+pub(crate) fn axes(x_axis: &LogAxis, y_axis: &LogAxis, x_label: &str, y_label: &str) -> String {
+    let mut svg = format!("<g font-size=\"{FONT_SIZE}\" stroke-width=\"1\">\n");
+    for (text, x) in x_axis.labels() {
+        let _ = writeln!(
+            svg,
+            "<path d=\"M{x:.1} {TOP}V{BOTTOM}\" stroke=\"#e2e2e2\"/><path d=\"M{x:.1} {BOTTOM}v5\" stroke=\"{INK}\"/>\
+             <text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{text}</text>",
+            BOTTOM + 19.0,
+        );
+    }
+    for (text, y) in y_axis.labels() {
+        let _ = writeln!(
+            svg,
+            "<path d=\"M{LEFT} {y:.1}H{RIGHT}\" stroke=\"#e2e2e2\"/><path d=\"M{LEFT} {y:.1}h-5\" stroke=\"{INK}\"/>\
+             <text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>",
+            LEFT - 8.0,
+            y + 4.5,
+        );
+    }
+    let fine: String = x_axis.fine_ticks().iter().map(|x| format!("M{x:.1} {BOTTOM}v3")).collect();
+    let fine: String =
+        y_axis.fine_ticks().iter().map(|y| format!("M{LEFT} {y:.1}h-3")).fold(fine, |all, one| all + &one);
+    if !fine.is_empty() {
+        let _ = writeln!(svg, "<path d=\"{fine}\" stroke=\"{INK}\"/>");
+    }
+    let _ = write!(
+        svg,
+        "<path d=\"M{LEFT} {TOP}V{BOTTOM}H{RIGHT}\" fill=\"none\" stroke=\"{INK}\"/>\n\
+         <text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{x_label}</text>\n\
+         <text transform=\"translate(15 {}) rotate(-90)\" text-anchor=\"middle\">{y_label}</text>\n</g>\n",
+        0.5 * (LEFT + RIGHT),
+        HEIGHT - 10,
+        0.5 * (TOP + BOTTOM)
+    );
+    svg
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decades_have_their_places_and_zero_stands_on_the_edge() {
+        let axis = LogAxis::over([0.0, 3e-9, 2e-3].into_iter(), [100.0, 0.0]).expect("positive values");
+        assert_eq!(axis.range, [-9.0, -2.0]);
+        assert_eq!(axis.place(1e-9), 100.0);
+        assert_eq!(axis.place(0.0), 100.0);
+        assert_eq!(axis.place(1e-2), 0.0);
+        assert!(LogAxis::over([0.0].into_iter(), [0.0, 1.0]).is_none());
+        let labels: Vec<String> = axis.labels().into_iter().map(|(text, _)| text).collect();
+        assert_eq!(labels.first().map(String::as_str), Some("10⁻⁹"));
+        assert_eq!(labels.len(), 8);
+    }
+
+    #[test]
+    fn a_short_axis_has_labels_between_powers_of_ten() {
+        let axis = LogAxis::between(0.9, 33.0, [0.0, 1.0]);
+        let labels: Vec<String> = axis.labels().into_iter().map(|(text, _)| text).collect();
+        assert_eq!(labels, ["1", "2", "5", "10", "20"]);
+        // 0.9, 2 to 9, 20 and 30.
+        assert_eq!(axis.fine_ticks().len(), 11);
+    }
+}

@@ -1,0 +1,177 @@
+//! The figures of a response, in the order in which a page shows them.
+
+use std::f64::consts::PI;
+
+use crate::observe::isostatic::IsostaticOutcome;
+use crate::report::figures::angular::angular_figure;
+use crate::report::figures::bond_map::bond_map;
+use crate::report::figures::contact_map::contact_map;
+use crate::report::figures::correlation::{CorrelationCurve, correlation_figure};
+use crate::report::figures::heat_map::heat_map;
+use crate::report::figures::isostatic::isostatic_figure;
+use crate::report::figures::map::MapFrame;
+use crate::report::figures::multipoles::{Component, multipole_figure};
+use crate::report::figures::radial::radial_figure;
+use crate::report::figures::radial_dependence::radial_dependence_figure;
+use crate::report::figures::spectrum::{SpectrumCurve, SpectrumPoints, spectrum_figure};
+use crate::report::figures::{Figure, FigureError};
+use crate::report::number::significant;
+use crate::response::{Response, RingResponse};
+
+/// Modes drawn: isotropic, dipole, quadrupole, and one more.
+const HIGHEST_MODE: usize = 3;
+
+/// All figures of what was measured; `radii` are those of the packing before.
+pub(crate) fn figures(
+    name: &str,
+    response: &Response,
+    radii: &[f64],
+    frame: &MapFrame,
+    heat: bool,
+) -> Result<Vec<Figure>, FigureError> {
+    let mut figures = Vec::new();
+    if heat {
+        figures.push(heat_map(name, &response.field, radii, frame));
+    }
+    if let Some(profile) = &response.radial_profile {
+        figures.push(radial_figure(name, response, profile)?);
+    }
+    if let Some(profiles) = &response.angular_profiles {
+        figures.push(angular_figure(name, profiles)?);
+    }
+    if let Some(ring) = response.angular_correlation.as_ref().and_then(|it| it.measured()) {
+        figures.extend(of_ring(name, ring)?);
+    }
+    if let Some(rings) = response.radial_dependence.as_ref().and_then(|it| it.measured()) {
+        // Without a ring that could be measured there is nothing to draw.
+        figures.extend(radial_dependence_figure(name, rings).ok());
+    }
+    if let Some(multipoles) = response.multipoles.as_ref().and_then(|it| it.measured()) {
+        figures.extend(multipole_figure(name, multipoles, Component::Radial, HIGHEST_MODE).ok());
+    }
+    let isostatic = response.isostatic_length.as_ref().and_then(|it| it.measured());
+    if let Some(bonds) = response.bond_changes.as_ref().filter(|changes| !changes.bonds.is_empty()) {
+        let length = isostatic.and_then(|found| match found.outcome {
+            IsostaticOutcome::Reached { length, .. } => Some(length),
+            _ => None,
+        });
+        figures.push(bond_map(name, bonds, frame, length));
+    }
+    if let Some(contacts) = response.contact_changes.as_ref() {
+        let changes = &contacts.changes;
+        if changes.kept_count + changes.made.len() + changes.broken.len() > 0 {
+            figures.push(contact_map(name, changes, frame));
+        }
+    }
+    if let Some(length) = isostatic.filter(|length| !length.curve.is_empty()) {
+        figures.push(isostatic_figure(name, &[("this sample", length)])?);
+    }
+    Ok(figures)
+}
+
+/// G(θ) and S(f); neither where the ring has no variance.
+fn of_ring(name: &str, ring: &RingResponse) -> Result<Vec<Figure>, FigureError> {
+    let correlation = &ring.correlation;
+    if !correlation.anticorrelation.is_finite() {
+        return Ok(Vec::new());
+    }
+    let threshold = correlation.crossings.first();
+    let mut label =
+        format!("r/R = {}, G* = {}", significant(ring.relative_radius, 3), significant(correlation.anticorrelation, 2));
+    if let Some(angle) = threshold.and_then(|crossing| crossing.outcome.angle()) {
+        label += &format!(", θ* = {}π", significant(angle / PI, 2));
+    }
+    let curve = CorrelationCurve {
+        label,
+        angles: &correlation.angles,
+        values: correlation.values.clone(),
+        standard_errors: Vec::new(),
+    };
+    let mut figures = vec![correlation_figure(name, &[curve], threshold.map(|crossing| crossing.threshold))?];
+    if let Some(relative) = ring.spectrum.normalised() {
+        let label = format!("r/R = {}, {} disks", significant(ring.relative_radius, 3), ring.spectrum.disk_count);
+        let points = SpectrumPoints { label, values: relative[1..].to_vec(), standard_errors: Vec::new() };
+        figures.extend(spectrum_figure(name, &[points], &fitted(ring, &relative)));
+    }
+    Ok(figures)
+}
+
+/// The power law and the Lorentzian fitted, where they were, and the slope −1.5 through S(1) where they were not.
+#[cfg(feature = "fit")]
+fn fitted<'a>(ring: &'a RingResponse, relative: &'a [f64]) -> Vec<SpectrumCurve<'a>> {
+    use crate::fit::angular::CrossoverOutcome;
+
+    // The amplitude that makes the mean of S over the curve 1, as the fit has it for P over its expectation.
+    let scaled = |label: String, window: [usize; 2], shape: Box<dyn Fn(f64) -> f64>| {
+        let [from, to] = [window[0], window[1].min(relative.len() - 1)];
+        let ratios = (from..=to).map(|f| relative[f] / shape(f as f64));
+        let amplitude = ratios.sum::<f64>() / (to + 1 - from) as f64;
+        SpectrumCurve { label, of: Box::new(move |f| amplitude * shape(f)), window: window.map(|f| f as f64) }
+    };
+    let mut curves = Vec::new();
+    if let Some(fit) = ring.slope.as_ref().and_then(|it| it.measured()) {
+        let exponent = fit.exponent.best;
+        let label = format!("f^(−{}), fitted", significant(exponent, 3));
+        curves.push(scaled(label, fit.window, Box::new(move |f| f.powf(-exponent))));
+    }
+    if let Some(fit) = ring.crossover.as_ref().and_then(|it| it.measured())
+        && let CrossoverOutcome::Found { crossover, .. } = fit.outcome
+    {
+        let (middle, exponent) = (crossover.best, fit.exponent);
+        let label = format!("Lorentzian, f† = {}", significant(middle, 2));
+        curves.push(scaled(label, fit.window, Box::new(move |f| 1.0 / (1.0 + (f / middle).powf(exponent)))));
+    }
+    curves.push(critical(relative));
+    curves
+}
+
+#[cfg(not(feature = "fit"))]
+fn fitted<'a>(_ring: &'a RingResponse, relative: &'a [f64]) -> Vec<SpectrumCurve<'a>> {
+    vec![critical(relative)]
+}
+
+/// f^(−3/2), what the study finds at the transition.
+fn critical(relative: &[f64]) -> SpectrumCurve<'_> {
+    let window = [1.0, (relative.len() - 1) as f64];
+    SpectrumCurve { label: "f^(−1.5)".into(), of: Box::new(|f| f.powf(-1.5)), window }
+}
+
+/// What the figures of these responses show, in a paragraph; only what is there.
+pub(crate) fn legend(responses: &[&Response], heat: bool) -> String {
+    let any = |has: fn(&Response) -> bool| responses.iter().any(|it| has(it));
+    let mut text = String::new();
+    if heat {
+        text.push_str(
+            "The map shows r·d<sub>r</sub>, the radial displacement of each disk times its distance from the centre, \
+             over a size that 98 % of the disks stay below: orange moves outwards, purple inwards; grey disks are rattlers. ",
+        );
+    }
+    if any(|it| it.radial_profile.is_some()) {
+        text.push_str("The radial profile is its mean over rings, with standard errors. ");
+    }
+    if any(|it| !crate::report::curve::curves(it).is_empty()) {
+        text.push_str(
+            "It is held against the elastic solution and the one screened by plastic events with wavenumber κ; the one \
+             that describes it is solid, the other dashed. ",
+        );
+    }
+    if any(|it| it.angular_profiles.is_some()) {
+        text.push_str("The angular profiles show single disks in narrow rings: smooth where the response is elastic, noise-like where it is not. ");
+    }
+    if any(|it| it.angular_correlation.is_some()) {
+        text.push_str(
+            "G(θ) and S(f) are the correlation and the power spectrum of d<sub>r</sub> around a ring; the correlation angle θ* \
+             is read off at the dashed line. ",
+        );
+    }
+    if any(|it| it.multipoles.is_some()) {
+        text.push_str("Angular modes: isotropic part n = 0, dipole 1, quadrupole 2. ");
+    }
+    if any(|it| it.bond_changes.is_some()) {
+        text.push_str("The map of r·d<sub>∥</sub> shows bonds, blue stretched, red compressed, with a circle at the isostatic length. ");
+    }
+    if any(|it| it.contact_changes.is_some()) {
+        text.push_str("Contacts made are red, broken ones blue. ");
+    }
+    text
+}

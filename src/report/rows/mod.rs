@@ -1,0 +1,143 @@
+//! What a reader wants to know of each sample, row by row; the terminal table and the page lay the same rows out.
+
+pub(crate) mod response;
+mod states;
+
+use crate::contact::LawChoice;
+use crate::response::Measurement;
+use crate::run::{Report, SampleOutcome, SampleReport, SampleResult};
+use crate::scene::Sample;
+
+/// Rows under one heading.
+pub(crate) struct Section {
+    pub title: &'static str,
+    pub rows: Vec<Row>,
+}
+
+/// One quantity.
+pub(crate) struct Row {
+    /// What it is, with its unit.
+    pub label: String,
+    /// One a sample; a dash where a sample has none.
+    pub cells: Vec<String>,
+}
+
+/// Whether wall times are wanted.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Times {
+    Shown,
+    #[cfg_attr(not(feature = "plot"), allow(dead_code, reason = "only the page leaves them out"))]
+    LeftOut,
+}
+
+/// Collects the rows of some results, one a column; none where a sample came to nothing.
+pub(crate) struct Rows<'a, T> {
+    results: Vec<Option<&'a T>>,
+    rows: Vec<Row>,
+}
+
+impl<'a> Rows<'a, SampleResult> {
+    /// No row of these samples yet.
+    pub(crate) fn of_samples(samples: &'a [SampleReport]) -> Self {
+        Rows::new(samples.iter().map(done).collect())
+    }
+}
+
+impl<'a, T> Rows<'a, T> {
+    /// No row yet.
+    pub(crate) fn new(results: Vec<Option<&'a T>>) -> Self {
+        Rows { results, rows: Vec::new() }
+    }
+
+    /// Adds a row, unless no sample has the quantity.
+    pub(crate) fn add(&mut self, label: impl Into<String>, cell: impl Fn(&T) -> Option<String>) -> &mut Self {
+        let cells: Vec<Option<String>> = self.results.iter().map(|result| result.and_then(&cell)).collect();
+        if cells.iter().any(Option::is_some) {
+            let cells = cells.into_iter().map(|cell| cell.unwrap_or_else(|| "–".into())).collect();
+            self.rows.push(Row { label: label.into(), cells });
+        }
+        self
+    }
+
+    /// Adds a row that all have.
+    pub(crate) fn add_cells(&mut self, label: &str, cells: impl Iterator<Item = String>) {
+        self.rows.push(Row { label: label.into(), cells: cells.collect() });
+    }
+
+    pub(crate) fn section(self, title: &'static str) -> Section {
+        Section { title, rows: self.rows }
+    }
+}
+
+/// The result of a sample that came to one.
+pub(crate) fn done(sample: &SampleReport) -> Option<&SampleResult> {
+    match &sample.result {
+        SampleOutcome::Done(result) => Some(result),
+        SampleOutcome::Failed(_) => None,
+    }
+}
+
+/// The samples that came to nothing, with the reason.
+pub(crate) fn failures(samples: &[SampleReport]) -> impl Iterator<Item = (&str, &str)> {
+    samples.iter().filter_map(|sample| match &sample.result {
+        SampleOutcome::Failed(reason) => Some((sample.name.as_str(), reason.as_str())),
+        SampleOutcome::Done(_) => None,
+    })
+}
+
+/// What samples were refused, with the reason: sample, what there is not, why.
+pub(crate) fn refusals(samples: &[SampleReport]) -> Vec<(&str, &'static str, &str)> {
+    let mut refused = Vec::new();
+    for (sample, result) in samples.iter().filter_map(|sample| Some((sample, done(sample)?))) {
+        let name = sample.name.as_str();
+        refused.extend(response::refusals(&result.response).into_iter().map(|(what, reason)| (name, what, reason)));
+        #[cfg(feature = "linear")]
+        refused.extend(refused_of(&result.plastic_part).map(|reason| (name, "no linear response", reason)));
+        #[cfg(feature = "linear")]
+        refused.extend(refused_of(&result.protocol).map(|reason| (name, "no protocols compared", reason)));
+    }
+    refused
+}
+
+/// Why something asked for is not there.
+pub(crate) fn refused_of<T>(measurement: &Option<Measurement<T>>) -> Option<&str> {
+    measurement.as_ref().and_then(Measurement::refused)
+}
+
+/// All rows of these samples of a report; sections without rows are left out.
+pub(crate) fn sections(report: &Report, samples: &[SampleReport], times: Times) -> Vec<Section> {
+    let mut all = vec![
+        states::packing(report, samples),
+        states::preparation(report, samples, times),
+        states::inflation(report, samples, times),
+        states::certificate(samples),
+    ];
+    let responses = samples.iter().map(|sample| done(sample).map(|result| &result.response)).collect();
+    all.extend(response::sections(responses));
+    #[cfg(feature = "linear")]
+    all.extend([states::plastic(samples), crate::report::protocol::section(samples)]);
+    all.retain(|section| !section.rows.is_empty());
+    all
+}
+
+/// The entry of a sample in the scene.
+pub(crate) fn settings<'a>(report: &'a Report, name: &str) -> Option<&'a Sample> {
+    report.scene.sample.iter().find(|sample| sample.name == name)
+}
+
+/// Wall time of all relaxations of an inflation \[s\].
+pub(crate) fn inflation_seconds(result: &SampleResult) -> f64 {
+    let states = [Some(&result.inflation.before), Some(&result.inflation.after), result.inflation.deflated.as_ref()];
+    states.into_iter().flatten().map(|state| state.rest.cost.seconds).sum()
+}
+
+/// A law in words.
+pub(crate) fn law(law: &LawChoice) -> String {
+    match law {
+        LawChoice::Hertzian(law) => format!("Hertzian contacts, stiffness {}", law.stiffness),
+        LawChoice::Hookean(law) => format!("Hookean contacts, stiffness {}", law.stiffness),
+        LawChoice::PowerLaw(law) => {
+            format!("power-law contacts, scale {}, exponent {}", law.energy_scale, law.exponent)
+        }
+    }
+}

@@ -1,0 +1,301 @@
+//! The rows of a response.
+
+use crate::displacement::MeasuredOn;
+#[cfg(feature = "fit")]
+use crate::fit::angular::{CrossoverOutcome, SlopeOutcome};
+use crate::observe::angular::CrossingOutcome;
+use crate::observe::isostatic::IsostaticOutcome;
+use crate::observe::multipoles::{ComponentModes, MultipoleFit};
+use crate::observe::penetration::Penetration;
+#[cfg(feature = "fit")]
+use crate::report::curve;
+use crate::report::number::{count, significant};
+use crate::report::rows::{Rows, Section, refused_of};
+#[cfg(feature = "fit")]
+use crate::response::Measurement;
+use crate::response::{Phase, PhaseOutcome, Response, RingResponse};
+
+/// All sections of these responses, some without rows.
+pub(crate) fn sections(responses: Vec<Option<&Response>>) -> Vec<Section> {
+    vec![
+        phase(responses.clone()),
+        #[cfg(feature = "fit")]
+        fit(responses.clone()),
+        penetration(responses.clone()),
+        angular(responses.clone()),
+        multipoles(responses.clone()),
+        contacts(responses.clone()),
+        isostatic(responses),
+    ]
+}
+
+/// What there is not of a response, and why.
+pub(crate) fn refusals(response: &Response) -> Vec<(&'static str, &str)> {
+    let found = [
+        #[cfg(feature = "fit")]
+        ("no fit", refused_of(&response.profile_fit)),
+        ("no penetration length", refused_of(&response.penetration_lengths)),
+        ("no angular correlation", refused_of(&response.angular_correlation)),
+        #[cfg(feature = "fit")]
+        ("no slope of the spectrum", ring(response).and_then(|ring| refused_of(&ring.slope))),
+        #[cfg(feature = "fit")]
+        ("no crossover of the spectrum", ring(response).and_then(|ring| refused_of(&ring.crossover))),
+        ("no radial dependence", refused_of(&response.radial_dependence)),
+        ("no angular modes", refused_of(&response.multipoles)),
+        ("no isostatic length", refused_of(&response.isostatic_length)),
+    ];
+    found.into_iter().filter_map(|(what, reason)| Some((what, reason?))).collect()
+}
+
+/// A phase in a word.
+pub(crate) fn outcome_name(outcome: PhaseOutcome) -> &'static str {
+    match outcome {
+        PhaseOutcome::Unjammed => "unjammed",
+        PhaseOutcome::Plastic => "plastic",
+        PhaseOutcome::Quasielastic => "quasielastic",
+        PhaseOutcome::Undecided => "undecided",
+    }
+}
+
+fn phase(responses: Vec<Option<&Response>>) -> Section {
+    let name = |phase: Option<Phase>| {
+        phase.map(|phase| match phase {
+            Phase::Plastic => "plastic".into(),
+            Phase::Quasielastic => "quasielastic".into(),
+        })
+    };
+    let mut rows = Rows::new(responses);
+    rows.add("phase", |it| Some(outcome_name(it.phase.outcome).into()))
+        .add("by the radial profile", |it| name(it.phase.by_profile))
+        .add("by the sign of Δp", |it| name(it.phase.by_pressure_change))
+        .add("by the angular spectrum", |it| name(it.phase.by_spectrum));
+    rows.section("Phase")
+}
+
+fn penetration(responses: Vec<Option<&Response>>) -> Section {
+    let lengths = |it: &Response| it.penetration_lengths.as_ref()?.measured().cloned();
+    let mut thresholds: Vec<f64> = Vec::new();
+    for length in responses.iter().flatten().filter_map(|it| lengths(it)).flatten() {
+        if !thresholds.contains(&length.threshold) {
+            thresholds.push(length.threshold);
+        }
+    }
+    let mut rows = Rows::new(responses);
+    for threshold in thresholds {
+        rows.add(format!("ξ, |⟨d_r⟩| = {} [length]", significant(threshold, 1)), |it| {
+            // A jammed packing moves up to its rim.
+            if it.measured_on == MeasuredOn::Backbone {
+                return None;
+            }
+            Some(match lengths(it)?.into_iter().find(|length| length.threshold == threshold)?.penetration {
+                Penetration::FallsAt { radius, .. } => significant(radius, 4),
+                Penetration::NeverAbove { .. } => "nowhere".into(),
+                Penetration::ReachesRim { .. } => "to the rim".into(),
+            })
+        });
+    }
+    rows.section("Penetration length")
+}
+
+fn ring(response: &Response) -> Option<&RingResponse> {
+    response.angular_correlation.as_ref()?.measured()
+}
+
+fn angular(responses: Vec<Option<&Response>>) -> Section {
+    let mut thresholds: Vec<f64> = Vec::new();
+    for crossing in responses.iter().flatten().filter_map(|it| ring(it)).flat_map(|ring| &ring.correlation.crossings) {
+        if !thresholds.contains(&crossing.threshold) {
+            thresholds.push(crossing.threshold);
+        }
+    }
+    let mut rows = Rows::new(responses);
+    rows.add("ring, r/R", |it| Some(significant(ring(it)?.relative_radius, 3)))
+        .add("disks in it", |it| Some(count(ring(it)?.spectrum.disk_count)))
+        .add("G* = −G(π)", |it| {
+            let value = ring(it)?.correlation.anticorrelation;
+            value.is_finite().then(|| significant(value, 3))
+        });
+    for threshold in thresholds {
+        rows.add(format!("θ*/π, G = {}", significant(threshold, 2)), |it| {
+            let crossings = &ring(it)?.correlation.crossings;
+            Some(match crossings.iter().find(|crossing| crossing.threshold == threshold)?.outcome {
+                CrossingOutcome::At { angle } => significant(angle / std::f64::consts::PI, 3),
+                CrossingOutcome::Never { .. } => "never".into(),
+                CrossingOutcome::NoCorrelation => "no variance".into(),
+            })
+        });
+    }
+    #[cfg(feature = "fit")]
+    fitted(&mut rows);
+    rows.section("Angular correlation of d_r")
+}
+
+#[cfg(feature = "fit")]
+fn fitted(rows: &mut Rows<'_, Response>) {
+    use crate::report::number::with_error;
+
+    let slope = |it: &Response| ring(it)?.slope.as_ref()?.measured().copied();
+    let crossover = |it: &Response| ring(it)?.crossover.as_ref()?.measured().map(|fit| fit.outcome);
+    let window = |[from, to]: [usize; 2]| format!("{from} … {to}");
+    rows.add("slope of S(f) ∝ f^(−s), s", |it| {
+        let fit = slope(it)?;
+        let estimate = fit.exponent.estimate().map(|it| with_error(it.value, it.standard_error));
+        Some(match fit.outcome {
+            SlopeOutcome::Undetermined => "not determined".into(),
+            _ => estimate.unwrap_or_else(|| significant(fit.exponent.best, 3)),
+        })
+    })
+    .add("f fitted", |it| slope(it).map(|fit| window(fit.window)))
+    .add("crossover, f†", |it| {
+        Some(match crossover(it)? {
+            CrossoverOutcome::Found { crossover, .. } => match crossover.estimate() {
+                Some(estimate) => with_error(estimate.value, estimate.standard_error),
+                None => significant(crossover.best, 3),
+            },
+            CrossoverOutcome::ScaleFree { largest, .. } => format!("scale-free, < {}", significant(largest, 2)),
+            CrossoverOutcome::White { smallest, .. } => format!("flat, > {}", significant(smallest, 2)),
+            CrossoverOutcome::Undetermined => "not determined".into(),
+        })
+    })
+    .add("θ†/π = k/(π f†)", |it| match crossover(it)? {
+        CrossoverOutcome::Found { angle, .. } => Some(significant(angle.best / std::f64::consts::PI, 3)),
+        _ => None,
+    });
+}
+
+/// Modes of d_r in the ring nearest to half the outer radius.
+fn half_way(response: &Response) -> Option<&ComponentModes> {
+    let half = 0.5 * response.field.outer_radius;
+    let rings = response.multipoles.as_ref()?.measured()?.rings.iter();
+    let fitted = rings.filter_map(|ring| match &ring.fit {
+        MultipoleFit::Fitted { radial, .. } => Some((ring.radius, radial)),
+        _ => None,
+    });
+    fitted.min_by(|a, b| (a.0 - half).abs().total_cmp(&(b.0 - half).abs())).map(|(_, modes)| modes)
+}
+
+fn multipoles(responses: Vec<Option<&Response>>) -> Section {
+    let share = |it: &Response, place: usize| Some(significant(half_way(it)?.shares?[place], 3));
+    let mut rows = Rows::new(responses);
+    rows.add("share of d_r² in n = 0, r/R = 1/2", |it| share(it, 0))
+        .add("share in n = 1, dipole", |it| share(it, 1))
+        .add("share in n = 2, quadrupole", |it| share(it, 2))
+        .add("share of all else", |it| share(it, 3));
+    rows.section("Angular modes")
+}
+
+fn contacts(responses: Vec<Option<&Response>>) -> Section {
+    let mut rows = Rows::new(responses);
+    let summary = |it: &Response| it.contact_changes.as_ref().map(|summary| (summary.inflation, summary.deflation));
+    rows.add("kept", |it| Some(count(summary(it)?.0.kept_count)))
+        .add("made, broken", |it| {
+            let (inflation, _) = summary(it)?;
+            Some(format!("{}, {}", count(inflation.made_count), count(inflation.broken_count)))
+        })
+        .add("made, broken by the deflation", |it| {
+            let changes = summary(it)?.1?.changes;
+            Some(format!("{}, {}", count(changes.made_count), count(changes.broken_count)))
+        })
+        .add("share that returns", |it| Some(significant(summary(it)?.1?.returned_share?, 3)));
+    rows.section("Contacts of the backbone")
+}
+
+fn isostatic(responses: Vec<Option<&Response>>) -> Section {
+    let length = |it: &Response| it.isostatic_length.as_ref()?.measured().cloned();
+    let mut rows = Rows::new(responses);
+    rows.add("ΔZ before", |it| Some(significant(length(it)?.excess?, 3)))
+        .add("ℓ_iso [length]", |it| {
+            Some(match length(it)?.outcome {
+                IsostaticOutcome::Reached { length, .. } => significant(length, 3),
+                IsostaticOutcome::AboveFromTheStart { innermost } => format!("≤ {}", significant(innermost, 2)),
+                IsostaticOutcome::NeverReached { .. } => "not reached".into(),
+                IsostaticOutcome::NoExcess { .. } => "ΔZ ≤ 0".into(),
+                IsostaticOutcome::NoBackbone => return None,
+                IsostaticOutcome::TooFewRings | IsostaticOutcome::NoPlateau | IsostaticOutcome::NoScale => {
+                    "none".into()
+                }
+            })
+        })
+        .add("ℓ_iso ΔZ", |it| match length(it)?.outcome {
+            IsostaticOutcome::Reached { product, .. } => Some(significant(product, 3)),
+            _ => None,
+        });
+    rows.section("Isostatic length")
+}
+
+#[cfg(feature = "fit")]
+fn fit(responses: Vec<Option<&Response>>) -> Section {
+    use crate::report::number::with_error;
+
+    let mut rows = Rows::new(responses);
+    // A κ known to nothing is the elastic solution again.
+    let screened = |it: &Response| {
+        curve::fit_of(it)?.screened.filter(|fit| fit.wavenumber.standard_error < 10.0 * fit.wavenumber.value)
+    };
+    let first_pole = |it: &Response| {
+        let annulus = crate::reference::Annulus::new(it.field.inner_radius, it.field.outer_radius).ok()?;
+        Some(crate::reference::poles::pole::<2>(annulus, 1))
+    };
+    let rms = |chi_squared: f64, rings: usize| significant((chi_squared / rings as f64).sqrt(), 3);
+    rows.add("described by", |it| match it.profile_fit.as_ref()? {
+        Measurement::Measured(fit) => Some(decision_name(fit.decision).into()),
+        Measurement::Refused(_) => Some("fit refused".into()),
+    })
+    .add("rings fitted", |it| curve::fit_of(it).map(|fit| count(fit.ring_count)))
+    .add("elastic: d_0^eff [length]", |it| {
+        curve::fit_of(it).map(|fit| with_error(fit.elastic.amplitude.value, fit.elastic.amplitude.standard_error))
+    })
+    .add("elastic: κ below (95 %) [1/length]", |it| {
+        let bound = curve::fit_of(it)?.elastic.wavenumber_bound;
+        Some(bound.map_or_else(|| "no bound".into(), |bound| significant(bound, 2)))
+    })
+    .add("elastic: κ/κ_1 below (95 %)", |it| {
+        Some(significant(curve::fit_of(it)?.elastic.wavenumber_bound? / first_pole(it)?, 2))
+    })
+    .add("elastic: share described", |it| curve::fit_of(it).map(|fit| significant(fit.elastic.share_described, 3)))
+    .add("elastic: rms residual / ring error", |it| {
+        curve::fit_of(it).map(|fit| rms(fit.elastic.chi_squared, fit.ring_count))
+    })
+    .add("screened: d_0^eff [length]", |it| {
+        screened(it).map(|fit| with_error(fit.amplitude.value, fit.amplitude.standard_error))
+    })
+    .add("screened: κ [1/length]", |it| {
+        screened(it).map(|fit| with_error(fit.wavenumber.value, fit.wavenumber.standard_error))
+    })
+    .add("screened: κ/κ_1", |it| {
+        let (kappa, first) = (screened(it)?.wavenumber, first_pole(it)?);
+        Some(with_error(kappa.value / first, kappa.standard_error / first))
+    })
+    .add("screened: share described", |it| screened(it).map(|fit| significant(fit.share_described, 3)))
+    .add("screened: rms residual / ring error", |it| {
+        Some(rms(screened(it)?.chi_squared, curve::fit_of(it)?.ring_count))
+    })
+    .add("chance of such a gain if κ = 0", |it| screened(it).map(|fit| significant(fit.chance_of_elastic, 2)));
+    rows.section("Fit of the radial profile")
+}
+
+/// What describes a profile, in a word.
+#[cfg(feature = "fit")]
+pub(crate) fn decision_name(decision: crate::fit::profile::Decision) -> &'static str {
+    use crate::fit::profile::Decision;
+    match decision {
+        Decision::Elastic => "elastic",
+        Decision::Screened => "screened",
+        Decision::Neither => "neither",
+    }
+}
+
+/// κ with its error, or the bound on it.
+#[cfg(all(feature = "fit", feature = "plot"))]
+pub(crate) fn wavenumber(fit: &crate::fit::profile::ProfileFit) -> Option<String> {
+    use crate::fit::profile::Decision;
+    use crate::report::number::with_error;
+    match fit.decision {
+        Decision::Elastic => Some(match fit.elastic.wavenumber_bound {
+            Some(bound) => format!("< {} (95 %)", significant(bound, 2)),
+            None => "no bound found".into(),
+        }),
+        Decision::Screened => fit.screened.map(|fit| with_error(fit.wavenumber.value, fit.wavenumber.standard_error)),
+        Decision::Neither => None,
+    }
+}

@@ -1,0 +1,86 @@
+//! [`ContactSummary`]: contacts made and broken, in numbers and where.
+
+use serde::Serialize;
+
+use crate::observe::contact_changes::{ContactChanges, ContactCycle, RattlerContacts};
+use crate::observe::state::State;
+
+/// Contacts of an inflation, and of the deflation after it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ContactSummary {
+    /// From before the inflation to after it.
+    pub inflation: ContactChangeCounts,
+    /// The deflation, if there was one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deflation: Option<CycleCounts>,
+    /// The contacts of the inflation themselves.
+    #[serde(skip)]
+    pub changes: ContactChanges<2>,
+}
+
+/// Contacts from one state to another, counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct ContactChangeCounts {
+    /// In both states.
+    pub kept_count: usize,
+    /// In the second only.
+    pub made_count: usize,
+    /// In the first only.
+    pub broken_count: usize,
+    /// With rattlers.
+    pub rattlers: RattlerContacts,
+}
+
+/// What the deflation does to contacts.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CycleCounts {
+    /// From the inflated state to the deflated one.
+    pub changes: ContactChangeCounts,
+    /// From before the inflation to after the deflation.
+    pub left: ContactChangeCounts,
+    /// Contacts that the inflation broke and that are there again.
+    pub broken_returned_count: usize,
+    /// Contacts that the inflation made and that are gone again.
+    pub made_returned_count: usize,
+    /// Share of all contacts changed by the inflation that return; absent where none changed \[1\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub returned_share: Option<f64>,
+}
+
+impl ContactChangeCounts {
+    fn of(changes: &ContactChanges<2>) -> Self {
+        ContactChangeCounts {
+            kept_count: changes.kept_count,
+            made_count: changes.made.len(),
+            broken_count: changes.broken.len(),
+            rattlers: changes.rattlers,
+        }
+    }
+}
+
+impl ContactSummary {
+    pub(super) fn of(
+        before: &State<'_, 2>,
+        after: &State<'_, 2>,
+        deflated: Option<&State<'_, 2>>,
+        centre: usize,
+    ) -> Self {
+        let Some(deflated) = deflated else {
+            let changes = ContactChanges::between(before, after, centre);
+            return ContactSummary { inflation: ContactChangeCounts::of(&changes), deflation: None, changes };
+        };
+        let cycle = ContactCycle::through([before, after, deflated], centre);
+        let deflation = CycleCounts {
+            changes: ContactChangeCounts::of(&cycle.deflation),
+            left: ContactChangeCounts::of(&cycle.left),
+            broken_returned_count: cycle.broken_returned_count,
+            made_returned_count: cycle.made_returned_count,
+            returned_share: cycle.returned_share(),
+        };
+        ContactSummary {
+            inflation: ContactChangeCounts::of(&cycle.inflation),
+            deflation: Some(deflation),
+            changes: cycle.inflation,
+        }
+    }
+}

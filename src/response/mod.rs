@@ -1,0 +1,216 @@
+//! [`Response`]: all that is measured on what an inflation does to a packing.
+//!
+//! A response is measured on two states, before and after, wherever they come from: a run makes them, an
+//! [`analysis`](crate::analysis) reads them from files. What [`Observables`] does not name is not computed; what cannot be had
+//! says why, [`Measurement::Refused`].
+
+mod contacts;
+mod phase;
+
+use std::fmt::Display;
+
+use serde::Serialize;
+
+pub use contacts::{ContactChangeCounts, ContactSummary, CycleCounts};
+pub use phase::{Phase, PhaseDecision, PhaseOutcome};
+
+use crate::displacement::{DisplacementField, MeasuredOn};
+#[cfg(feature = "fit")]
+use crate::fit::angular::{CrossoverFit, SlopeFit, fit_crossover, fit_slope};
+#[cfg(feature = "fit")]
+use crate::fit::profile::{ProfileFit, fit_radial_profile};
+use crate::observe::angular::{
+    AngularCorrelation, AngularError, PowerSpectrum, RingAnalysis, RingSample, radial_dependence,
+};
+use crate::observe::bond_changes::BondChanges;
+use crate::observe::isostatic::IsostaticLength;
+use crate::observe::penetration::PenetrationLength;
+use crate::observe::state::State;
+use crate::observe::{AngularProfile, Multipoles, RadialProfile};
+#[cfg(feature = "fit")]
+use crate::reference::Annulus;
+use crate::scene::{AngularCorrelationSettings, Observables};
+
+/// Something measured, or why there is none.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Measurement<T> {
+    /// What was measured.
+    Measured(T),
+    /// Why there is none.
+    Refused(String),
+}
+
+impl<T> Measurement<T> {
+    /// What was measured, if anything.
+    pub fn measured(&self) -> Option<&T> {
+        match self {
+            Measurement::Measured(value) => Some(value),
+            Measurement::Refused(_) => None,
+        }
+    }
+
+    /// Why there is none, if so.
+    pub fn refused(&self) -> Option<&str> {
+        match self {
+            Measurement::Measured(_) => None,
+            Measurement::Refused(reason) => Some(reason),
+        }
+    }
+}
+
+impl<T, E: Display> From<Result<T, E>> for Measurement<T> {
+    fn from(result: Result<T, E>) -> Self {
+        result.map_or_else(|error| Measurement::Refused(error.to_string()), Measurement::Measured)
+    }
+}
+
+/// The states a response is measured on.
+pub struct Subject<'a> {
+    /// The displacement from the first to the second.
+    pub field: DisplacementField<2>,
+    /// Before the inflation.
+    pub before: State<'a, 2>,
+    /// After it.
+    pub after: State<'a, 2>,
+    /// After the deflation, if there was one.
+    pub deflated: Option<State<'a, 2>>,
+    /// Index of the inflated disk in all of them.
+    pub centre: usize,
+    /// Δp \[force / length\].
+    pub pressure_change: f64,
+}
+
+/// All that is measured on a response; what was not asked for is absent.
+#[derive(Debug, Clone, Serialize)]
+pub struct Response {
+    /// Which disks the observables are measured on.
+    pub measured_on: MeasuredOn,
+    /// Which phase the packing shows.
+    pub phase: PhaseDecision,
+    /// Mean radial displacement in rings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radial_profile: Option<RadialProfile>,
+    /// The fits of it.
+    #[cfg(feature = "fit")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub profile_fit: Option<Measurement<ProfileFit>>,
+    /// ξ at every threshold.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub penetration_lengths: Option<Measurement<Vec<PenetrationLength>>>,
+    /// Radial displacement against angle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angular_profiles: Option<Vec<AngularProfile>>,
+    /// Spectrum and correlation of one ring.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angular_correlation: Option<Measurement<RingResponse>>,
+    /// The same in rings from the inflated disk to the rim.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radial_dependence: Option<Measurement<Vec<RingAnalysis>>>,
+    /// Angular modes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub multipoles: Option<Measurement<Multipoles>>,
+    /// Contacts made, broken and returned.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_changes: Option<ContactSummary>,
+    /// ℓ_iso.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub isostatic_length: Option<Measurement<IsostaticLength>>,
+    /// How much every bond is stretched.
+    #[serde(skip)]
+    pub bond_changes: Option<BondChanges<2>>,
+    /// The displacement field.
+    #[serde(skip)]
+    pub field: DisplacementField<2>,
+}
+
+/// Spectrum and correlation of one ring, and what is fitted to the spectrum.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RingResponse {
+    /// Middle of the ring, r̂ \[1\].
+    pub relative_radius: f64,
+    /// S(f).
+    pub spectrum: PowerSpectrum,
+    /// G(θ), G*, θ*.
+    pub correlation: AngularCorrelation,
+    /// Slope of log S against log f.
+    #[cfg(feature = "fit")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slope: Option<Measurement<SlopeFit>>,
+    /// f† and θ†.
+    #[cfg(feature = "fit")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crossover: Option<Measurement<CrossoverFit>>,
+}
+
+impl Response {
+    /// Measures what `observables` names; settings are expected to have been [checked](Observables::check).
+    pub fn of(subject: Subject<'_>, observables: &Observables) -> Self {
+        let Subject { field, before, after, deflated, centre, pressure_change } = subject;
+        let radial_profile = observables.radial_profile.map(|settings| RadialProfile::of(&field, settings.ring_width));
+        let mut response = Response {
+            measured_on: field.measured_on,
+            phase: PhaseDecision::default(),
+            #[cfg(feature = "fit")]
+            profile_fit: observables.profile_fit.zip(radial_profile.as_ref()).map(|(settings, profile)| {
+                match Annulus::new(field.inner_radius, field.outer_radius) {
+                    Ok(annulus) => fit_radial_profile(profile, annulus, &settings).into(),
+                    Err(error) => Measurement::Refused(error.to_string()),
+                }
+            }),
+            penetration_lengths: observables
+                .penetration_length
+                .as_ref()
+                .zip(radial_profile.as_ref())
+                .map(|(settings, profile)| PenetrationLength::of(profile, settings).into()),
+            radial_profile,
+            angular_profiles: observables.angular_profiles.as_ref().map(|settings| {
+                settings.relative_radii.iter().map(|&radius| AngularProfile::of(&field, radius)).collect()
+            }),
+            angular_correlation: observables
+                .angular_correlation
+                .as_ref()
+                .map(|settings| RingResponse::of(&field, settings, observables).into()),
+            radial_dependence: observables
+                .radial_dependence
+                .as_ref()
+                .map(|settings| radial_dependence(&field, settings).into()),
+            multipoles: observables.multipoles.map(|settings| Multipoles::of(&field, &settings).into()),
+            contact_changes: observables
+                .contact_changes
+                .map(|_| ContactSummary::of(&before, &after, deflated.as_ref(), centre)),
+            isostatic_length: observables.isostatic_length.map(|settings| {
+                IsostaticLength::between(&before, &after, centre, field.outer_radius, &settings).into()
+            }),
+            bond_changes: observables
+                .bond_changes
+                .map(|settings| BondChanges::between(&before, &after, centre, settings.bonds)),
+            field,
+        };
+        response.phase = PhaseDecision::of(&response, pressure_change);
+        response
+    }
+}
+
+impl RingResponse {
+    fn of(
+        field: &DisplacementField<2>,
+        settings: &AngularCorrelationSettings,
+        observables: &Observables,
+    ) -> Result<Self, AngularError> {
+        #[cfg(not(feature = "fit"))]
+        let _ = observables;
+        let ring = RingSample::of_field(field, &settings.ring)?;
+        Ok(RingResponse {
+            relative_radius: settings.ring.relative_radius,
+            spectrum: PowerSpectrum::of(&ring, &settings.spectrum)?,
+            correlation: AngularCorrelation::of(&ring, &settings.correlation)?,
+            #[cfg(feature = "fit")]
+            slope: observables.spectrum_fit.map(|fit| fit_slope(std::slice::from_ref(&ring), &fit.slope).into()),
+            #[cfg(feature = "fit")]
+            crossover: observables
+                .spectrum_fit
+                .map(|fit| fit_crossover(std::slice::from_ref(&ring), &fit.crossover).into()),
+        })
+    }
+}

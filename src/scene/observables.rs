@@ -1,0 +1,210 @@
+//! [`Observables`]: what is measured, and how.
+
+use serde::{Deserialize, Serialize};
+
+#[cfg(feature = "fit")]
+use crate::fit::angular::{CrossoverSettings, SpectrumWindowSettings};
+use crate::observe::angular::{CorrelationSettings, RadialDependenceSettings, RingSettings, SpectrumSettings};
+use crate::observe::bond_changes::BondSet;
+use crate::observe::isostatic::IsostaticSettings;
+use crate::observe::multipoles::MultipoleSettings;
+use crate::observe::penetration::PenetrationSettings;
+
+/// What is measured; what is absent is not computed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Observables {
+    /// Mean radial displacement in rings.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radial_profile: Option<RadialProfileSettings>,
+    /// Fits of the radial profile to the elastic and the screened solution.
+    #[cfg(feature = "fit")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub profile_fit: Option<ProfileFitSettings>,
+    /// How far from the inflated disk anything moves; needs the radial profile.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub penetration_length: Option<PenetrationSettings>,
+    /// Radial displacement against angle in rings.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angular_profiles: Option<AngularProfileSettings>,
+    /// Angular correlation and power spectrum of the radial displacement in one ring.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angular_correlation: Option<AngularCorrelationSettings>,
+    /// Slope and crossover of that spectrum.
+    #[cfg(feature = "fit")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spectrum_fit: Option<SpectrumFitSettings>,
+    /// The same correlation and spectrum in rings from the inflated disk to the rim.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radial_dependence: Option<RadialDependenceSettings>,
+    /// Angular modes of the displacement, ring by ring.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub multipoles: Option<MultipoleSettings>,
+    /// Contacts made and broken, and which return.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact_changes: Option<ContactChangeSettings>,
+    /// How much every bond is stretched.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bond_changes: Option<BondChangeSettings>,
+    /// From where on the stretching of bonds varies as in a continuum.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub isostatic_length: Option<IsostaticSettings>,
+    /// What of the response is not in the linear one.
+    #[cfg(feature = "linear")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plastic_part: Option<PlasticPartSettings>,
+    /// Whether other relaxers end in the same minimum; absent by default.
+    #[cfg(feature = "linear")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub protocol: Option<ProtocolSettings>,
+    /// The packing before and after the inflation, with its displacement field, as files; the map of r d_r.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub displacement_field: Option<DisplacementFieldSettings>,
+}
+
+impl Default for Observables {
+    fn default() -> Self {
+        Observables {
+            radial_profile: Some(RadialProfileSettings::default()),
+            #[cfg(feature = "fit")]
+            profile_fit: Some(ProfileFitSettings::default()),
+            penetration_length: Some(PenetrationSettings::default()),
+            angular_profiles: Some(AngularProfileSettings::default()),
+            angular_correlation: Some(AngularCorrelationSettings::default()),
+            #[cfg(feature = "fit")]
+            spectrum_fit: Some(SpectrumFitSettings::default()),
+            radial_dependence: Some(RadialDependenceSettings::default()),
+            multipoles: Some(MultipoleSettings::default()),
+            contact_changes: Some(ContactChangeSettings::default()),
+            bond_changes: Some(BondChangeSettings::default()),
+            isostatic_length: Some(IsostaticSettings::default()),
+            #[cfg(feature = "linear")]
+            plastic_part: Some(PlasticPartSettings::default()),
+            #[cfg(feature = "linear")]
+            protocol: None,
+            displacement_field: Some(DisplacementFieldSettings::default()),
+        }
+    }
+}
+
+impl Observables {
+    /// Nothing is measured.
+    pub fn none() -> Self {
+        Observables {
+            radial_profile: None,
+            #[cfg(feature = "fit")]
+            profile_fit: None,
+            penetration_length: None,
+            angular_profiles: None,
+            angular_correlation: None,
+            #[cfg(feature = "fit")]
+            spectrum_fit: None,
+            radial_dependence: None,
+            multipoles: None,
+            contact_changes: None,
+            bond_changes: None,
+            isostatic_length: None,
+            #[cfg(feature = "linear")]
+            plastic_part: None,
+            #[cfg(feature = "linear")]
+            protocol: None,
+            displacement_field: None,
+        }
+    }
+}
+
+/// The radial profile.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RadialProfileSettings {
+    /// Width of a ring \[length\].
+    pub ring_width: f64,
+}
+
+impl Default for RadialProfileSettings {
+    /// One diameter of a small disk: at r = 10 a ring holds 50 disks.
+    fn default() -> Self {
+        RadialProfileSettings { ring_width: 1.0 }
+    }
+}
+
+/// The fits of the radial profile.
+#[cfg(feature = "fit")]
+pub type ProfileFitSettings = crate::fit::profile::ProfileFitSettings;
+
+/// The angular profiles.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct AngularProfileSettings {
+    /// Middles of the rings, r̂ = r/R \[1\].
+    pub relative_radii: Vec<f64>,
+}
+
+impl Default for AngularProfileSettings {
+    /// Source: the study, fig. 1.
+    fn default() -> Self {
+        AngularProfileSettings { relative_radii: vec![0.15, 0.5, 0.85] }
+    }
+}
+
+/// Correlation and spectrum in one ring.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct AngularCorrelationSettings {
+    /// The ring.
+    pub ring: RingSettings,
+    /// S(f).
+    pub spectrum: SpectrumSettings,
+    /// G(θ).
+    pub correlation: CorrelationSettings,
+}
+
+/// The fits of a spectrum.
+#[cfg(feature = "fit")]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SpectrumFitSettings {
+    /// Which powers the slope is fitted to.
+    pub slope: SpectrumWindowSettings,
+    /// How f† is fitted.
+    pub crossover: CrossoverSettings,
+}
+
+/// Contact changes have nothing to set.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ContactChangeSettings {}
+
+/// The stretching of bonds.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct BondChangeSettings {
+    /// Which contacts are bonds.
+    pub bonds: BondSet,
+}
+
+/// The plastic part.
+#[cfg(feature = "linear")]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PlasticPartSettings {
+    /// Width of a ring of its radial profile \[length\].
+    pub ring_width: f64,
+}
+
+#[cfg(feature = "linear")]
+impl Default for PlasticPartSettings {
+    /// As the radial profile has it.
+    fn default() -> Self {
+        PlasticPartSettings { ring_width: RadialProfileSettings::default().ring_width }
+    }
+}
+
+/// The comparison of protocols.
+#[cfg(feature = "linear")]
+pub type ProtocolSettings = crate::protocol::ProtocolSettings;
+
+/// The displacement field has nothing to set.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DisplacementFieldSettings {}
