@@ -119,8 +119,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("contacts", contact_map(&name, &cycle.inflation, &frame)),
         ("contacts_deflated", contact_map(&format!("{name}, deflated"), &cycle.deflation, &frame)),
         ("isostatic", isostatic_figure(&name, &[("relaxed", relaxed), ("linear", unloaded)])?),
-        ("modes_radial", multipole_figure(&name, &multipoles, Component::Radial, 3)?),
-        ("modes_transverse", multipole_figure(&name, &multipoles, Component::Transverse, 3)?),
+        ("modes_radial", multipole_figure(&name, &multipoles, Component::Radial, 3, None)?),
+        ("modes_transverse", multipole_figure(&name, &multipoles, Component::Transverse, 3, None)?),
     ];
     std::fs::create_dir_all(folder)?;
     for (file, figure) in figures {

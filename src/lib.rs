@@ -72,6 +72,8 @@
 //! | `fit` (feature `fit`) | a profile against both solutions, with errors and a decision; slope and crossover of an angular spectrum | `fit::profile::fit_radial_profile`, `fit::angular::fit_slope` |
 //! | `protocol` (feature `linear`) | whether relaxers end in the same minimum | `protocol::ProtocolSensitivity` |
 //! | [`scene`] | everything a run needs, as plain data | [`Scene`](scene::Scene) |
+//! | [`response`] | all observables of one inflation, and its phase | [`Response`](response::Response) |
+//! | [`analysis`] | the same of states relaxed elsewhere | [`Analysis`](analysis::Analysis) |
 //! | [`run`] | scene to report, one line a stage | [`run::run`] |
 //! | [`report`] | table, data files, figures, one page | [`report::write`] |
 //! | `precision` (feature `linear`) | error against cost of relaxers and other numerical choices | `precision::measure` |
@@ -96,6 +98,7 @@
 //! The book (`book/src`) has a chapter a module: the question, the equation, how it is computed, how it is checked, and
 //! where it ends. Its snippets are compiled and run by `cargo test --doc`.
 
+pub mod analysis;
 pub mod certificate;
 pub mod contact;
 pub mod displacement;
@@ -222,6 +225,11 @@ mod book {
     mod protocol {}
     #[doc = include_str!("../book/src/scene.md")]
     mod scene {}
+    #[doc = include_str!("../book/src/response.md")]
+    mod response {}
+    #[cfg(feature = "fit")]
+    #[doc = include_str!("../book/src/analysis.md")]
+    mod analysis {}
     #[doc = include_str!("../book/src/exact.md")]
     mod exact {}
     #[doc = include_str!("../book/src/report.md")]

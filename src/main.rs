@@ -1,5 +1,7 @@
 //! The command line of jamscope: parses, calls the library, prints.
 
+#[path = "cli/analyse.rs"]
+mod analyse;
 #[cfg(feature = "linear")]
 #[path = "cli/elasticity.rs"]
 mod elasticity;
@@ -44,6 +46,8 @@ enum Command {
     Scene,
     /// Print what is known of a packing file: certificate, energy, stress, contacts, forces, elastic moduli, modes.
     Inspect(InspectArguments),
+    /// Measure the observables of states before and after an inflation that were relaxed elsewhere.
+    Analyse(analyse::AnalyseArguments),
     /// Print an exact solution as a table, 17 significant digits.
     Exact(exact::ExactArguments),
     /// Measure error against cost: every relaxer from one inflated start, at a ladder of settings.
@@ -100,6 +104,7 @@ fn main() -> ExitCode {
         Some(Command::Run(arguments)) => run_scene(&arguments),
         Some(Command::Scene) => print(&scene_file::commented_scene()),
         Some(Command::Inspect(arguments)) => inspect_packing(&arguments),
+        Some(Command::Analyse(arguments)) => analyse::run(&arguments),
         Some(Command::Exact(arguments)) => exact::print(&arguments).map(|()| ExitCode::SUCCESS),
         #[cfg(feature = "linear")]
         Some(Command::Precision(arguments)) => precision::run(&arguments),

@@ -295,3 +295,50 @@ fn precision_refuses_a_sample_that_is_not_there_and_no_steps() {
     let said = complaint(&["precision", "no-such-scene.toml"]);
     assert!(said.contains("no-such-scene.toml"), "{said}");
 }
+
+#[test]
+fn analyse_of_a_run_gives_the_observables_of_that_run() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (out, analysis) = (folder.path().join("report"), folder.path().join("analysis"));
+    let packing = fixture("packings/hertz_N1000_p800.xyz");
+    assert!(jamscope(&["run", "--packing", text(&packing), "--out", text(&out)]).status.success());
+    let output = jamscope(&["analyse", text(&out), "--out", text(&analysis)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let table = String::from_utf8(output.stdout).expect("Unicode");
+    assert!(table.contains("hertz_N1000_p800") && table.contains("G* = −G(π)"), "{table}");
+    let read = |path: PathBuf| std::fs::read(path).expect("a file");
+    for ending in ["radial_profile", "angular_correlation", "power_spectrum", "radial_dependence", "multipoles"]
+        .into_iter()
+        .chain(["contact_changes", "bond_changes", "isostatic_length", "angular_profiles"])
+    {
+        let name = format!("hertz_N1000_p800.{ending}.csv");
+        assert_eq!(read(analysis.join(&name)), read(out.join(&name)), "{name}");
+    }
+    let json: Value = serde_json::from_slice(&read(analysis.join("analysis.json"))).expect("JSON");
+    let run: Value = serde_json::from_slice(&read(out.join("report.json"))).expect("JSON");
+    let (ours, theirs) = (&json["analyses"][0], &run["samples"][0]["done"]);
+    assert_eq!(ours["pressure_change"], theirs["inflation"]["pressure_change"]);
+    assert_eq!(ours["phase"], theirs["phase"]);
+}
+
+#[test]
+fn analyse_says_what_is_missing() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = |name: &str| folder.path().join(name);
+    let out = path("out");
+    let of_folder = || complaint(&["analyse", text(folder.path()), "--out", text(&out)]);
+    assert!(of_folder().contains("no file NAME.before.* in it"), "{}", of_folder());
+    let packing = fixture("packings/hertz_N1000_p800.xyz");
+    std::fs::copy(&packing, path("one.before.xyz")).expect("copied");
+    assert!(of_folder().contains("no one.after.* or one.displacement.* beside it"), "{}", of_folder());
+    std::fs::copy(&packing, path("one.after.xyz")).expect("copied");
+    let message = of_folder();
+    assert!(message.contains("one.before.xyz") && message.contains("no disk changed its radius"), "{message}");
+    std::fs::copy(fixture("packings/hertz_N1000_p100.xyz"), path("one.after.xyz")).expect("copied");
+    assert!(of_folder().contains("the box before and the one after differ"), "{}", of_folder());
+    std::fs::copy(fixture("packings/hooke_N1000_p100.xyz"), path("one.after.xyz")).expect("copied");
+    assert!(of_folder().contains("the files name two laws"), "{}", of_folder());
+    std::fs::copy(&packing, path("one.displacement.xyz")).expect("copied");
+    assert!(of_folder().contains("are both a state"), "{}", of_folder());
+    assert!(!out.exists(), "nothing was written");
+}

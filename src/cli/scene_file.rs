@@ -9,7 +9,9 @@ use jamscope::scene::{Scene, SceneError};
 /// Tables are parted by blank lines; those this build knows nothing of are left out.
 pub fn commented_scene() -> String {
     let known = |table: &&str| {
-        let fitted = ["[observables.profile_fit]", "[observables.spectrum_fit]"].iter().any(|it| table.starts_with(it));
+        let fitted = ["[observables.profile_fit]", "[observables.spectrum_fit]", "[observables.elastic_modes]"]
+            .iter()
+            .any(|it| table.starts_with(it));
         (cfg!(feature = "fit") || !fitted)
             && (cfg!(feature = "linear") || !table.starts_with("[observables.plastic_part]"))
     };

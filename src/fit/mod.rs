@@ -1,12 +1,15 @@
 //! Fits of what was measured to what is exactly known, with errors, evidence, and a refusal where neither holds.
 //!
 //! Start from [`profile::fit_radial_profile`]: one radial profile against the elastic and the screened solution; or from
-//! [`angular::fit_slope`] and [`angular::fit_crossover`]: angular power spectra.
+//! [`angular::fit_slope`] and [`angular::fit_crossover`]: angular power spectra; or from [`modes::fit_elastic_modes`]: angular
+//! modes against the elastic ones.
 
 pub mod angular;
+pub mod modes;
 pub mod profile;
 mod rings;
 mod screening;
+mod search;
 mod significance;
 mod units;
 
@@ -88,6 +91,12 @@ pub enum FitError {
     WavelengthUnresolved {
         /// The setting.
         rings_per_wavelength: f64,
+    },
+    /// Poisson's ratio of two dimensions is not between −1 and 1.
+    #[error("poisson_ratio is {ratio}, not between -1 and 1")]
+    PoissonRatioOutside {
+        /// The ratio given.
+        ratio: f64,
     },
     /// The level of significance or the share of variance is not between 0 and 1.
     #[error("significance {significance} and least share {least_share} must lie between 0 and 1, ends excluded")]

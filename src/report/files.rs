@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use crate::analysis::Analysis;
 use crate::certificate::Certificate;
 use crate::contact::LawChoice;
 use crate::displacement::DisplacementField;
@@ -37,6 +38,35 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, ReportError
     Ok(files.written)
 }
 
+/// Writes analyses into `folder` as [`write`] does a report: `analysis.json`, the tables of each, and with the feature `plot`
+/// one page.
+///
+/// # Errors
+/// [`ReportError`] names the file and what is wrong.
+pub fn write_analyses(analyses: &[Analysis], folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
+    std::fs::create_dir_all(folder).map_err(|source| ReportError::Folder { folder: folder.into(), source })?;
+    let mut files = Files { folder, written: Vec::new() };
+    let document = Analyses { jamscope_version: env!("CARGO_PKG_VERSION"), analyses };
+    files.json("analysis.json", &document)?;
+    for analysis in analyses {
+        for file in csv::response::files(&analysis.response) {
+            if let Some(text) = (file.text)(&analysis.response) {
+                files.text(&format!("{}.{}", analysis.name, file.ending), &text)?;
+            }
+        }
+    }
+    #[cfg(feature = "plot")]
+    files.text("analysis.html", &crate::report::page::analysis_page(analyses)?)?;
+    Ok(files.written)
+}
+
+/// What `analysis.json` holds.
+#[derive(Serialize)]
+struct Analyses<'a> {
+    jamscope_version: &'static str,
+    analyses: &'a [Analysis],
+}
+
 /// A folder being filled.
 struct Files<'a> {
     folder: &'a Path,
@@ -59,7 +89,9 @@ impl Files<'_> {
 
     fn sample(&mut self, report: &Report, sample: &SampleReport, result: &SampleResult) -> Result<(), ReportError> {
         let name = sample.name.as_str();
-        let origin = |state, pressure, certificate| Origin { report, sample, state, pressure, certificate };
+        let outer_radius = result.inflation.outer_radius;
+        let origin =
+            |state, pressure, certificate| Origin { report, sample, state, pressure, outer_radius, certificate };
         for file in DataFile::of(report, result) {
             let path = file.name(name);
             match file {
@@ -129,6 +161,10 @@ impl Files<'_> {
             ("seed", seed.as_str()),
             ("pressure", pressure.as_str()),
         ];
+        let outer_radius = format!("{:?}", origin.outer_radius);
+        if packing.held().contains(&true) {
+            properties.push(("outer_radius", outer_radius.as_str()));
+        }
         properties.extend(numbers.iter().map(|(key, value)| (*key, value.as_str())));
         write_packing(&path, packing, columns, &properties)?;
         self.written.push(path);
@@ -194,6 +230,8 @@ struct Origin<'a> {
     state: &'a str,
     /// Pressure of the box, or of the circle once it is cut \[force / length\].
     pressure: f64,
+    /// R \[length\].
+    outer_radius: f64,
     certificate: &'a Certificate,
 }
 

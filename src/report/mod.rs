@@ -44,7 +44,7 @@ pub mod table;
 
 use std::path::PathBuf;
 
-pub use files::write;
+pub use files::{write, write_analyses};
 
 use crate::io::WriteError;
 #[cfg(doc)]

@@ -2,13 +2,15 @@
 
 use std::fmt::Write as _;
 
+use crate::analysis::{Analysis, map_sides};
 use crate::inflation::Boundary;
 use crate::report::data_file::DataFile;
 use crate::report::figures::map::MapFrame;
 use crate::report::figures::{Figure, FigureError, escaped};
 use crate::report::number::{count, significant};
 use crate::report::response_page;
-use crate::report::rows::{Times, done, law, sections, settings};
+use crate::report::rows::{Section, Times, done, law, sections, settings};
+use crate::response::Response;
 use crate::run::{Report, SampleOutcome, SampleReport, SampleResult};
 use crate::scene::Source;
 
@@ -19,13 +21,7 @@ pub(crate) const STYLE: &str = include_str!("page.css");
 /// # Errors
 /// A figure whose numbers are not finite.
 pub fn page(report: &Report) -> Result<String, FigureError> {
-    let mut html = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>jamscope: response to an inflation</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-         <header>\n<h1>Response of a packing to the inflation of one disk</h1>\n<p>{}</p>\n</header>\n<main>\n",
-        introduction(report)
-    );
+    let mut html = head(&introduction(report));
     for sample in &report.samples {
         html.push_str(&section(report, sample)?);
     }
@@ -39,6 +35,83 @@ pub fn page(report: &Report) -> Result<String, FigureError> {
         escaped(&law(&report.scene.law)),
     );
     Ok(html)
+}
+
+/// The page of analyses.
+///
+/// # Errors
+/// A figure whose numbers are not finite.
+pub fn analysis_page(analyses: &[Analysis]) -> Result<String, FigureError> {
+    let responses: Vec<_> = analyses.iter().map(|analysis| &analysis.response).collect();
+    let mut html = head(&format!(
+        "Two states of each packing, before and after one disk grew, as they were read. {}",
+        response_page::legend(&responses, true).trim_end()
+    ));
+    for analysis in analyses {
+        let name = escaped(&analysis.name);
+        let facts = [
+            format!("p = {}", significant(analysis.before.pressure, 4)),
+            format!("N = {}", count(analysis.mobile_count)),
+        ];
+        let facts: Vec<String> = facts.into_iter().chain(decided(&analysis.response)).collect();
+        let _ = write!(
+            html,
+            "<section class=\"sample\" aria-label=\"Sample {name}\">\n<h2>{name}</h2>\n<p class=\"facts\">{}</p>\n",
+            facts.join(", ")
+        );
+        let sides = map_sides(&analysis.pair.before, analysis.outer_radius);
+        let (radii, boundary) = (analysis.pair.before.radii(), analysis.boundary());
+        let frame = MapFrame::new(boundary, analysis.outer_radius, sides, widest(radii));
+        html.push_str(&pictures(response_page::figures(&analysis.name, &analysis.response, radii, &frame, true)?));
+        let files = crate::report::csv::response::files(&analysis.response);
+        html.push_str(&links(files.map(|file| format!("{}.{}", analysis.name, file.ending))));
+        html.push_str("</section>\n");
+    }
+    let names: Vec<&str> = analyses.iter().map(|analysis| analysis.name.as_str()).collect();
+    let _ = write!(
+        html,
+        "<section aria-label=\"Numbers\">\n<h2>Numbers</h2>\n{}</section>\n",
+        numbers_table(&names, &crate::report::rows::analysis::sections(analyses))
+    );
+    let law = analyses.first().map_or(String::new(), |first| law(&first.law));
+    let _ = write!(
+        html,
+        "</main>\n<footer>\n<p>jamscope {}, {}. All numbers: <a href=\"analysis.json\">analysis.json</a>.</p>\n\
+         </footer>\n</body>\n</html>\n",
+        env!("CARGO_PKG_VERSION"),
+        escaped(&law),
+    );
+    Ok(html)
+}
+
+/// All before the first sample.
+fn head(introduction: &str) -> String {
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <title>jamscope: response to an inflation</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+         <header>\n<h1>Response of a packing to the inflation of one disk</h1>\n<p>{introduction}</p>\n</header>\n<main>\n"
+    )
+}
+
+/// Figures side by side.
+fn pictures(figures: Vec<Figure>) -> String {
+    if figures.is_empty() {
+        return String::new();
+    }
+    let each = figures.iter().map(|figure| format!("<figure>\n{}</figure>\n", figure.to_inline_svg()));
+    format!("<div class=\"figures\">\n{}</div>\n", each.collect::<String>())
+}
+
+/// Links to data files.
+fn links(files: impl Iterator<Item = String>) -> String {
+    let each = files.map(|file| escaped(&file)).map(|file| format!(" <a href=\"{file}\">{file}</a>"));
+    format!("<p class=\"files\">Data:{}</p>\n", each.collect::<Vec<_>>().join(","))
+}
+
+/// The largest radius \[length\].
+fn widest(radii: &[f64]) -> f64 {
+    radii.iter().copied().fold(0.0, f64::max)
 }
 
 /// What is seen, in a paragraph; only what is there.
@@ -75,25 +148,13 @@ fn section(report: &Report, sample: &SampleReport) -> Result<String, FigureError
         "<section class=\"sample\" aria-label=\"Sample {name}\">\n<h2>{name}</h2>\n<p class=\"facts\">{}</p>\n",
         facts(result)
     );
-    let figures = figures(report, &sample.name, result)?;
-    if !figures.is_empty() {
-        html.push_str("<div class=\"figures\">\n");
-        for figure in figures {
-            let _ = write!(html, "<figure>\n{}</figure>\n", figure.to_inline_svg());
-        }
-        html.push_str("</div>\n");
-    }
+    html.push_str(&pictures(figures(report, &sample.name, result)?));
     #[cfg(feature = "linear")]
     if let Some(sensitivity) = crate::report::protocol::measured(result) {
         html.push_str(&crate::report::protocol::html(sensitivity));
     }
-    html.push_str("<p class=\"files\">Data:");
-    for (place, file) in DataFile::of(report, result).into_iter().enumerate() {
-        let file = escaped(&file.name(&sample.name));
-        let comma = if place > 0 { "," } else { "" };
-        let _ = write!(html, "{comma} <a href=\"{file}\">{file}</a>");
-    }
-    html.push_str("</p>\n</section>\n");
+    html.push_str(&links(DataFile::of(report, result).into_iter().map(|file| file.name(&sample.name))));
+    html.push_str("</section>\n");
     Ok(html)
 }
 
@@ -115,15 +176,15 @@ fn facts(result: &SampleResult) -> String {
         format!("φ = {}", significant(packing.packing_fraction, 4)),
         format!("N = {}", count(result.inflation.mobile_count)),
     ];
-    facts.extend(decided(result));
+    facts.extend(decided(&result.response));
     facts.join(", ")
 }
 
 #[cfg(feature = "fit")]
-fn decided(result: &SampleResult) -> Option<String> {
+fn decided(response: &Response) -> Option<String> {
     use crate::fit::profile::Decision;
     use crate::response::Measurement;
-    Some(match result.response.profile_fit.as_ref()? {
+    Some(match response.profile_fit.as_ref()? {
         Measurement::Refused(reason) => format!("no fit: {}", escaped(reason)),
         Measurement::Measured(fit) => {
             let kappa = crate::report::rows::response::wavenumber(fit).map_or(String::new(), |text| escaped(&text));
@@ -137,31 +198,43 @@ fn decided(result: &SampleResult) -> Option<String> {
 }
 
 #[cfg(not(feature = "fit"))]
-fn decided(_result: &SampleResult) -> Option<String> {
+fn decided(_response: &Response) -> Option<String> {
     None
 }
 
 fn figures(report: &Report, name: &str, result: &SampleResult) -> Result<Vec<Figure>, FigureError> {
     let radii = result.inflated.before.packing.get().radii();
     // Disks whose centre lies within the boundary reach beyond it by a radius.
-    let widest = radii.iter().copied().fold(0.0, f64::max);
     let (boundary, outer_radius) = (report.scene.inflation.boundary, result.response.field.outer_radius);
-    let frame = MapFrame::new(boundary, outer_radius, result.packing.box_sides, widest);
+    let frame = MapFrame::new(boundary, outer_radius, result.packing.box_sides, widest(radii));
     let heat = report.scene.observables.displacement_field.is_some();
     response_page::figures(name, &result.response, radii, &frame, heat)
 }
 
 /// All rows of all samples that came to a result.
 fn numbers(report: &Report) -> String {
-    let mut html = String::from(
-        "<section aria-label=\"Numbers\">\n<h2>Numbers</h2>\n<div class=\"table\">\n<table>\n<thead>\n<tr><th scope=\"col\">Quantity</th>",
+    let names: Vec<&str> = report.samples.iter().map(|sample| sample.name.as_str()).collect();
+    let mut html = format!(
+        "<section aria-label=\"Numbers\">\n<h2>Numbers</h2>\n{}",
+        numbers_table(&names, &sections(report, &report.samples, Times::LeftOut))
     );
-    for sample in &report.samples {
-        let _ = write!(html, "<th scope=\"col\">{}</th>", escaped(&sample.name));
+    #[cfg(feature = "linear")]
+    if let Some(text) = crate::report::protocol::summary(report) {
+        let _ = writeln!(html, "<p>{}</p>", escaped(&text));
+    }
+    html.push_str("</section>\n");
+    html
+}
+
+/// A column a name.
+fn numbers_table(names: &[&str], sections: &[Section]) -> String {
+    let mut html = String::from("<div class=\"table\">\n<table>\n<thead>\n<tr><th scope=\"col\">Quantity</th>");
+    for name in names {
+        let _ = write!(html, "<th scope=\"col\">{}</th>", escaped(name));
     }
     html.push_str("</tr>\n</thead>\n");
-    let width = report.samples.len() + 1;
-    for section in sections(report, &report.samples, Times::LeftOut) {
+    let width = names.len() + 1;
+    for section in sections {
         let _ = write!(
             html,
             "<tbody>\n<tr><th class=\"group\" scope=\"rowgroup\" colspan=\"{width}\">{}</th></tr>\n",
@@ -177,10 +250,5 @@ fn numbers(report: &Report) -> String {
         html.push_str("</tbody>\n");
     }
     html.push_str("</table>\n</div>\n");
-    #[cfg(feature = "linear")]
-    if let Some(text) = crate::report::protocol::summary(report) {
-        let _ = writeln!(html, "<p>{}</p>", escaped(&text));
-    }
-    html.push_str("</section>\n");
     html
 }

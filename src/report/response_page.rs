@@ -10,7 +10,7 @@ use crate::report::figures::correlation::{CorrelationCurve, correlation_figure};
 use crate::report::figures::heat_map::heat_map;
 use crate::report::figures::isostatic::isostatic_figure;
 use crate::report::figures::map::MapFrame;
-use crate::report::figures::multipoles::{Component, multipole_figure};
+use crate::report::figures::multipoles::{Component, ModeCurve, multipole_figure};
 use crate::report::figures::radial::radial_figure;
 use crate::report::figures::radial_dependence::radial_dependence_figure;
 use crate::report::figures::spectrum::{SpectrumCurve, SpectrumPoints, spectrum_figure};
@@ -47,7 +47,19 @@ pub(crate) fn figures(
         figures.extend(radial_dependence_figure(name, rings).ok());
     }
     if let Some(multipoles) = response.multipoles.as_ref().and_then(|it| it.measured()) {
-        figures.extend(multipole_figure(name, multipoles, Component::Radial, HIGHEST_MODE).ok());
+        #[cfg(feature = "fit")]
+        let fit = response.elastic_modes.as_ref().and_then(|it| it.measured());
+        // The sign of the mean over the angle is that of its measured value.
+        #[cfg(feature = "fit")]
+        let elastic = |mode: usize, radius: f64| {
+            let amplitude = fit?.at(mode, radius)?.radial;
+            Some(if mode == 0 { amplitude.re } else { amplitude.norm() })
+        };
+        #[cfg(feature = "fit")]
+        let curve: Option<ModeCurve<'_>> = fit.is_some().then_some(&elastic);
+        #[cfg(not(feature = "fit"))]
+        let curve: Option<ModeCurve<'_>> = None;
+        figures.extend(multipole_figure(name, multipoles, Component::Radial, HIGHEST_MODE, curve).ok());
     }
     let isostatic = response.isostatic_length.as_ref().and_then(|it| it.measured());
     if let Some(bonds) = response.bond_changes.as_ref().filter(|changes| !changes.bonds.is_empty()) {
@@ -59,7 +71,7 @@ pub(crate) fn figures(
     }
     if let Some(contacts) = response.contact_changes.as_ref() {
         let changes = &contacts.changes;
-        if changes.kept_count + changes.made.len() + changes.broken.len() > 0 {
+        if !(changes.made.is_empty() && changes.broken.is_empty()) {
             figures.push(contact_map(name, changes, frame));
         }
     }
@@ -165,7 +177,9 @@ pub(crate) fn legend(responses: &[&Response], heat: bool) -> String {
         );
     }
     if any(|it| it.multipoles.is_some()) {
-        text.push_str("Angular modes: isotropic part n = 0, dipole 1, quadrupole 2. ");
+        text.push_str(
+            "Angular modes: isotropic part n = 0, dipole 1, quadrupole 2; dashed, the elastic modes fitted to them. ",
+        );
     }
     if any(|it| it.bond_changes.is_some()) {
         text.push_str("The map of r·d<sub>∥</sub> shows bonds, blue stretched, red compressed, with a circle at the isostatic length. ");

@@ -1,5 +1,6 @@
-//! [`terminal_table`]: a report as plain text, a column a sample, no wider than [`WIDTH`].
+//! [`terminal_table`], [`analysis_table`]: a report, or analyses, as plain text, a column a sample, no wider than [`WIDTH`].
 
+use crate::analysis::Analysis;
 use crate::report::rows::{Section, Times, failures, refusals, sections};
 use crate::run::{Report, SampleReport};
 
@@ -22,11 +23,8 @@ pub fn terminal_table(report: &Report) -> String {
     let mut lines =
         vec![format!("jamscope {}, {}", report.jamscope_version, crate::report::rows::law(&report.scene.law))];
     for samples in report.samples.chunks(SAMPLES_ABREAST) {
-        lines.push(String::new());
-        lines.push(line("", samples.iter().map(|sample| sample.name.as_str())));
-        for section in sections(report, samples, Times::Shown) {
-            section_lines(&section, &mut lines);
-        }
+        let names = samples.iter().map(|sample| sample.name.as_str());
+        columns(names, &sections(report, samples, Times::Shown), &mut lines);
     }
     #[cfg(feature = "linear")]
     if let Some(text) = crate::report::protocol::summary(report) {
@@ -34,13 +32,39 @@ pub fn terminal_table(report: &Report) -> String {
         lines.extend(wrapped(&text));
     }
     failure_lines(&report.samples, &mut lines);
+    text(&lines)
+}
+
+/// The numbers of analyses, as those of a report.
+pub fn analysis_table(analyses: &[Analysis]) -> String {
+    let law = analyses.first().map_or(String::new(), |first| format!(", {}", crate::report::rows::law(&first.law)));
+    let mut lines = vec![format!("jamscope {}{law}", env!("CARGO_PKG_VERSION"))];
+    for analyses in analyses.chunks(SAMPLES_ABREAST) {
+        let names = analyses.iter().map(|analysis| analysis.name.as_str());
+        columns(names, &crate::report::rows::analysis::sections(analyses), &mut lines);
+    }
+    for analysis in analyses {
+        for (what, reason) in crate::report::rows::response::refusals(&analysis.response) {
+            lines.push(String::new());
+            lines.extend(wrapped(&format!("{}, {what}: {reason}", analysis.name)));
+        }
+    }
+    text(&lines)
+}
+
+fn text(lines: &[String]) -> String {
     lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
 }
 
-fn section_lines(section: &Section, lines: &mut Vec<String>) {
-    lines.push(section.title.into());
-    for row in &section.rows {
-        lines.push(line(&format!("  {}", row.label), row.cells.iter().map(String::as_str)));
+/// Names, and under them all rows of all sections.
+fn columns<'a>(names: impl Iterator<Item = &'a str>, sections: &[Section], lines: &mut Vec<String>) {
+    lines.push(String::new());
+    lines.push(line("", names));
+    for section in sections {
+        lines.push(section.title.into());
+        for row in &section.rows {
+            lines.push(line(&format!("  {}", row.label), row.cells.iter().map(String::as_str)));
+        }
     }
 }
 

@@ -18,6 +18,8 @@ use crate::displacement::{DisplacementField, MeasuredOn};
 #[cfg(feature = "fit")]
 use crate::fit::angular::{CrossoverFit, SlopeFit, fit_crossover, fit_slope};
 #[cfg(feature = "fit")]
+use crate::fit::modes::{ElasticModesFit, fit_elastic_modes};
+#[cfg(feature = "fit")]
 use crate::fit::profile::{ProfileFit, fit_radial_profile};
 use crate::observe::angular::{
     AngularCorrelation, AngularError, PowerSpectrum, RingAnalysis, RingSample, radial_dependence,
@@ -110,6 +112,10 @@ pub struct Response {
     /// Angular modes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub multipoles: Option<Measurement<Multipoles>>,
+    /// The elastic modes fitted to them.
+    #[cfg(feature = "fit")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elastic_modes: Option<Measurement<ElasticModesFit>>,
     /// Contacts made, broken and returned.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_changes: Option<ContactSummary>,
@@ -148,6 +154,8 @@ impl Response {
     pub fn of(subject: Subject<'_>, observables: &Observables) -> Self {
         let Subject { field, before, after, deflated, centre, pressure_change } = subject;
         let radial_profile = observables.radial_profile.map(|settings| RadialProfile::of(&field, settings.ring_width));
+        let multipoles: Option<Measurement<Multipoles>> =
+            observables.multipoles.map(|settings| Multipoles::of(&field, &settings).into());
         let mut response = Response {
             measured_on: field.measured_on,
             phase: PhaseDecision::default(),
@@ -175,7 +183,12 @@ impl Response {
                 .radial_dependence
                 .as_ref()
                 .map(|settings| radial_dependence(&field, settings).into()),
-            multipoles: observables.multipoles.map(|settings| Multipoles::of(&field, &settings).into()),
+            #[cfg(feature = "fit")]
+            elastic_modes: observables
+                .elastic_modes
+                .zip(multipoles.as_ref().and_then(Measurement::measured))
+                .map(|(settings, modes)| fit_elastic_modes(modes, field.outer_radius, &settings).into()),
+            multipoles,
             contact_changes: observables
                 .contact_changes
                 .map(|_| ContactSummary::of(&before, &after, deflated.as_ref(), centre)),

@@ -177,6 +177,13 @@ impl Observables {
         if let Some(multipoles) = &self.multipoles {
             multipoles.check().map_err(|error| wrong("multipoles", error.to_string()))?;
         }
+        #[cfg(feature = "fit")]
+        if let Some(modes) = &self.elastic_modes {
+            if self.multipoles.is_none() {
+                return Err(SceneError::ObservableMissing { observable: "elastic_modes", needed: "multipoles" });
+            }
+            modes.check().map_err(|error| wrong("elastic_modes", error.to_string()))?;
+        }
         if let Some(isostatic) = &self.isostatic_length {
             isostatic.check().map_err(|error| wrong("isostatic_length", error.to_string()))?;
         }

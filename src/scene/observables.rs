@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 #[cfg(feature = "fit")]
 use crate::fit::angular::{CrossoverSettings, SpectrumWindowSettings};
+#[cfg(feature = "fit")]
+use crate::fit::modes::ElasticModeSettings;
 use crate::observe::angular::{CorrelationSettings, RadialDependenceSettings, RingSettings, SpectrumSettings};
 use crate::observe::bond_changes::BondSet;
 use crate::observe::isostatic::IsostaticSettings;
@@ -40,6 +42,10 @@ pub struct Observables {
     /// Angular modes of the displacement, ring by ring.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub multipoles: Option<MultipoleSettings>,
+    /// The elastic modes fitted to them; needs the multipoles.
+    #[cfg(feature = "fit")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub elastic_modes: Option<ElasticModeSettings>,
     /// Contacts made and broken, and which return.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact_changes: Option<ContactChangeSettings>,
@@ -75,6 +81,8 @@ impl Default for Observables {
             spectrum_fit: Some(SpectrumFitSettings::default()),
             radial_dependence: Some(RadialDependenceSettings::default()),
             multipoles: Some(MultipoleSettings::default()),
+            #[cfg(feature = "fit")]
+            elastic_modes: Some(ElasticModeSettings::default()),
             contact_changes: Some(ContactChangeSettings::default()),
             bond_changes: Some(BondChangeSettings::default()),
             isostatic_length: Some(IsostaticSettings::default()),
@@ -101,6 +109,8 @@ impl Observables {
             spectrum_fit: None,
             radial_dependence: None,
             multipoles: None,
+            #[cfg(feature = "fit")]
+            elastic_modes: None,
             contact_changes: None,
             bond_changes: None,
             isostatic_length: None,

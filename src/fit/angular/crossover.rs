@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::fit::angular::likelihood::Powers;
-use crate::fit::angular::search::{golden, minimum};
 use crate::fit::angular::{Interval, SpectrumFitError, SpectrumWindowSettings};
+use crate::fit::search::{golden, minimum};
 use crate::observe::angular::RingSample;
 
 /// f† searched: from 1/16 to 16 times the highest f, in steps of 2^(1/4).

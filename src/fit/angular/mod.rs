@@ -22,7 +22,6 @@
 
 mod crossover;
 mod likelihood;
-mod search;
 mod slope;
 
 use serde::{Deserialize, Serialize};

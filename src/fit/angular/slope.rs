@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::fit::angular::likelihood::Powers;
-use crate::fit::angular::search::minimum;
 use crate::fit::angular::{Interval, SpectrumFitError, SpectrumWindowSettings};
+use crate::fit::search::minimum;
 use crate::observe::angular::RingSample;
 
 /// Exponents searched: −2 to 6 in steps of 1/4.

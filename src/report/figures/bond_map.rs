@@ -1,11 +1,11 @@
 //! [`bond_map`]: every bond where it was, coloured by r·d_∥.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 
 use crate::observe::BondChanges;
+use crate::report::figures::layer::Group;
 use crate::report::figures::map::{MapFrame, Range, colour_bar, level, map_label};
-use crate::report::figures::palette::{hexadecimal, red_over_blue};
+use crate::report::figures::palette::red_over_blue;
 use crate::report::figures::{Figure, escaped};
 use crate::report::number::significant;
 use crate::vector::{difference, scaled, sum};
@@ -46,19 +46,14 @@ pub fn bond_map(name: &str, changes: &BondChanges<2>, frame: &MapFrame, isostati
         groups.entry((level.abs(), level > 0)).or_default().push(ends);
     }
     let width = frame.tenths(WIDTH).max(LEAST_WIDTH);
-    let mut strokes = String::new();
-    for ((size, stretched), bonds) in groups {
-        let path = path(bonds);
+    let group = |((size, stretched), bonds): ((i32, bool), Vec<_>)| {
         let value = f64::from(if stretched { size } else { -size }) / f64::from(LEVELS);
-        let _ = writeln!(
-            strokes,
-            "<path stroke=\"{}\" stroke-width=\"{width}\" d=\"{path}\"/>",
-            hexadecimal(red_over_blue(value))
-        );
-    }
+        Group::new(red_over_blue(value), width, in_strips(bonds))
+    };
+    let layer = frame.layer(groups.into_iter().map(group).collect());
     let circle = isostatic_length.map(|length| frame.circle(length, " stroke-width=\"1.6\" stroke-dasharray=\"6 4\""));
     let elements = [
-        frame.group(&strokes),
+        layer,
         frame.boundary(),
         circle.unwrap_or_default(),
         frame.scale_bar(),
@@ -86,15 +81,8 @@ pub fn bond_map(name: &str, changes: &BondChanges<2>, frame: &MapFrame, isostati
     }
 }
 
-/// Strokes from end to end, each seen from where the last one ended, in strips across the map: half the letters of absolute
-/// places in any order.
-fn path(mut bonds: Vec<[[i64; 2]; 2]>) -> String {
+/// Strokes in strips across the map: each near the one before, so that relative paths have few letters.
+fn in_strips(mut bonds: Vec<[[i64; 2]; 2]>) -> Vec<[[i64; 2]; 2]> {
     bonds.sort_unstable_by_key(|&[[x, y], end]| (y.div_euclid(STRIP), x, y, end));
-    let mut path = String::new();
-    let [mut last_x, mut last_y] = [0, 0];
-    for [[x, y], [end_x, end_y]] in bonds {
-        let _ = write!(path, "m{} {}l{} {}", x - last_x, y - last_y, end_x - x, end_y - y);
-        [last_x, last_y] = [end_x, end_y];
-    }
-    path
+    bonds
 }

@@ -1,10 +1,9 @@
 //! [`contact_map`]: where contacts are made and broken.
 
-use std::fmt::Write as _;
-
 use crate::observe::ContactChanges;
 use crate::observe::contact_changes::ChangedContact;
 use crate::report::figures::Figure;
+use crate::report::figures::layer::Group;
 use crate::report::figures::map::{MapFrame, map_label};
 use crate::report::figures::palette::{hexadecimal, red_over_blue};
 use crate::report::number::count;
@@ -15,6 +14,9 @@ const POINT: i64 = 50;
 /// The same where there are more.
 const SMALL_POINT: i64 = 30;
 
+/// Opacity of a point: those behind it are seen.
+const OPACITY: f32 = 0.8;
+
 /// Where the colours of made and broken contacts are on the scale of the bond map.
 const STRENGTH: f64 = 0.8;
 
@@ -23,21 +25,14 @@ pub fn contact_map(name: &str, changes: &ContactChanges<2>, frame: &MapFrame) ->
     let width = if changes.made.len() + changes.broken.len() > 1000 { SMALL_POINT } else { POINT };
     let (red, blue) = (red_over_blue(-STRENGTH), red_over_blue(STRENGTH));
     let points = |contacts: &[ChangedContact<2>], colour: [u8; 3]| {
-        let mut path = String::new();
-        for contact in contacts {
-            let [x, y] = frame.place(contact.midpoint);
-            let _ = write!(path, "M{x} {y}h0");
-        }
-        format!(
-            "<path stroke=\"{}\" stroke-opacity=\"0.8\" stroke-width=\"{width}\" d=\"{path}\"/>\n",
-            hexadecimal(colour)
-        )
+        let points = contacts.iter().map(|contact| [frame.place(contact.midpoint); 2]).collect();
+        Group { opacity: OPACITY, ..Group::new(colour, width, points) }
     };
-    let centre = format!("<path stroke=\"#000000\" stroke-width=\"{POINT}\" d=\"M0 0h0\"/>\n");
-    let strokes = [points(&changes.broken, blue), points(&changes.made, red), centre].concat();
+    let centre = Group::new([0; 3], POINT, vec![[[0; 2]; 2]]);
+    let layer = frame.layer(vec![points(&changes.broken, blue), points(&changes.made, red), centre]);
     let text = |colour, text: String| format!("<tspan fill=\"{}\">● </tspan>{text}", hexadecimal(colour));
     let elements = [
-        frame.group(&strokes),
+        layer,
         frame.boundary(),
         frame.scale_bar(),
         map_label(&format!(

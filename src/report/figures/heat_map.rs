@@ -1,11 +1,11 @@
 //! [`heat_map`]: every disk where it was, coloured by r·d_r.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 
 use crate::displacement::DisplacementField;
+use crate::report::figures::layer::Group;
 use crate::report::figures::map::{MapFrame, Range, colour_bar, level, map_label};
-use crate::report::figures::palette::{diverging, hexadecimal};
+use crate::report::figures::palette::diverging;
 use crate::report::figures::{Figure, RESCALED, escaped};
 use crate::report::number::significant;
 
@@ -13,7 +13,7 @@ use crate::report::number::significant;
 const LEVELS: i32 = 32;
 
 /// Colour of disks that do not count.
-const RATTLER: &str = "#c4c8cc";
+const RATTLER: [u8; 3] = [0xC4, 0xC8, 0xCC];
 
 /// The displacement field of a sample as a map of r·d_r, on a scale symmetric about zero that spans 98 % of the disks;
 /// the others have the colour of its ends.
@@ -54,19 +54,17 @@ pub fn heat_map(name: &str, field: &DisplacementField<2>, radii: &[f64], frame: 
 /// All mobile disks and the inflated one, in a group whose origin is the centre.
 fn disks(frame: &MapFrame, field: &DisplacementField<2>, radii: &[f64], full: f64) -> String {
     // Colour level, then width: few groups, in an order that does not depend on the disks.
-    let mut groups: BTreeMap<(Option<i32>, i64), String> = BTreeMap::new();
+    let mut groups: BTreeMap<(Option<i32>, i64), Vec<[[i64; 2]; 2]>> = BTreeMap::new();
     for disk in &field.disks {
         let level = disk.counted.then(|| level(disk.distance * disk.radial, full, LEVELS));
-        let path = groups.entry((level, frame.tenths(2.0 * radii[disk.disk]))).or_default();
-        let [x, y] = frame.place(disk.position);
-        let _ = write!(path, "M{x} {y}h0");
+        let points = groups.entry((level, frame.tenths(2.0 * radii[disk.disk]))).or_default();
+        points.push([frame.place(disk.position); 2]);
     }
-    let mut markup = String::new();
-    for ((level, width), path) in groups {
-        let colour = level.map_or(RATTLER.into(), |level| hexadecimal(diverging(f64::from(level) / f64::from(LEVELS))));
-        let _ = writeln!(markup, "<path stroke=\"{colour}\" stroke-width=\"{width}\" d=\"{path}\"/>");
-    }
-    let inflated = frame.tenths(2.0 * field.inner_radius);
-    let _ = writeln!(markup, "<path stroke=\"#000000\" stroke-width=\"{inflated}\" d=\"M0 0h0\"/>");
-    frame.group(&markup)
+    let group = |((level, width), points): ((Option<i32>, i64), Vec<_>)| {
+        let colour = level.map_or(RATTLER, |level| diverging(f64::from(level) / f64::from(LEVELS)));
+        Group::new(colour, width, points)
+    };
+    let mut groups: Vec<Group> = groups.into_iter().map(group).collect();
+    groups.push(Group::new([0; 3], frame.tenths(2.0 * field.inner_radius), vec![[[0; 2]; 2]]));
+    frame.layer(groups)
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::inflation::Boundary;
+use crate::report::figures::layer::{Group, Layer};
 use crate::report::figures::palette::hexadecimal;
 use crate::report::figures::{HEIGHT, INK};
 use crate::vector::Vector;
@@ -49,12 +50,8 @@ impl MapFrame {
     }
 
     /// Strokes in tenths of a pixel whose origin is the inflated disk.
-    pub(crate) fn group(&self, markup: &str) -> String {
-        format!(
-            "<g transform=\"translate({} {}) scale(.1)\" fill=\"none\" stroke-linecap=\"round\">\n{markup}</g>\n",
-            LEFT + 0.5 * SIDE,
-            TOP + 0.5 * SIDE
-        )
+    pub(crate) fn layer(&self, groups: Vec<Group>) -> String {
+        Layer { groups }.markup([LEFT + 0.5 * SIDE, TOP + 0.5 * SIDE], 0.5 * SIDE)
     }
 
     /// A circle around the inflated disk.

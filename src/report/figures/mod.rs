@@ -15,6 +15,7 @@ pub mod contact_map;
 pub mod correlation;
 pub mod heat_map;
 pub mod isostatic;
+mod layer;
 pub(crate) mod log_axes;
 pub mod map;
 pub mod multipoles;

@@ -27,8 +27,14 @@ const RADIAL: &str = "r·A<tspan dy=\"3\" font-size=\"10\">n</tspan><tspan dy=\"
 const TRANSVERSE: &str = "r·A<tspan dy=\"3\" font-size=\"10\">n</tspan><tspan dy=\"-3\"> of d</tspan><tspan dy=\"3\" \
                           font-size=\"10\">θ</tspan><tspan dy=\"-3\">\u{200B}</tspan>";
 
+/// The amplitude of a mode at a distance \[length\]; none where it has none.
+pub type ModeCurve<'a> = &'a dyn Fn(usize, f64) -> Option<f64>;
+
+/// Points of a curve.
+const CURVE_POINTS: usize = 100;
+
 /// The modes of a sample from 0 to `highest_mode`, one a colour, rings joined, with standard errors; rings without modes
-/// are left out.
+/// are left out. `curve` is drawn dashed beside them.
 ///
 /// # Errors
 /// No ring with a mode.
@@ -37,6 +43,7 @@ pub fn multipole_figure(
     multipoles: &Multipoles,
     component: Component,
     highest_mode: usize,
+    curve: Option<ModeCurve<'_>>,
 ) -> Result<Figure, FigureError> {
     let rings: Vec<(f64, &ComponentModes)> = multipoles
         .rings
@@ -63,6 +70,7 @@ pub fn multipole_figure(
     let farthest = rings.last().map_or(f64::NAN, |ring| ring.0);
     let values =
         modes.iter().flat_map(|&mode| points(mode).flat_map(|(_, value, error)| [value - error, value + error]));
+    let y_range = with_margin(values);
     let part = match component {
         Component::Radial => "radial",
         Component::Transverse => "transverse",
@@ -77,7 +85,7 @@ pub fn multipole_figure(
         x_range: [0.0, 1.02 * farthest],
         y_label: if component == Component::Radial { RADIAL } else { TRANSVERSE },
         y_unit: "length²",
-        y_range: with_margin(values),
+        y_range,
         legend: legend.collect(),
     };
     chart.draw(|axes, scaling| {
@@ -86,6 +94,13 @@ pub fn multipole_figure(
             let style = RGBColor(red, green, blue);
             let line = points(mode).map(|(radius, value, _)| (radius, scaling.apply(value)));
             axes.draw_series(LineSeries::new(line, style.stroke_width(SCALE)))?;
+            if let Some(curve) = curve {
+                let at = |i: usize| farthest * i as f64 / CURVE_POINTS as f64;
+                let points = (0..=CURVE_POINTS).filter_map(|i| Some((at(i), at(i) * curve(mode, at(i))?)));
+                let shown = points.filter(|(_, value)| y_range[0] <= *value && *value <= y_range[1]);
+                let shown = shown.map(|(radius, value)| (radius, scaling.apply(value)));
+                axes.draw_series(DashedLineSeries::new(shown, 6 * SCALE, 4 * SCALE, style.stroke_width(SCALE)))?;
+            }
             axes.draw_series(points(mode).map(|(radius, value, error)| {
                 let ends = [value - error, value + error].map(|end| (radius, scaling.apply(end)));
                 PathElement::new(ends.to_vec(), style.stroke_width(SCALE * 7 / 10))

@@ -1,5 +1,6 @@
 //! What a reader wants to know of each sample, row by row; the terminal table and the page lay the same rows out.
 
+pub(crate) mod analysis;
 pub(crate) mod response;
 mod states;
 

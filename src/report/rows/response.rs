@@ -42,6 +42,8 @@ pub(crate) fn refusals(response: &Response) -> Vec<(&'static str, &str)> {
         ("no crossover of the spectrum", ring(response).and_then(|ring| refused_of(&ring.crossover))),
         ("no radial dependence", refused_of(&response.radial_dependence)),
         ("no angular modes", refused_of(&response.multipoles)),
+        #[cfg(feature = "fit")]
+        ("no elastic modes", refused_of(&response.elastic_modes)),
         ("no isostatic length", refused_of(&response.isostatic_length)),
     ];
     found.into_iter().filter_map(|(what, reason)| Some((what, reason?))).collect()
@@ -181,7 +183,31 @@ fn multipoles(responses: Vec<Option<&Response>>) -> Section {
         .add("share in n = 1, dipole", |it| share(it, 1))
         .add("share in n = 2, quadrupole", |it| share(it, 2))
         .add("share of all else", |it| share(it, 3));
+    #[cfg(feature = "fit")]
+    elastic_modes(&mut rows);
     rows.section("Angular modes")
+}
+
+#[cfg(feature = "fit")]
+fn elastic_modes(rows: &mut Rows<'_, Response>) {
+    use crate::report::number::with_error;
+
+    let fit = |it: &Response| it.elastic_modes.as_ref()?.measured().cloned();
+    for (mode, label) in
+        ["n = 0, described by elasticity", "n = 1, described by it", "n = 2, described by it"].into_iter().enumerate()
+    {
+        rows.add(label, |it| {
+            let share = fit(it)?.modes.iter().find(|fit| fit.mode == mode)?.share_described?;
+            Some(significant(share, 3))
+        });
+    }
+    rows.add("Poisson's ratio of that, ν (2d)", |it| {
+        let fit = fit(it)?;
+        Some(match fit.poisson_estimate() {
+            Some(estimate) => with_error(estimate.value, estimate.standard_error),
+            None => "not determined".into(),
+        })
+    });
 }
 
 fn contacts(responses: Vec<Option<&Response>>) -> Section {

@@ -1,0 +1,162 @@
+//! [`Analysis`]: the observables of two states that somebody else relaxed.
+//!
+//! ```text
+//! before, after  →  disks matched by label, the inflated one found  →  d_i = r_i(after) − r_i(before)  →  Response
+//! ```
+//!
+//! Whether the states are at rest is not taken on trust: each has a [`Certificate`] with its residual. The inflated disk is
+//! the one whose radius changed, unless it is named. Disks beyond R are held, and so is the centre, where either R is given
+//! or the file says which disks are held; otherwise the box is periodic and R half its shortest side.
+
+mod pair;
+
+use serde::Serialize;
+
+pub use pair::{AnalysisError, Pair, PairSettings};
+
+use crate::certificate::Certificate;
+use crate::contact::{LawChoice, PairLaw};
+use crate::displacement::DisplacementField;
+use crate::inflation::Boundary;
+use crate::observe::PressureChange;
+use crate::observe::state::State;
+use crate::packing::{Packing, PackingError, ball_volume};
+use crate::response::{Response, Subject};
+use crate::scene::Observables;
+
+/// Two states and what is measured on them.
+#[derive(Debug, Clone, Serialize)]
+pub struct Analysis {
+    /// Its name in reports and file names.
+    pub name: String,
+    /// The contact law.
+    pub law: LawChoice,
+    /// Label of the inflated disk.
+    pub centre_label: u64,
+    /// Its radius before, a \[length\].
+    pub inner_radius: f64,
+    /// By how much it grew, d_0 \[length\].
+    pub increase: f64,
+    /// R \[length\].
+    pub outer_radius: f64,
+    /// Number of mobile disks.
+    pub mobile_count: usize,
+    /// Before.
+    pub before: StateAnalysis,
+    /// After.
+    pub after: StateAnalysis,
+    /// After the deflation, if that state was given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deflated: Option<StateAnalysis>,
+    /// Δp = p_after − p_before \[force / length\].
+    pub pressure_change: f64,
+    /// Δp / p^((α−2)/(α−1)), absent for an unjammed packing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scaled_pressure_change: Option<f64>,
+    /// All that is measured.
+    #[serde(flatten)]
+    pub response: Response,
+    /// The states, matched.
+    #[serde(skip)]
+    pub pair: Pair,
+}
+
+/// One state in numbers.
+#[derive(Debug, Clone, Serialize)]
+pub struct StateAnalysis {
+    /// Pressure of the circle or the box, 0 without a backbone \[force / length\].
+    pub pressure: f64,
+    /// Elastic energy \[energy\].
+    pub energy: f64,
+    /// Number of contacts, held–held ones left out.
+    pub contact_count: usize,
+    /// Number of mobile disks that are rattlers.
+    pub rattler_count: usize,
+    /// What is known of it, its residual among it.
+    pub certificate: Certificate,
+}
+
+impl Analysis {
+    /// Measures a pair of states.
+    ///
+    /// # Errors
+    /// Two disks with the same centre. Settings are expected to have been [checked](Observables::check).
+    pub fn of(name: &str, pair: Pair, law: &LawChoice, observables: &Observables) -> Result<Self, PackingError> {
+        match law {
+            LawChoice::Hertzian(of) => Self::with_law(name, pair, law, of, observables),
+            LawChoice::Hookean(of) => Self::with_law(name, pair, law, of, observables),
+            LawChoice::PowerLaw(of) => Self::with_law(name, pair, law, of, observables),
+        }
+    }
+
+    fn with_law<L: PairLaw>(
+        name: &str,
+        pair: Pair,
+        choice: &LawChoice,
+        law: &L,
+        observables: &Observables,
+    ) -> Result<Self, PackingError> {
+        let (centre, outer_radius) = (pair.centre, pair.outer_radius);
+        let state = |packing| State::new(packing, law);
+        let (before, after) = (state(&pair.before)?, state(&pair.after)?);
+        let deflated = pair.deflated.as_ref().map(state).transpose()?;
+        let known = |state: &State<'_, 2>| StateAnalysis::of(state, &pair, law);
+        let [first, second] = [known(&before)?, known(&after)?];
+        let third = deflated.as_ref().map(known).transpose()?;
+        let pressure = PressureChange::between(first.pressure, second.pressure, choice.exponent());
+        let inner_radius = pair.before.radii()[centre];
+        let unjammed = [&before, &after].iter().any(|state| state.network.backbone_count() == 0);
+        let states = [(before.packing, before.network.backbone.as_slice()), (after.packing, &after.network.backbone)];
+        let field = DisplacementField::of_states(states, unjammed, centre, inner_radius, outer_radius);
+        let subject = Subject { field, before, after, deflated, centre, pressure_change: pressure.change };
+        let response = Response::of(subject, observables);
+        Ok(Analysis {
+            name: name.into(),
+            law: *choice,
+            centre_label: pair.before.labels()[centre],
+            inner_radius,
+            increase: pair.after.radii()[centre] - inner_radius,
+            outer_radius,
+            mobile_count: pair.before.held().iter().filter(|&&held| !held).count(),
+            before: first,
+            after: second,
+            deflated: third,
+            pressure_change: pressure.change,
+            scaled_pressure_change: pressure.scaled,
+            response,
+            pair,
+        })
+    }
+
+    /// What keeps the packing in place.
+    pub fn boundary(&self) -> Boundary {
+        self.pair.boundary
+    }
+}
+
+impl StateAnalysis {
+    fn of<L: PairLaw>(state: &State<'_, 2>, pair: &Pair, law: &L) -> Result<Self, PackingError> {
+        let (packing, network) = (state.packing, &state.network);
+        let pressure = match (pair.boundary, packing.domain().volume()) {
+            _ if network.backbone_count() == 0 => 0.0,
+            (Boundary::Periodic, Some(volume)) => network.pressure(volume),
+            _ => {
+                let rim = |disk: usize| packing.held()[disk] && disk != pair.centre;
+                network.cluster_pressure(ball_volume::<2>(pair.outer_radius), rim)
+            }
+        };
+        Ok(StateAnalysis {
+            pressure,
+            energy: network.energy(),
+            contact_count: network.contacts.len(),
+            rattler_count: network.rattlers().filter(|&disk| !packing.held()[disk]).count(),
+            certificate: Certificate::of(packing, law, None)?,
+        })
+    }
+}
+
+/// Sides of the box a map needs; twice R in the open plane \[length\].
+#[cfg(feature = "plot")]
+pub(crate) fn map_sides(packing: &Packing<2>, outer_radius: f64) -> [f64; 2] {
+    packing.domain().lengths().unwrap_or([2.0 * outer_radius; 2])
+}

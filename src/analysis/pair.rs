@@ -1,0 +1,255 @@
+//! [`Pair`]: two states of the same disks, matched, with the inflated one found.
+
+use std::collections::BTreeMap;
+
+use crate::inflation::Boundary;
+use crate::packing::{Packing, PackingError};
+use crate::vector::{norm, two_sum};
+
+/// What the states themselves do not say.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PairSettings {
+    /// Label of the inflated disk; absent, it is the one whose radius changed.
+    pub centre_label: Option<u64>,
+    /// R: disks that far from the inflated one before, or farther, are held; absent, held disks are those the states say
+    /// are held \[length\].
+    pub outer_radius: Option<f64>,
+}
+
+/// Why two states cannot be compared.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AnalysisError {
+    /// One has more disks.
+    #[error("{before_count} disks before, {after_count} {state}: the states have to hold the same disks")]
+    CountsDiffer {
+        /// Which state is compared with the one before.
+        state: &'static str,
+        /// Disks before.
+        before_count: usize,
+        /// Disks in that state.
+        after_count: usize,
+    },
+    /// A label of one is missing in the other.
+    #[error("disk {label} is there before but not {state}")]
+    LabelMissing {
+        /// Which state is compared with the one before.
+        state: &'static str,
+        /// Its label.
+        label: u64,
+    },
+    /// Labels that stand more than once do not match in order.
+    #[error("label {label} stands more than once, and the disks {state} are in another order than before")]
+    LabelsAmbiguous {
+        /// Which state is compared with the one before.
+        state: &'static str,
+        /// One such label.
+        label: u64,
+    },
+    /// The boxes differ.
+    #[error("the box before and the one {state} differ")]
+    DomainsDiffer {
+        /// Which state is compared with the one before.
+        state: &'static str,
+    },
+    /// No radius changed.
+    #[error("no disk changed its radius: name the inflated one by its label")]
+    NoCentre,
+    /// Several radii changed.
+    #[error("{count} disks changed their radius, disks {first} and {second} among them: one is inflated")]
+    SeveralCentres {
+        /// How many.
+        count: usize,
+        /// Label of the first.
+        first: u64,
+        /// Label of the second.
+        second: u64,
+    },
+    /// No disk, or more than one mobile one, has the label asked for.
+    #[error("{count} disks have the label {label} of the inflated one, not one")]
+    CentreNotOne {
+        /// The label.
+        label: u64,
+        /// How many have it.
+        count: usize,
+    },
+    /// R makes no sense.
+    #[error("the outer radius is {outer_radius}, not above the radius of the inflated disk, {inner_radius}")]
+    OuterRadiusOutOfRange {
+        /// R given.
+        outer_radius: f64,
+        /// Radius of the inflated disk.
+        inner_radius: f64,
+    },
+    /// Nothing says where the packing ends.
+    #[error("the packing is in the open plane and no disk is held: say the outer radius, beyond which disks are held")]
+    NoBoundary,
+    /// Nothing could move.
+    #[error("no disk lies within the outer radius {outer_radius}")]
+    NoMobileDisk {
+        /// R.
+        outer_radius: f64,
+    },
+    /// The disks themselves are at fault.
+    #[error(transparent)]
+    Packing(#[from] PackingError),
+}
+
+/// States of the same disks in one order.
+#[derive(Debug, Clone)]
+pub struct Pair {
+    /// Before the inflation.
+    pub before: Packing<2>,
+    /// After it.
+    pub after: Packing<2>,
+    /// After the deflation, if that is known.
+    pub deflated: Option<Packing<2>>,
+    /// Index of the inflated disk in all of them.
+    pub centre: usize,
+    /// R \[length\].
+    pub outer_radius: f64,
+    /// What keeps the packing in place.
+    pub boundary: Boundary,
+}
+
+impl Pair {
+    /// Matches the disks by their labels, finds the inflated one and holds what is to be held.
+    ///
+    /// Labels that stand more than once, as images of a disk in a rim do, are matched in the order of the disks.
+    ///
+    /// # Errors
+    /// [`AnalysisError`] says what does not fit together.
+    pub fn new(
+        before: Packing<2>,
+        after: &Packing<2>,
+        deflated: Option<&Packing<2>>,
+        settings: &PairSettings,
+    ) -> Result<Self, AnalysisError> {
+        let after = matched(&before, after, "after")?;
+        let deflated = deflated.map(|deflated| matched(&before, deflated, "after the deflation")).transpose()?;
+        let centre = match settings.centre_label {
+            Some(label) => labelled(&before, label)?,
+            None => grown(&before, &after)?,
+        };
+        let (outer_radius, boundary) = outer(&before, centre, settings.outer_radius)?;
+        let held = held(&before, centre, outer_radius, boundary, settings.outer_radius.is_some());
+        if held.iter().all(|&held| held) {
+            return Err(AnalysisError::NoMobileDisk { outer_radius });
+        }
+        let hold = |packing: Packing<2>| packing.with_held(held.clone());
+        Ok(Pair {
+            before: hold(before)?,
+            after: hold(after)?,
+            deflated: deflated.map(hold).transpose()?,
+            centre,
+            outer_radius,
+            boundary,
+        })
+    }
+}
+
+/// The disks of a state in the order of the first one.
+fn matched(first: &Packing<2>, second: &Packing<2>, state: &'static str) -> Result<Packing<2>, AnalysisError> {
+    let (before_count, after_count) = (first.len(), second.len());
+    if before_count != after_count {
+        return Err(AnalysisError::CountsDiffer { state, before_count, after_count });
+    }
+    if first.domain() != second.domain() {
+        return Err(AnalysisError::DomainsDiffer { state });
+    }
+    let order = order(first, second, state)?;
+    let radii = order.iter().map(|&place| second.radii()[place]).collect();
+    let (positions, corrections): (Vec<_>, Vec<_>) =
+        order.iter().enumerate().map(|(disk, &place)| unwrapped(first, disk, second, place)).unzip();
+    let packing = Packing::new(*second.domain(), positions, radii)?;
+    Ok(packing.with_corrections(corrections)?.with_labels(first.labels().to_vec())?)
+}
+
+/// Where the disks of the first state are in the second.
+fn order(first: &Packing<2>, second: &Packing<2>, state: &'static str) -> Result<Vec<usize>, AnalysisError> {
+    if first.labels() == second.labels() {
+        return Ok((0..first.len()).collect());
+    }
+    let mut places: BTreeMap<u64, usize> = BTreeMap::new();
+    for (place, &label) in second.labels().iter().enumerate() {
+        if places.insert(label, place).is_some() {
+            return Err(AnalysisError::LabelsAmbiguous { state, label });
+        }
+    }
+    // Each place is taken once: the labels of the second stand once, and there are as many of them as of the first.
+    let mut place = |label: &u64| places.remove(label).ok_or(AnalysisError::LabelMissing { state, label: *label });
+    first.labels().iter().map(&mut place).collect()
+}
+
+/// Position and correction of a disk in the second state, in the image nearest to where it was in the first.
+fn unwrapped(first: &Packing<2>, disk: usize, second: &Packing<2>, place: usize) -> ([f64; 2], [f64; 2]) {
+    let ((before, _), (mut position, mut correction)) = (first.centre(disk), second.centre(place));
+    for axis in 0..2 {
+        let shift = second.domain().shift(position[axis] - before[axis], axis);
+        if shift != 0.0 {
+            let (high, low) = two_sum(position[axis], shift);
+            (position[axis], correction[axis]) = two_sum(high, low + correction[axis]);
+        }
+    }
+    (position, correction)
+}
+
+/// The one disk with a label.
+fn labelled(packing: &Packing<2>, label: u64) -> Result<usize, AnalysisError> {
+    let all: Vec<usize> = (0..packing.len()).filter(|&disk| packing.labels()[disk] == label).collect();
+    match all[..] {
+        [centre] => Ok(centre),
+        _ => Err(AnalysisError::CentreNotOne { label, count: all.len() }),
+    }
+}
+
+/// The disk whose radius changed.
+fn grown(before: &Packing<2>, after: &Packing<2>) -> Result<usize, AnalysisError> {
+    let radii = before.radii().iter().zip(after.radii()).enumerate();
+    let changed: Vec<usize> = radii.filter(|(_, (a, b))| a != b).map(|(disk, _)| disk).collect();
+    match changed[..] {
+        [] => Err(AnalysisError::NoCentre),
+        [centre] => Ok(centre),
+        [first, second, ..] => Err(AnalysisError::SeveralCentres {
+            count: changed.len(),
+            first: before.labels()[first],
+            second: before.labels()[second],
+        }),
+    }
+}
+
+/// R and the boundary: as given, where the nearest held disk is, or half of the box.
+fn outer(packing: &Packing<2>, centre: usize, given: Option<f64>) -> Result<(f64, Boundary), AnalysisError> {
+    let lengths = packing.domain().lengths();
+    let shortest = lengths.map(|sides| sides[0].min(sides[1]));
+    // What a map of the circle needs of the boundary is that there is a rim.
+    let rim = |radius: f64| {
+        (radius, Boundary::HeldRim { outer_radius_over_side: shortest.map_or(0.5, |side| (radius / side).min(0.5)) })
+    };
+    let inner_radius = packing.radii()[centre];
+    if let Some(outer_radius) = given {
+        if !(outer_radius > inner_radius && outer_radius.is_finite()) {
+            return Err(AnalysisError::OuterRadiusOutOfRange { outer_radius, inner_radius });
+        }
+        return Ok(rim(outer_radius));
+    }
+    let held = (0..packing.len()).filter(|&disk| packing.held()[disk] && disk != centre);
+    let nearest = held.map(|disk| norm(packing.separation(disk, centre))).reduce(f64::min);
+    match (nearest, shortest) {
+        (Some(radius), _) => Ok(rim(radius)),
+        (None, Some(side)) => Ok((0.5 * side, Boundary::Periodic)),
+        (None, None) => Err(AnalysisError::NoBoundary),
+    }
+}
+
+/// Which disks are held: those the packing says, or all from a given R on; the centre with them.
+fn held(packing: &Packing<2>, centre: usize, outer_radius: f64, boundary: Boundary, by_radius: bool) -> Vec<bool> {
+    if boundary == Boundary::Periodic {
+        return vec![false; packing.len()];
+    }
+    let said = packing.held();
+    // A file that says which disks are held knows better than a radius that may be rounded.
+    let told = said.iter().enumerate().any(|(disk, &held)| held && disk != centre);
+    let far = |disk: usize| norm(packing.separation(disk, centre)) >= outer_radius;
+    (0..packing.len()).map(|disk| disk == centre || said[disk] || (by_radius && !told && far(disk))).collect()
+}

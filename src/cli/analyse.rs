@@ -1,0 +1,178 @@
+//! `jamscope analyse`: the observables of states that somebody else relaxed.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Args;
+use jamscope::analysis::{Analysis, Pair, PairSettings};
+use jamscope::contact::LawChoice;
+use jamscope::io::{read_packing, read_properties};
+use jamscope::report;
+use jamscope::scene::Observables;
+
+use crate::law_of_file::{self, LawName};
+use crate::{Failure, print, scene_file};
+
+/// What `analyse` is asked for.
+#[derive(Args)]
+pub struct AnalyseArguments {
+    /// A folder with pairs NAME.before.* and NAME.after.* (or NAME.displacement.*, as a run writes it), and NAME.deflated.*
+    /// where there is one; or the files before, after and, if there is one, after the deflation.
+    #[arg(required = true, num_args = 1..=3, value_name = "DIR | BEFORE AFTER [DEFLATED]")]
+    states: Vec<PathBuf>,
+    /// Label of the inflated disk; without it the one whose radius changed.
+    #[arg(long, value_name = "LABEL")]
+    centre: Option<u64>,
+    /// R, beyond which disks are held; without it what the file says, or the nearest held disk, or half of the box.
+    #[arg(long, value_name = "R")]
+    outer_radius: Option<f64>,
+    /// The contact law, `hertzian`, `hookean` or `power:ALPHA`, where the files do not say; without either Hertzian.
+    #[arg(long, value_name = "LAW", value_parser = law_of_file::parse)]
+    law: Option<LawName>,
+    /// k' of the Hertzian and Hookean law, energy scale of the power law, where the files do not say.
+    #[arg(long, value_name = "K")]
+    stiffness: Option<f64>,
+    /// Measure what the observables of this scene name (TOML); without it all.
+    #[arg(long, value_name = "SCENE")]
+    scene: Option<PathBuf>,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR", default_value = "jamscope-analysis")]
+    out: PathBuf,
+}
+
+/// Files of one packing.
+struct Files {
+    name: String,
+    before: PathBuf,
+    after: PathBuf,
+    deflated: Option<PathBuf>,
+}
+
+/// Analyses all pairs; fails if one of them could not be, after the others.
+pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
+    let observables = match &arguments.scene {
+        Some(path) => scene_file::read_scene(path)?.observables,
+        None => Observables::default(),
+    };
+    let all = match &arguments.states[..] {
+        [folder] => pairs_in(folder)?,
+        [before, after, deflated @ ..] => vec![Files {
+            name: name_of(before),
+            before: before.clone(),
+            after: after.clone(),
+            deflated: deflated.first().cloned(),
+        }],
+        [] => Vec::new(),
+    };
+    let mut analyses = Vec::new();
+    let mut failures = Vec::new();
+    for files in &all {
+        match analyse(files, arguments, &observables) {
+            Ok(analysis) => analyses.push(analysis),
+            Err(error) => failures.push(format!("{} and {}: {error}", files.before.display(), files.after.display())),
+        }
+    }
+    if !analyses.is_empty() {
+        print(&report::table::analysis_table(&analyses))?;
+        let written = report::write_analyses(&analyses, &arguments.out)?;
+        let page = written.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
+        let shown = page.unwrap_or(&arguments.out).display();
+        print(&format!("\n{} files in {}, start from {shown}\n", written.len(), arguments.out.display()))?;
+    }
+    if failures.is_empty() { Ok(ExitCode::SUCCESS) } else { Err(failures.join("\n").into()) }
+}
+
+fn analyse(files: &Files, arguments: &AnalyseArguments, observables: &Observables) -> Result<Analysis, Failure> {
+    let law = |path: &Path| law_of_file::law_of(path, arguments.law, arguments.stiffness);
+    let (first, second) = (law(&files.before)?, law(&files.after)?);
+    // A file that says nothing has the law of the one that does.
+    let law = match (says_law(&files.before)?, says_law(&files.after)?) {
+        (true, true) if first != second => {
+            return Err(format!("the files name two laws, {first:?} and {second:?}").into());
+        }
+        (false, true) => second,
+        _ => first,
+    };
+    let outer_radius = match arguments.outer_radius {
+        Some(radius) => Some(radius),
+        None => outer_radius_of(&files.before)?,
+    };
+    let deflated = files.deflated.as_ref().map(read_packing::<2>).transpose()?;
+    let settings = PairSettings { centre_label: arguments.centre, outer_radius };
+    let (before, after) = (read_packing(&files.before)?, read_packing(&files.after)?);
+    let pair = Pair::new(before, &after, deflated.as_ref(), &settings)?;
+    check(&law)?;
+    Ok(Analysis::of(&files.name, pair, &law, observables)?)
+}
+
+fn check(law: &LawChoice) -> Result<(), Failure> {
+    Ok(law.check()?)
+}
+
+fn says_law(path: &Path) -> Result<bool, Failure> {
+    Ok(read_properties(path)?.iter().any(|(key, _)| key.eq_ignore_ascii_case("law")))
+}
+
+/// R where a file of a run says it.
+fn outer_radius_of(path: &Path) -> Result<Option<f64>, Failure> {
+    let properties = read_properties(path)?;
+    let Some((_, text)) = properties.iter().find(|(key, _)| key == "outer_radius") else { return Ok(None) };
+    let wrong = || format!("{}: outer_radius is `{text}`, not a number", path.display());
+    Ok(Some(text.parse().map_err(|_| wrong())?))
+}
+
+/// What a single pair is called: the file before without its endings.
+fn name_of(path: &Path) -> String {
+    let name = path.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+    let stem = name.split('.').next().unwrap_or_default();
+    let plain: String =
+        stem.chars().map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect();
+    if plain.is_empty() { "pair".into() } else { plain }
+}
+
+/// The pairs of a folder by the names of its files, in their order.
+fn pairs_in(folder: &Path) -> Result<Vec<Files>, Failure> {
+    let named = |error: std::io::Error| format!("{}: {error}", folder.display());
+    let mut names: Vec<String> = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(named)? {
+        names.push(entry.map_err(named)?.file_name().to_string_lossy().into_owned());
+    }
+    names.sort();
+    // NAME.STATE.ENDING, or STATE.ENDING alone.
+    let state_of = |name: &str, state: &str| -> Option<String> {
+        let at = name.find(&format!("{state}."))?;
+        match &name[..at] {
+            "" => Some(String::new()),
+            prefix => prefix.strip_suffix('.').map(Into::into),
+        }
+    };
+    let find = |sample: &str, states: &[&str]| -> Result<Option<PathBuf>, Failure> {
+        let fits = |name: &&String| states.iter().any(|state| state_of(name, state).as_deref() == Some(sample));
+        let found: Vec<&String> = names.iter().filter(fits).collect();
+        match found[..] {
+            [] => Ok(None),
+            [name] => Ok(Some(folder.join(name))),
+            [a, b, ..] => {
+                Err(format!("{}: {a} and {b} are both a state {}", folder.display(), states.join(" or ")).into())
+            }
+        }
+    };
+    let mut pairs = Vec::new();
+    let mut samples: Vec<String> = names.iter().filter_map(|name| state_of(name, "before")).collect();
+    samples.dedup();
+    for sample in samples {
+        let before = find(&sample, &["before"])?.ok_or("a file that was there is gone")?;
+        let Some(after) = find(&sample, &["after", "displacement"])? else {
+            return Err(
+                format!("{}: no {sample}.after.* or {sample}.displacement.* beside it", before.display()).into()
+            );
+        };
+        let deflated = find(&sample, &["deflated"])?;
+        let name = if sample.is_empty() { "pair".into() } else { sample };
+        pairs.push(Files { name, before, after, deflated });
+    }
+    if pairs.is_empty() {
+        return Err(format!("{}: no file NAME.before.* in it", folder.display()).into());
+    }
+    Ok(pairs)
+}
