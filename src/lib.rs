@@ -75,6 +75,7 @@
 //! | [`response`] | all observables of one inflation, and its phase | [`Response`](response::Response) |
 //! | [`analysis`] | the same of states relaxed elsewhere | [`Analysis`](analysis::Analysis) |
 //! | [`run`] | scene to report, one line a stage | [`run::run`] |
+//! | [`study`] | an experiment over lists of parameters, resumable | [`study::execute`](study::execute()), [`study::merge`](study::merge()) |
 //! | [`report`] | table, data files, figures, one page | [`report::write`] |
 //! | `precision` (feature `linear`) | error against cost of relaxers and other numerical choices | `precision::measure` |
 //!
@@ -126,6 +127,7 @@ pub mod run;
 pub mod scene;
 #[cfg(feature = "linear")]
 pub mod sparse;
+pub mod study;
 pub mod vector;
 
 /// The README and the chapters of the book, so that `cargo test --doc` compiles and runs their snippets.
@@ -234,6 +236,8 @@ mod book {
     mod exact {}
     #[doc = include_str!("../book/src/report.md")]
     mod report {}
+    #[doc = include_str!("../book/src/study.md")]
+    mod study {}
     #[doc = include_str!("../book/src/validation.md")]
     mod validation {}
     #[cfg(feature = "linear")]

@@ -18,6 +18,8 @@ mod precision;
 mod progress;
 #[path = "cli/scene_file.rs"]
 mod scene_file;
+#[path = "cli/study.rs"]
+mod study;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -48,6 +50,10 @@ enum Command {
     Inspect(InspectArguments),
     /// Measure the observables of states before and after an inflation that were relaxed elsewhere.
     Analyse(analyse::AnalyseArguments),
+    /// Run an experiment over sizes, pressures, inflations, laws and seeds; an interrupted one goes on where it was.
+    Study(study::StudyArguments),
+    /// Gather the samples of a study, with statistics.
+    Merge(study::MergeArguments),
     /// Print an exact solution as a table, 17 significant digits.
     Exact(exact::ExactArguments),
     /// Measure error against cost: every relaxer from one inflated start, at a ladder of settings.
@@ -105,6 +111,8 @@ fn main() -> ExitCode {
         Some(Command::Scene) => print(&scene_file::commented_scene()),
         Some(Command::Inspect(arguments)) => inspect_packing(&arguments),
         Some(Command::Analyse(arguments)) => analyse::run(&arguments),
+        Some(Command::Study(arguments)) => study::run(&arguments),
+        Some(Command::Merge(arguments)) => study::merge(&arguments),
         Some(Command::Exact(arguments)) => exact::print(&arguments).map(|()| ExitCode::SUCCESS),
         #[cfg(feature = "linear")]
         Some(Command::Precision(arguments)) => precision::run(&arguments),

@@ -138,8 +138,9 @@ fn screened_modes_are_described_worse() {
         ScreenedMode::new(annulus, RATIO, screening, mode as u32, boundary(mode)).expect("no pole").at(radius).value
     };
     let found = fit(&multipoles(screened, 1e-3));
-    // κR = √0.02·42 = 6, beyond the first pole: the sign of the response changes on the way.
-    for mode in &found.modes {
+    // κR = √0.02·42 = 6, beyond the first pole: the sign of the response changes on the way. Mode n falls as r^(1−n) at least: the
+    // third is gone before a wavelength, 44, and hardly sees the screening.
+    for mode in &found.modes[..HIGHEST] {
         assert!(mode.share_described.expect("it moves") < 0.9, "{mode:?}");
     }
 }

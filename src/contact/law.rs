@@ -229,6 +229,15 @@ pub enum LawError {
 }
 
 impl LawChoice {
+    /// What it is called in a scene.
+    pub fn name(&self) -> &'static str {
+        match self {
+            LawChoice::Hertzian(_) => "hertzian",
+            LawChoice::Hookean(_) => "hookean",
+            LawChoice::PowerLaw(_) => "power_law",
+        }
+    }
+
     /// Whether the numbers make sense.
     ///
     /// # Errors

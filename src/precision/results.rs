@@ -78,6 +78,7 @@ pub(super) fn stop_name(stop: Stop) -> String {
         Stop::StepLimit => "step limit".into(),
         Stop::RoundingFloor => "rounding".into(),
         Stop::NoDescent => "no descent".into(),
+        Stop::Interrupted => "interrupted".into(),
         other => format!("{other:?}"),
     }
 }

@@ -115,6 +115,8 @@ pub enum Stop {
     OutOfMemory,
     /// No step, however short, lowers the energy, and the residual is above what rounding makes.
     NoDescent,
+    /// Whoever watched asked it to end: [`Trace::interrupted`].
+    Interrupted,
 }
 
 /// How far from equilibrium a state is.
@@ -237,6 +239,11 @@ pub trait Trace {
 
     /// Called at every look at the residual.
     fn look(&mut self, look: &Look);
+
+    /// Asked after every look: whether the relaxer is to end here, with [`Stop::Interrupted`].
+    fn interrupted(&mut self) -> bool {
+        false
+    }
 }
 
 /// One look at a relaxation.

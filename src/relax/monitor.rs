@@ -89,6 +89,9 @@ impl Monitor {
         let mean = totals.mean_contact_force();
         self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
         trace.look(&Look { residual: self.last.relative(), ..report });
+        if trace.interrupted() {
+            return Some(Stop::Interrupted);
+        }
         if self.ran_away(assembly) {
             return Some(Stop::NoMinimum);
         }

@@ -107,6 +107,23 @@ impl Staged {
 }
 
 /// A trace whose steps are counted from `first`.
-fn later(trace: &mut impl Trace, first: usize) -> impl Trace {
-    move |look: &Look| trace.look(&Look { step_count: first + look.step_count, ..*look })
+fn later<T: Trace>(trace: &mut T, first: usize) -> Later<'_, T> {
+    Later { trace, first }
+}
+
+struct Later<'a, T> {
+    trace: &'a mut T,
+    first: usize,
+}
+
+impl<T: Trace> Trace for Later<'_, T> {
+    const ACTIVE: bool = T::ACTIVE;
+
+    fn look(&mut self, look: &Look) {
+        self.trace.look(&Look { step_count: self.first + look.step_count, ..*look });
+    }
+
+    fn interrupted(&mut self) -> bool {
+        self.trace.interrupted()
+    }
 }

@@ -96,6 +96,7 @@ fn stop(stop: Stop) -> &'static str {
         Stop::Restless => "does not come to rest",
         Stop::OutOfMemory => "out of memory",
         Stop::NoDescent => "no descent",
+        Stop::Interrupted => "interrupted",
     }
 }
 

@@ -78,6 +78,11 @@ pub trait Progress: Sync {
     fn residual(&self, sample: usize, residual: f64) {
         let _ = (sample, residual);
     }
+    /// Whether the sample is to end where it is, as one that failed; asked at every look at the residual.
+    fn interrupted(&self, sample: usize) -> bool {
+        let _ = sample;
+        false
+    }
     /// The sample is done, well or not.
     fn done(&self, sample: usize, failure: Option<&str>) {
         let _ = (sample, failure);
@@ -102,6 +107,10 @@ impl<P: Progress> Trace for Watch<'_, P> {
         if !look.restart {
             self.progress.residual(self.sample, look.residual);
         }
+    }
+
+    fn interrupted(&mut self) -> bool {
+        self.progress.interrupted(self.sample)
     }
 }
 
@@ -176,10 +185,34 @@ fn run_with<L: PairLaw>(
     index: usize,
     progress: &impl Progress,
 ) -> Result<SampleResult, RunError> {
+    let (prepared, packing) = prepared(scene, sample, law, index, progress)?;
+    measure(scene, sample, (prepared, packing), law, index, progress)
+}
+
+/// The packing of a sample with its summary.
+pub(crate) fn prepared<L: PairLaw>(
+    scene: &Scene,
+    sample: &Sample,
+    law: &L,
+    index: usize,
+    progress: &impl Progress,
+) -> Result<(Packing<2>, PackingSummary), RunError> {
+    let relaxer = &scene.preparation.relaxer;
+    let trace = &mut Watch { progress, sample: index, stage: "preparation", limit: relaxer.limit().value() };
+    packing_of(scene, sample, law, trace)
+}
+
+/// The inflation of a packing that is there, and all that is measured on it.
+pub(crate) fn measure<L: PairLaw>(
+    scene: &Scene,
+    sample: &Sample,
+    (prepared, packing): (Packing<2>, PackingSummary),
+    law: &L,
+    index: usize,
+    progress: &impl Progress,
+) -> Result<SampleResult, RunError> {
     let watch =
         |stage, relaxer: &RelaxerChoice| Watch { progress, sample: index, stage, limit: relaxer.limit().value() };
-    let trace = &mut watch("preparation", &scene.preparation.relaxer);
-    let (prepared, packing) = packing_of(scene, sample, law, trace)?;
     let trace = &mut watch("inflation", &sample.relaxer);
     let inflated = inflate(&scene.inflation, &prepared, law, &sample.relaxer, sample.seed, trace)?;
     let observables = &scene.observables;

@@ -1,0 +1,146 @@
+//! [`merge()`]: all records of a folder in the order of the plan, and the statistics of every cell.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use crate::io::write_atomically;
+use crate::study::plan::Plan;
+use crate::study::settings::StudyError;
+use crate::study::statistics::{CellStatistics, Gathered};
+use crate::study::store::{Problem, Store, StoreError, TaskState};
+
+/// What a merge found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Merged {
+    /// Samples of the plan.
+    pub sample_count: usize,
+    /// Those that have a record.
+    pub record_count: usize,
+    /// Files that cannot be used; their samples are missing.
+    pub damaged: Vec<Problem>,
+    /// Files of no sample of this study.
+    pub foreign: Vec<Problem>,
+    /// Statistics in the order of the plan.
+    pub cells: Vec<CellStatistics>,
+    /// The files written.
+    #[serde(skip)]
+    pub files: Vec<PathBuf>,
+}
+
+/// Why nothing was merged.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MergeError {
+    /// The study of the folder makes no sense.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// The folder cannot be used.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The result cannot be written.
+    #[error(transparent)]
+    Write(#[from] crate::io::WriteError),
+    /// The result has no form as JSON.
+    #[error("summary.json: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+/// Gathers what is there of the study in `folder`: `records.jsonl` (a record a line), `summary.json`, `summary.csv` (a row a
+/// cell and number).
+///
+/// Records are read one task at a time; kept of each are its numbers, some 40, not its curves: 10⁵ samples take 32 MB.
+///
+/// # Errors
+/// A folder without a study, or that cannot be written.
+pub fn merge(folder: &Path) -> Result<Merged, MergeError> {
+    let store = Store::there(folder);
+    let plan = Plan::of(&store.study()?)?;
+    let mut merged = Merged {
+        sample_count: plan.sample_count(),
+        record_count: 0,
+        damaged: Vec::new(),
+        foreign: store.foreign(&plan.tasks)?,
+        cells: Vec::new(),
+        files: Vec::new(),
+    };
+    let mut cells: Vec<Gathered> = Vec::new();
+    let path = folder.join("records.jsonl");
+    write_atomically(&path, |writer| {
+        for task in &plan.tasks {
+            let records = match store.state(task) {
+                TaskState::Missing => continue,
+                TaskState::Damaged(problem) => {
+                    merged.damaged.push(problem);
+                    continue;
+                }
+                TaskState::Finished(records, _) => records,
+            };
+            for record in &records {
+                serde_json::to_writer(&mut *writer, record)?;
+                writer.write_all(b"\n")?;
+                merged.record_count += 1;
+                // A cell stands together with those it shares packings with: the last few are enough to look at.
+                match cells.iter_mut().rev().find(|cell| cell.has(record)) {
+                    Some(cell) => cell.add(record),
+                    None => {
+                        let mut cell = Gathered::new(record.cell);
+                        cell.add(record);
+                        cells.push(cell);
+                    }
+                }
+            }
+        }
+        Ok(())
+    })?;
+    merged.files.push(path);
+    merged.cells = cells.into_iter().map(Gathered::statistics).collect();
+    let summary =
+        serde_json::to_string_pretty(&Summary { jamscope_version: env!("CARGO_PKG_VERSION"), merged: &merged })?;
+    merged.files.push(store.write_result("summary.json", &(summary + "\n"))?);
+    merged.files.push(store.write_result("summary.csv", &table(&merged.cells))?);
+    Ok(merged)
+}
+
+/// What `summary.json` holds.
+#[derive(Serialize)]
+struct Summary<'a> {
+    jamscope_version: &'static str,
+    #[serde(flatten)]
+    merged: &'a Merged,
+}
+
+/// A row a cell and number.
+fn table(cells: &[CellStatistics]) -> String {
+    let mut text = String::from(
+        "cell,disk_count,target,target_value,increase,relaxer,law,number,count,mean,standard_error,lower_quartile,median,\
+         upper_quartile,mean_low,mean_high,median_low,median_high\n",
+    );
+    let or_empty = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+    for (index, statistics) in cells.iter().enumerate() {
+        let cell = &statistics.cell;
+        let (target, value) = cell.target.name_and_value();
+        for (name, number) in &statistics.numbers {
+            let [lower, median, upper] = number.quartiles;
+            let [mean, middle] = [number.mean_interval, number.median_interval];
+            let _ = writeln!(
+                text,
+                "{index},{},{target},{value},{},{},{},{name},{},{},{},{lower},{median},{upper},{},{},{},{}",
+                cell.disk_count,
+                cell.increase,
+                cell.relaxer.name(),
+                cell.law.name(),
+                number.count,
+                number.mean,
+                or_empty(number.standard_error),
+                or_empty(mean.map(|it| it[0])),
+                or_empty(mean.map(|it| it[1])),
+                or_empty(middle.map(|it| it[0])),
+                or_empty(middle.map(|it| it[1])),
+            );
+        }
+    }
+    text
+}

@@ -1,0 +1,38 @@
+//! [`Study`]: one experiment over sizes, pressures, inflations, laws, relaxers and seeds, run so that an interruption loses
+//! nothing.
+//!
+//! ```text
+//! Study → Plan: one task a packing, with all inflations done to it → records, one file a task → Merged → statistics by cell
+//! ```
+//!
+//! A task writes one file, whole or not at all, and is never run again while that file is sound. What a task computes depends on
+//! the study alone, so any number of threads, shards and interruptions gives the same merged bytes. A sample that fails is a
+//! record too.
+//!
+//! Start from [`execute()`] and [`merge()`].
+
+mod execute;
+mod merge;
+mod plan;
+mod record;
+mod settings;
+mod statistics;
+mod store;
+
+pub use execute::{ExecuteError, Execution, StudyProgress, execute};
+pub use merge::{MergeError, Merged, merge};
+pub use plan::{Plan, Shard, Task};
+pub use record::{Cell, FailureKind, Record, RecordOutcome};
+pub use settings::{Seeds, Study, StudyError, Target};
+pub use statistics::{CellStatistics, NumberStatistics, PhaseCounts};
+pub use store::{Problem, StoreError};
+
+use std::path::Path;
+
+/// The wall time the samples of a task took \[s\], where they are in the folder and sound.
+pub fn measured_seconds(folder: &Path, task: &Task) -> Option<f64> {
+    match store::Store::there(folder).state(task) {
+        store::TaskState::Finished(_, seconds) => Some(seconds),
+        store::TaskState::Missing | store::TaskState::Damaged(_) => None,
+    }
+}

@@ -1,0 +1,311 @@
+//! [`Record`]: what a study keeps of a sample.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::contact::LawChoice;
+#[cfg(feature = "fit")]
+use crate::fit::angular::{CrossoverOutcome, SlopeOutcome};
+use crate::inflation::InflationError;
+use crate::observe::angular::RingOutcome;
+use crate::observe::isostatic::IsostaticOutcome;
+use crate::observe::multipoles::MultipoleFit;
+use crate::preparation::PreparationError;
+use crate::relax::{RelaxerChoice, Stop};
+use crate::response::{PhaseDecision, Response};
+use crate::run::{RunError, SampleResult};
+use crate::scene::Scene;
+use crate::study::plan::Task;
+use crate::study::settings::{Target, reduction};
+
+/// Samples that differ in nothing but the seed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Cell {
+    /// The contact law.
+    pub law: LawChoice,
+    /// Disks in the box.
+    pub disk_count: usize,
+    /// What the packing was prepared to.
+    pub target: Target,
+    /// d_0 \[length\].
+    pub increase: f64,
+    /// How it came to rest after the inflation.
+    pub relaxer: RelaxerChoice,
+}
+
+/// What a study keeps of a sample.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// What it is one of.
+    pub cell: Cell,
+    /// Its seed.
+    pub seed: u64,
+    /// What came out.
+    pub outcome: RecordOutcome,
+}
+
+/// What came out of a sample.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RecordOutcome {
+    /// It was measured.
+    Done {
+        /// Which phase it shows, by which evidence.
+        phase: PhaseDecision,
+        /// Single numbers by name, in the units of the names' table in the book; what a sample does not have is absent.
+        numbers: BTreeMap<String, f64>,
+        /// Curves by name, as pairs of abscissa and ordinate.
+        curves: BTreeMap<String, Vec<[f64; 2]>>,
+    },
+    /// It was not.
+    Failed {
+        /// At which stage, and how.
+        kind: FailureKind,
+        /// In its own words.
+        reason: String,
+    },
+}
+
+/// How a sample failed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FailureKind {
+    /// The packing did not come to rest in the steps it had.
+    PreparationNotAtRest,
+    /// No packing fraction gave the pressure asked for.
+    PressureNotReached,
+    /// It did not come to rest after the inflation.
+    InflationNotAtRest,
+    /// The wall time allowed was used up.
+    TimeLimit,
+    /// All else: what the sample itself makes impossible.
+    Other,
+}
+
+impl FailureKind {
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            FailureKind::PreparationNotAtRest => "preparation not at rest",
+            FailureKind::PressureNotReached => "pressure not reached",
+            FailureKind::InflationNotAtRest => "inflation not at rest",
+            FailureKind::TimeLimit => "time limit",
+            FailureKind::Other => "other",
+        }
+    }
+
+    fn of(error: &RunError) -> Self {
+        let stopped = |stop: &Stop, kind| if *stop == Stop::Interrupted { FailureKind::TimeLimit } else { kind };
+        match error {
+            RunError::Preparation(PreparationError::NotAtRest { stop, .. }) => {
+                stopped(stop, FailureKind::PreparationNotAtRest)
+            }
+            RunError::Preparation(PreparationError::PressureNotReached { .. }) => FailureKind::PressureNotReached,
+            RunError::Inflation(InflationError::NotAtRest { stop, .. }) => {
+                stopped(stop, FailureKind::InflationNotAtRest)
+            }
+            _ => FailureKind::Other,
+        }
+    }
+}
+
+impl Record {
+    /// The record of one inflation of a task.
+    pub(super) fn of(task: &Task, scene: &Scene, result: Result<&SampleResult, &RunError>) -> Self {
+        let sample = &scene.sample[0];
+        let (disk_count, increase) = (scene.disk_count, scene.inflation.increase);
+        let cell = Cell { law: scene.law, disk_count, target: task.target, increase, relaxer: sample.relaxer };
+        let outcome = match result {
+            Ok(result) => RecordOutcome::Done {
+                phase: result.response.phase,
+                numbers: Numbers::of(scene, result).0,
+                curves: curves(&result.response),
+            },
+            Err(error) => {
+                let kind = FailureKind::of(error);
+                // A time limit ends a sample wherever it is: its words would tell how fast the machine was.
+                let reason = match kind {
+                    FailureKind::TimeLimit => "the wall time allowed was used up".into(),
+                    _ => error.to_string(),
+                };
+                RecordOutcome::Failed { kind, reason }
+            }
+        };
+        Record { cell, seed: sample.seed, outcome }
+    }
+
+    /// A number of a sample that was measured.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        match &self.outcome {
+            RecordOutcome::Done { numbers, .. } => numbers.get(name).copied(),
+            RecordOutcome::Failed { .. } => None,
+        }
+    }
+}
+
+/// Numbers by name; those that are none are left out.
+struct Numbers(BTreeMap<String, f64>);
+
+impl Numbers {
+    fn put(&mut self, name: impl Into<String>, value: f64) {
+        if value.is_finite() {
+            self.0.insert(name.into(), value);
+        }
+    }
+
+    fn maybe(&mut self, name: impl Into<String>, value: Option<f64>) {
+        if let Some(value) = value {
+            self.put(name, value);
+        }
+    }
+
+    fn of(scene: &Scene, result: &SampleResult) -> Self {
+        let mut all = Numbers(BTreeMap::new());
+        let (packing, inflation) = (&result.packing, &result.inflation);
+        all.put("packing_fraction", packing.packing_fraction);
+        all.put("pressure", packing.pressure);
+        all.put("reduced_pressure", packing.pressure * reduction(scene));
+        all.put("coordination", packing.coordination);
+        all.put("rattler_count", packing.rattler_count as f64);
+        all.put("mobile_count", inflation.mobile_count as f64);
+        all.put("outer_radius", inflation.outer_radius);
+        all.put("pressure_before", inflation.before.pressure);
+        all.put("pressure_change", inflation.pressure_change);
+        all.maybe("scaled_pressure_change", inflation.scaled_pressure_change);
+        all.put("relative_residual_before", inflation.before.rest.relative_residual);
+        all.put("relative_residual_after", inflation.after.rest.relative_residual);
+        #[cfg(feature = "linear")]
+        all.maybe(
+            "negative_eigenvalue_count",
+            inflation.after.certificate.stability.negative_eigenvalue_count().map(|count| count as f64),
+        );
+        let evaluations = |cost: &crate::relax::Cost| cost.force_evaluation_count as f64;
+        all.put("force_evaluations_preparation", evaluations(&packing.rest.cost));
+        all.put("force_evaluations_inflation", evaluations(&inflation.after.rest.cost));
+        all.response(&result.response);
+        #[cfg(feature = "linear")]
+        if let Some(plastic) = result.plastic_part.as_ref().and_then(|it| it.measured()) {
+            all.put("plastic_share", plastic.share);
+            all.put("plastic_participation_ratio", plastic.participation_ratio);
+            all.maybe("first_opening", plastic.first_opening);
+        }
+        all
+    }
+
+    fn response(&mut self, response: &Response) {
+        #[cfg(feature = "fit")]
+        self.fits(response);
+        if let Some(lengths) = response.penetration_lengths.as_ref().and_then(|it| it.measured()) {
+            for length in lengths {
+                self.maybe(format!("penetration_length_at_{}", length.threshold), length.penetration.radius());
+            }
+        }
+        if let Some(ring) = response.angular_correlation.as_ref().and_then(|it| it.measured()) {
+            self.put("anticorrelation", ring.correlation.anticorrelation);
+            self.put("ring_disk_count", ring.spectrum.disk_count as f64);
+            for crossing in &ring.correlation.crossings {
+                self.maybe(format!("correlation_angle_at_{}", crossing.threshold), crossing.outcome.angle());
+            }
+        }
+        if let Some(multipoles) = response.multipoles.as_ref().and_then(|it| it.measured()) {
+            // The ring nearest to half of the outer radius.
+            let half = 0.5 * response.field.outer_radius;
+            let fitted = multipoles.rings.iter().filter_map(|ring| match &ring.fit {
+                MultipoleFit::Fitted { radial, .. } => Some((ring.radius, radial.shares?)),
+                _ => None,
+            });
+            let nearest = fitted.min_by(|a, b| (a.0 - half).abs().total_cmp(&(b.0 - half).abs()));
+            if let Some((_, shares)) = nearest {
+                for (name, share) in ["isotropic", "dipole", "quadrupole", "rest"].into_iter().zip(shares) {
+                    self.put(format!("share_{name}"), share);
+                }
+            }
+        }
+        if let Some(contacts) = &response.contact_changes {
+            self.put("contacts_kept", contacts.inflation.kept_count as f64);
+            self.put("contacts_made", contacts.inflation.made_count as f64);
+            self.put("contacts_broken", contacts.inflation.broken_count as f64);
+            self.maybe("contacts_returned_share", contacts.deflation.and_then(|cycle| cycle.returned_share));
+        }
+        if let Some(isostatic) = response.isostatic_length.as_ref().and_then(|it| it.measured()) {
+            self.maybe("excess_coordination", isostatic.excess);
+            if let IsostaticOutcome::Reached { length, product, .. } = isostatic.outcome {
+                self.put("isostatic_length", length);
+                self.put("isostatic_product", product);
+            }
+        }
+    }
+
+    #[cfg(feature = "fit")]
+    fn fits(&mut self, response: &Response) {
+        use crate::fit::profile::Decision;
+
+        if let Some(fit) = response.profile_fit.as_ref().and_then(|it| it.measured()) {
+            self.put("elastic_amplitude", fit.elastic.amplitude.value);
+            self.put("elastic_share_described", fit.elastic.share_described);
+            // κ of the best fit; 0 where no κ above 0 fits better.
+            self.put("wavenumber", fit.screened.map_or(0.0, |screened| screened.wavenumber.value));
+            self.maybe("wavenumber_error", fit.screened.map(|screened| screened.wavenumber.standard_error));
+            self.maybe("screened_amplitude", fit.screened.map(|screened| screened.amplitude.value));
+            self.put("decided_screened", f64::from(u8::from(fit.decision == Decision::Screened)));
+            self.put("decided_elastic", f64::from(u8::from(fit.decision == Decision::Elastic)));
+        }
+        let ring = response.angular_correlation.as_ref().and_then(|it| it.measured());
+        if let Some(slope) = ring.and_then(|ring| ring.slope.as_ref()?.measured())
+            && slope.outcome != SlopeOutcome::Undetermined
+        {
+            self.put("spectrum_slope", slope.exponent.best);
+        }
+        if let Some(crossover) = ring.and_then(|ring| ring.crossover.as_ref()?.measured()) {
+            match crossover.outcome {
+                CrossoverOutcome::Found { crossover, angle } => {
+                    self.put("crossover", crossover.best);
+                    self.put("crossover_angle", angle.best);
+                    self.put("spectrum_is_scale_free", 0.0);
+                }
+                CrossoverOutcome::ScaleFree { .. } => self.put("spectrum_is_scale_free", 1.0),
+                CrossoverOutcome::White { .. } => self.put("spectrum_is_scale_free", 0.0),
+                CrossoverOutcome::Undetermined => {}
+            }
+        }
+        if let Some(modes) = response.elastic_modes.as_ref().and_then(|it| it.measured()) {
+            for mode in &modes.modes {
+                self.maybe(format!("elastic_share_of_mode_{}", mode.mode), mode.share_described);
+            }
+        }
+    }
+}
+
+/// The curves of a response.
+fn curves(response: &Response) -> BTreeMap<String, Vec<[f64; 2]>> {
+    let mut all = BTreeMap::new();
+    if let Some(profile) = &response.radial_profile {
+        all.insert("radial_profile".into(), profile.rings.iter().map(|ring| [ring.radius, ring.mean]).collect());
+    }
+    if let Some(ring) = response.angular_correlation.as_ref().and_then(|it| it.measured()) {
+        let correlation = &ring.correlation;
+        let points = correlation.angles.iter().zip(&correlation.values).map(|(&angle, &value)| [angle, value]);
+        // Two degrees are enough to draw.
+        all.insert("angular_correlation".into(), points.step_by(4).filter(|point| point[1].is_finite()).collect());
+        let variance = ring.spectrum.variance;
+        let powers = ring.spectrum.power.iter().enumerate().skip(1).map(|(f, &power)| [f as f64, power / variance]);
+        all.insert("power_spectrum".into(), powers.filter(|point| point[1].is_finite()).collect());
+    }
+    if let Some(rings) = response.radial_dependence.as_ref().and_then(|it| it.measured()) {
+        let measured = |of: fn(&crate::observe::angular::AngularCorrelation) -> Option<f64>| -> Vec<[f64; 2]> {
+            let point = |ring: &crate::observe::angular::RingAnalysis| match &ring.outcome {
+                RingOutcome::Measured { correlation, .. } => Some([ring.relative_radius, of(correlation)?]),
+                _ => None,
+            };
+            rings.iter().filter_map(point).filter(|point| point[1].is_finite()).collect()
+        };
+        all.insert("anticorrelation_by_radius".into(), measured(|it| Some(it.anticorrelation)));
+        all.insert("correlation_angle_by_radius".into(), measured(|it| it.crossings.first()?.outcome.angle()));
+    }
+    if let Some(isostatic) = response.isostatic_length.as_ref().and_then(|it| it.measured()) {
+        let points = isostatic.curve.iter().map(|point| [point.scaled_radius, point.scaled_fluctuation]);
+        all.insert("isostatic_fluctuation".into(), points.collect());
+    }
+    all
+}

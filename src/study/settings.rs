@@ -1,0 +1,228 @@
+//! [`Study`]: what is varied, as plain data.
+
+use serde::{Deserialize, Serialize};
+
+use crate::contact::LawChoice;
+use crate::inflation::Boundary;
+use crate::relax::RelaxerChoice;
+use crate::scene::{Sample, Scene, SceneError, Source};
+
+/// One scene and the lists of what is varied in it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Study {
+    /// What all samples have in common; it names no samples, the lists make them.
+    pub scene: Scene,
+    /// Numbers of disks in the box; empty, that of the scene.
+    pub disk_counts: Vec<usize>,
+    /// Pressures, reduced pressures or packing fractions.
+    pub targets: Vec<Target>,
+    /// Increases d_0; empty, that of the scene \[length\].
+    pub increases: Vec<f64>,
+    /// Contact laws; empty, that of the scene.
+    pub laws: Vec<LawChoice>,
+    /// How samples come to rest after the inflation; empty, FIRE with its defaults.
+    pub relaxers: Vec<RelaxerChoice>,
+    /// Samples of every combination.
+    pub seeds: Seeds,
+    /// Wall time allowed to a packing and its inflations \[s\]; absent, as long as it takes. What is beyond is recorded as failed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_limit: Option<f64>,
+}
+
+/// What a packing is prepared to.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Target {
+    /// p \[force / length\].
+    Pressure(f64),
+    /// p̂ = p N^(α−1), N the number of disks in the circle by area, α the exponent of the law \[force / length\].
+    ReducedPressure(f64),
+    /// φ at the quench \[1\].
+    PackingFraction(f64),
+}
+
+impl Target {
+    /// What it is called in a table, and its value.
+    pub fn name_and_value(self) -> (&'static str, f64) {
+        match self {
+            Target::Pressure(value) => ("pressure", value),
+            Target::ReducedPressure(value) => ("reduced_pressure", value),
+            Target::PackingFraction(value) => ("packing_fraction", value),
+        }
+    }
+}
+
+/// Seeds, one after the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Seeds {
+    /// The first one.
+    pub first: u64,
+    /// How many.
+    pub count: usize,
+}
+
+impl Default for Study {
+    /// The built-in scene's size and law at p = 10, one sample.
+    fn default() -> Self {
+        Study {
+            scene: Scene { sample: Vec::new(), ..Scene::default() },
+            disk_counts: Vec::new(),
+            targets: vec![Target::Pressure(10.0)],
+            increases: Vec::new(),
+            laws: Vec::new(),
+            relaxers: Vec::new(),
+            seeds: Seeds { first: 1, count: 1 },
+            time_limit: None,
+        }
+    }
+}
+
+/// A study that makes no sense.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// What a sample of it would be makes no sense.
+    #[error("{0}")]
+    Scene(#[from] SceneError),
+    /// The scene of a study names no samples.
+    #[error("scene.sample: the lists of a study make its samples, it names none itself")]
+    SamplesNamed,
+    /// Nothing to do.
+    #[error("{list}: it is empty, so there is nothing to run")]
+    Empty {
+        /// The list.
+        list: &'static str,
+    },
+    /// A number outside its range.
+    #[error("{field} = {value}: must be a positive number")]
+    NotPositive {
+        /// The field.
+        field: &'static str,
+        /// The value found.
+        value: f64,
+    },
+    /// A value twice would give a sample two places.
+    #[error("{list}: {value} stands twice")]
+    Twice {
+        /// The list.
+        list: &'static str,
+        /// The value.
+        value: String,
+    },
+    /// Seeds beyond the largest number.
+    #[error("seeds: {count} from {first} on is beyond the largest seed")]
+    SeedsTooLarge {
+        /// The first.
+        first: u64,
+        /// How many.
+        count: usize,
+    },
+}
+
+impl Study {
+    /// Whether every sample of it would make sense.
+    ///
+    /// # Errors
+    /// [`StudyError`] names list or field and value.
+    pub fn check(&self) -> Result<(), StudyError> {
+        if !self.scene.sample.is_empty() {
+            return Err(StudyError::SamplesNamed);
+        }
+        for (list, empty) in [("targets", self.targets.is_empty()), ("seeds.count", self.seeds.count == 0)] {
+            if empty {
+                return Err(StudyError::Empty { list });
+            }
+        }
+        let Seeds { first, count } = self.seeds;
+        if first.checked_add(count as u64).is_none() {
+            return Err(StudyError::SeedsTooLarge { first, count });
+        }
+        for target in &self.targets {
+            if let Target::ReducedPressure(value) = *target
+                && !(value > 0.0 && value.is_finite())
+            {
+                return Err(StudyError::NotPositive { field: "targets.reduced_pressure", value });
+            }
+        }
+        if let Some(value) = self.time_limit.filter(|value| value.is_nan() || *value <= 0.0) {
+            return Err(StudyError::NotPositive { field: "time_limit", value });
+        }
+        twice("disk_counts", &self.disk_counts)?;
+        twice("targets", &self.targets)?;
+        twice("increases", &self.increases)?;
+        twice("laws", &self.laws)?;
+        twice("relaxers", &self.relaxers)?;
+        // One scene of every combination but the seeds.
+        for law in self.laws() {
+            for disk_count in self.disk_counts() {
+                for target in &self.targets {
+                    for increase in self.increases() {
+                        for relaxer in self.relaxers() {
+                            self.scene_of(law, disk_count, *target, (increase, relaxer), first).check()?;
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The laws, that of the scene where none is named.
+    pub(super) fn laws(&self) -> Vec<LawChoice> {
+        if self.laws.is_empty() { vec![self.scene.law] } else { self.laws.clone() }
+    }
+
+    /// The sizes.
+    pub(super) fn disk_counts(&self) -> Vec<usize> {
+        if self.disk_counts.is_empty() { vec![self.scene.disk_count] } else { self.disk_counts.clone() }
+    }
+
+    /// The inflations.
+    pub(super) fn increases(&self) -> Vec<f64> {
+        if self.increases.is_empty() { vec![self.scene.inflation.increase] } else { self.increases.clone() }
+    }
+
+    /// The relaxers.
+    pub(super) fn relaxers(&self) -> Vec<RelaxerChoice> {
+        if self.relaxers.is_empty() { vec![RelaxerChoice::default()] } else { self.relaxers.clone() }
+    }
+
+    /// The scene of one sample.
+    pub(super) fn scene_of(
+        &self,
+        law: LawChoice,
+        disk_count: usize,
+        target: Target,
+        (increase, relaxer): (f64, RelaxerChoice),
+        seed: u64,
+    ) -> Scene {
+        let mut scene = Scene { law, disk_count, ..self.scene.clone() };
+        scene.inflation.increase = increase;
+        let source = match target {
+            Target::Pressure(pressure) => Source::Pressure(pressure),
+            Target::ReducedPressure(reduced) => Source::Pressure(reduced / reduction(&scene)),
+            Target::PackingFraction(fraction) => Source::PackingFraction(fraction),
+        };
+        scene.sample = vec![Sample { name: "sample".into(), seed, source, relaxer }];
+        scene
+    }
+}
+
+/// p̂/p = N^(α−1), N the disks in the circle by area, or all of the periodic box.
+pub(super) fn reduction(scene: &Scene) -> f64 {
+    let share = match scene.inflation.boundary {
+        Boundary::HeldRim { outer_radius_over_side: ratio } => std::f64::consts::PI * ratio * ratio,
+        Boundary::Periodic => 1.0,
+    };
+    libm::pow(share * scene.disk_count as f64, scene.law.exponent() - 1.0)
+}
+
+fn twice<T: PartialEq + std::fmt::Debug>(list: &'static str, values: &[T]) -> Result<(), StudyError> {
+    let repeated = (1..values.len()).find(|&place| values[..place].contains(&values[place]));
+    match repeated {
+        Some(place) => Err(StudyError::Twice { list, value: format!("{:?}", values[place]) }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,247 @@
+//! The folder of a study: one file a task, which is sound or named as what is wrong with it.
+//!
+//! ```text
+//! study.json             the study, for whoever merges
+//! samples/IDENTITY.jsonl  {"jamscope_version", "identity", "checksum"} / the records / the wall time, a line each
+//! ```
+
+use std::fs::{File, TryLockError};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::io::{WriteError, write_atomically};
+use crate::study::plan::{Shard, Task, hash};
+use crate::study::record::Record;
+use crate::study::settings::Study;
+
+/// Why a folder cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StoreError {
+    /// The system refused.
+    #[error("{path}: {source}")]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A file could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// Another study lives there.
+    #[error(
+        "{path}: the folder holds another study; give this one a folder of its own, or say that it takes that one's place \
+         (samples both have are kept, those of the other are left alone)"
+    )]
+    OtherStudy {
+        /// The file that says so.
+        path: PathBuf,
+    },
+    /// No study lives there.
+    #[error("{path}: not there, so the folder holds no study")]
+    NoStudy {
+        /// The file looked for.
+        path: PathBuf,
+    },
+    /// The study of the folder cannot be understood.
+    #[error("{path}: {reason}")]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// Somebody else runs the same part of it.
+    #[error("{path}: locked, another process runs this part of the study in this folder")]
+    Locked {
+        /// The lock.
+        path: PathBuf,
+    },
+}
+
+/// A file of the folder that is not what it should be; it is left alone.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Problem {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong.
+    pub reason: String,
+}
+
+/// What is there of a task.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum TaskState {
+    /// Nothing.
+    Missing,
+    /// All its records, and the wall time they took \[s\].
+    Finished(Vec<Record>, f64),
+    /// A file that cannot be used.
+    Damaged(Problem),
+}
+
+/// First line of a file of records.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Header {
+    jamscope_version: String,
+    identity: String,
+    checksum: String,
+}
+
+/// Last line.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Timing {
+    seconds: f64,
+}
+
+/// The folder of a study.
+#[derive(Debug, Clone)]
+pub(super) struct Store {
+    folder: PathBuf,
+}
+
+impl Store {
+    /// The folder of this study, made if it is not there. `replace` lets it take the place of another one.
+    pub(super) fn open(folder: &Path, study: &Study, replace: bool) -> Result<Self, StoreError> {
+        let store = Store { folder: folder.into() };
+        let samples = store.samples();
+        std::fs::create_dir_all(&samples).map_err(|source| StoreError::Io { path: samples, source })?;
+        let path = store.study_path();
+        match store.study() {
+            Ok(there) if there == *study => return Ok(store),
+            Ok(_) if !replace => return Err(StoreError::OtherStudy { path }),
+            Err(error @ StoreError::Unreadable { .. }) if !replace => return Err(error),
+            Err(error @ StoreError::Io { .. }) => return Err(error),
+            _ => {}
+        }
+        let text = serde_json::to_string_pretty(study)
+            .map_err(|error| StoreError::Unreadable { path: path.clone(), reason: error.to_string() })?;
+        write_atomically(&path, |writer| writer.write_all((text + "\n").as_bytes()))?;
+        Ok(store)
+    }
+
+    /// The folder of whatever study is there.
+    pub(super) fn there(folder: &Path) -> Self {
+        Store { folder: folder.into() }
+    }
+
+    fn samples(&self) -> PathBuf {
+        self.folder.join("samples")
+    }
+
+    fn study_path(&self) -> PathBuf {
+        self.folder.join("study.json")
+    }
+
+    /// The study that lives there.
+    pub(super) fn study(&self) -> Result<Study, StoreError> {
+        let path = self.study_path();
+        let text = match std::fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Err(StoreError::NoStudy { path }),
+            Err(source) => return Err(StoreError::Io { path, source }),
+        };
+        serde_json::from_str(&text).map_err(|error| StoreError::Unreadable { path, reason: error.to_string() })
+    }
+
+    /// Keeps others from running the same part as long as the file lives; the system lets go of it when the process ends,
+    /// however it ends.
+    pub(super) fn lock(&self, shard: Shard) -> Result<File, StoreError> {
+        let path = self.folder.join(format!(".lock-{}-of-{}", shard.index, shard.count));
+        let failed = |source| StoreError::Io { path: path.clone(), source };
+        let file = File::options().create(true).truncate(false).write(true).open(&path).map_err(failed)?;
+        match file.try_lock() {
+            Ok(()) => Ok(file),
+            Err(TryLockError::WouldBlock) => Err(StoreError::Locked { path }),
+            Err(TryLockError::Error(source)) => Err(failed(source)),
+        }
+    }
+
+    /// What is there of a task.
+    pub(super) fn state(&self, task: &Task) -> TaskState {
+        let path = self.samples().join(task.file_name());
+        let text = match std::fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return TaskState::Missing,
+            Err(error) => return TaskState::Damaged(Problem { path, reason: error.to_string() }),
+        };
+        match records(&text, &task.identity()) {
+            Ok((records, seconds)) if records.len() == task.scenes.len() => TaskState::Finished(records, seconds),
+            Ok((records, _)) => {
+                let reason = format!("{} records, not {}", records.len(), task.scenes.len());
+                TaskState::Damaged(Problem { path, reason })
+            }
+            Err(reason) => TaskState::Damaged(Problem { path, reason }),
+        }
+    }
+
+    /// Writes the records of a task.
+    pub(super) fn write(&self, task: &Task, records: &[Record], seconds: f64) -> Result<(), StoreError> {
+        let path = self.samples().join(task.file_name());
+        let unreadable =
+            |error: serde_json::Error| StoreError::Unreadable { path: path.clone(), reason: error.to_string() };
+        let body = serde_json::to_string(records).map_err(unreadable)?;
+        let header = Header {
+            jamscope_version: env!("CARGO_PKG_VERSION").into(),
+            identity: task.identity(),
+            checksum: hash(&[&body]),
+        };
+        let header = serde_json::to_string(&header).map_err(unreadable)?;
+        let timing = serde_json::to_string(&Timing { seconds }).map_err(unreadable)?;
+        write_atomically(&path, |writer| write!(writer, "{header}\n{body}\n{timing}\n"))?;
+        Ok(())
+    }
+
+    /// Files among the samples that are of no task of the plan.
+    pub(super) fn foreign(&self, tasks: &[Task]) -> Result<Vec<Problem>, StoreError> {
+        let folder = self.samples();
+        let failed = |source| StoreError::Io { path: folder.clone(), source };
+        let known: std::collections::BTreeSet<String> = tasks.iter().map(Task::file_name).collect();
+        let mut found = Vec::new();
+        for entry in std::fs::read_dir(&folder).map_err(failed)? {
+            let entry = entry.map_err(failed)?;
+            let name = entry.file_name().to_string_lossy().into_owned();
+            // What a process that was killed had begun to write.
+            let begun = name.starts_with('.') && name.ends_with(".part");
+            if !known.contains(&name) && !begun {
+                found.push(Problem { path: entry.path(), reason: "of no sample of this study".into() });
+            }
+        }
+        found.sort_by(|a, b| a.path.cmp(&b.path));
+        Ok(found)
+    }
+
+    /// Writes a file of results.
+    pub(super) fn write_result(&self, name: &str, text: &str) -> Result<PathBuf, StoreError> {
+        let path = self.folder.join(name);
+        write_atomically(&path, |writer| writer.write_all(text.as_bytes()))?;
+        Ok(path)
+    }
+}
+
+/// The records of a file, and what they took.
+fn records(text: &str, identity: &str) -> Result<(Vec<Record>, f64), String> {
+    let mut lines = text.split('\n');
+    let (Some(header), Some(body), Some(timing), Some(""), None) =
+        (lines.next(), lines.next(), lines.next(), lines.next(), lines.next())
+    else {
+        return Err("cut short, or not three lines".into());
+    };
+    let header: Header = serde_json::from_str(header).map_err(|error| format!("line 1: {error}"))?;
+    if header.jamscope_version != env!("CARGO_PKG_VERSION") {
+        return Err(format!("written by version {}, this is {}", header.jamscope_version, env!("CARGO_PKG_VERSION")));
+    }
+    if header.identity != identity {
+        return Err("the records of another sample".into());
+    }
+    if header.checksum != hash(&[body]) {
+        return Err("line 2: changed since it was written (checksum)".into());
+    }
+    let records = serde_json::from_str(body).map_err(|error| format!("line 2: {error}"))?;
+    let timing: Timing = serde_json::from_str(timing).map_err(|error| format!("line 3: {error}"))?;
+    Ok((records, timing.seconds))
+}

@@ -1,0 +1,150 @@
+//! `jamscope study` as its user meets it: killed and resumed, on a full disk, sharded by Slurm, and what it prints.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+const STUDY: &str = "targets = [{ pressure = 500.0 }, { reduced_pressure = 1e6 }]
+increases = [0.1, 0.02]
+seeds = { first = 1, count = 12 }
+[scene]
+disk_count = 120
+[scene.observables.radial_profile]
+[scene.observables.contact_changes]
+";
+
+fn program() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_jamscope"))
+}
+
+fn study_in(folder: &Path) -> std::path::PathBuf {
+    let path = folder.join("study.toml");
+    std::fs::write(&path, STUDY).expect("written");
+    path
+}
+
+/// All files but those of samples, locks and the study itself.
+fn merged(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let output = program().arg("merge").arg(folder).output().expect("the program starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let read = |name: &str| (name.to_string(), std::fs::read(folder.join(name)).expect("written"));
+    ["records.jsonl", "summary.json", "summary.csv"].map(read).into_iter().collect()
+}
+
+fn whole(study: &Path, out: &Path) -> String {
+    let output = program().arg("study").arg(study).arg("--out").arg(out).output().expect("the program starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("Unicode")
+}
+
+#[test]
+fn killed_twenty_times_and_resumed_it_gives_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let study = study_in(folder.path());
+    let (reference, out) = (folder.path().join("reference"), folder.path().join("out"));
+    let text = whole(&study, &reference);
+    assert!(text.starts_with("48 samples: 48 run, 0 there before"), "{text}");
+    let mut random = Pcg64::seed_from_u64(20);
+    for _ in 0..20 {
+        let mut running = program()
+            .args(["study", "--threads", "1"])
+            .arg(&study)
+            .arg("--out")
+            .arg(&out)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the program starts");
+        std::thread::sleep(Duration::from_millis(random.random_range(2..80)));
+        running.kill().expect("it is killed, or done");
+        running.wait().expect("it is gone");
+    }
+    whole(&study, &out);
+    assert!(merged(&out) == merged(&reference), "the merged bytes differ");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_disk_ends_in_a_message_and_half_a_file_is_none() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (study, out) = (study_in(folder.path()), folder.path().join("out"));
+    // A limit on the size of files, 1 kB, refuses writes as a full disk does.
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 1; exec '{}' study '{}' --out '{}'",
+        env!("CARGO_BIN_EXE_jamscope"),
+        study.display(),
+        out.display()
+    );
+    let output = Command::new("bash").args(["-c", &script]).output().expect("a shell");
+    assert_eq!(output.status.code(), Some(1));
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(message.contains("jamscope: ") && message.contains("out"), "{message}");
+    // With room again it goes on, and what is there is sound.
+    whole(&study, &out);
+    let reference = folder.path().join("reference");
+    whole(&study, &reference);
+    assert!(merged(&out) == merged(&reference));
+}
+
+#[test]
+fn shards_come_from_the_arguments_or_from_slurm() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (study, out) = (study_in(folder.path()), folder.path().join("out"));
+    let reference = folder.path().join("reference");
+    whole(&study, &reference);
+    let part = |arguments: &[&str], environment: &[(&str, &str)]| {
+        let mut command = program();
+        command.arg("study").arg(&study).arg("--out").arg(&out).args(arguments).envs(environment.iter().copied());
+        let output = command.output().expect("the program starts");
+        (
+            output.status.success(),
+            String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr),
+        )
+    };
+    let slurm = |task: &'static str| {
+        [("SLURM_ARRAY_TASK_ID", task), ("SLURM_ARRAY_TASK_COUNT", "3"), ("SLURM_ARRAY_TASK_MIN", "5")]
+    };
+    assert!(part(&[], &slurm("5")).1.starts_with("16 samples: 16 run"));
+    assert!(part(&[], &slurm("7")).0);
+    let (there, text) = part(&[], &slurm("9"));
+    assert!(!there && text.contains("9 is none of them"), "{text}");
+    assert!(part(&["--shard", "2/3"], &[]).1.starts_with("16 samples: 16 run"));
+    assert!(!part(&["--shard", "4/3"], &[]).0);
+    assert!(merged(&out) == merged(&reference));
+}
+
+#[test]
+fn a_dry_run_prints_the_plan_and_runs_nothing() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (study, out) = (study_in(folder.path()), folder.path().join("out"));
+    let dry = || {
+        let output = program().args(["study", "--dry-run"]).arg(&study).arg("--out").arg(&out).output();
+        String::from_utf8(output.expect("the program starts").stdout).expect("Unicode")
+    };
+    let text = dry();
+    assert!(text.contains("120 disks, pressure 500: 12 packings, 2 inflations each, none done yet"), "{text}");
+    assert!(text.contains("24 packings, 48 samples") && !out.exists());
+    let part = program().args(["study", "--shard", "1/4"]).arg(&study).arg("--out").arg(&out).output();
+    assert!(part.expect("the program starts").status.success());
+    assert!(dry().contains("3 done, "), "{}", dry());
+}
+
+#[test]
+fn a_bad_study_is_refused_by_file_and_field() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("study.toml");
+    let complaint = |content: &str| {
+        std::fs::write(&path, content).expect("written");
+        let output = program().arg("study").arg(&path).output().expect("the program starts");
+        assert_eq!(output.status.code(), Some(1));
+        String::from_utf8(output.stderr).expect("Unicode")
+    };
+    assert!(complaint("presures = [1]").contains("study.toml: unknown field `presures`"));
+    assert!(complaint("targets = [{ pressure = -3.0 }]").contains("source.pressure = -3"));
+    assert!(complaint("increases = [0.1, 0.1]").contains("increases: 0.1 stands twice"));
+    assert!(complaint("[[scene.sample]]\nname = \"a\"\nsource = { pressure = 1.0 }").contains("it names none itself"));
+}
