@@ -49,6 +49,8 @@ fn killed_twenty_times_and_resumed_it_gives_the_same_bytes() {
     let text = whole(&study, &reference);
     assert!(text.starts_with("48 samples: 48 run, 0 there before"), "{text}");
     let mut random = Pcg64::seed_from_u64(20);
+    // Packings done after each kill.
+    let mut done = Vec::new();
     for _ in 0..20 {
         let mut running = program()
             .args(["study", "--threads", "1"])
@@ -62,7 +64,16 @@ fn killed_twenty_times_and_resumed_it_gives_the_same_bytes() {
         std::thread::sleep(Duration::from_millis(random.random_range(2..80)));
         running.kill().expect("it is killed, or done");
         running.wait().expect("it is gone");
+        let files = std::fs::read_dir(out.join("samples")).map_or(0, |entries| {
+            let whole = |name: &std::ffi::OsStr| {
+                name.to_string_lossy().ends_with(".jsonl") && !name.to_string_lossy().starts_with('.')
+            };
+            entries.filter(|entry| entry.as_ref().is_ok_and(|entry| whole(&entry.file_name()))).count()
+        });
+        done.push(files);
     }
+    println!("packings done after each kill: {done:?}");
+    assert!(done.iter().any(|&count| 0 < count && count < 24), "no kill came in the middle: {done:?}");
     whole(&study, &out);
     assert!(merged(&out) == merged(&reference), "the merged bytes differ");
 }
