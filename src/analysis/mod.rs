@@ -20,7 +20,7 @@ use crate::displacement::DisplacementField;
 use crate::inflation::Boundary;
 use crate::observe::PressureChange;
 use crate::observe::state::State;
-use crate::packing::{Packing, PackingError, ball_volume};
+use crate::packing::{PackingError, ball_volume};
 use crate::response::{Response, Subject};
 use crate::scene::Observables;
 
@@ -153,10 +153,4 @@ impl StateAnalysis {
             certificate: Certificate::of(packing, law, None)?,
         })
     }
-}
-
-/// Sides of the box a map needs; twice R in the open plane \[length\].
-#[cfg(feature = "plot")]
-pub(crate) fn map_sides(packing: &Packing<2>, outer_radius: f64) -> [f64; 2] {
-    packing.domain().lengths().unwrap_or([2.0 * outer_radius; 2])
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::analysis::{Analysis, map_sides};
+use crate::analysis::Analysis;
 use crate::inflation::Boundary;
 use crate::report::data_file::DataFile;
 use crate::report::figures::map::MapFrame;
@@ -59,7 +59,8 @@ pub fn analysis_page(analyses: &[Analysis]) -> Result<String, FigureError> {
             "<section class=\"sample\" aria-label=\"Sample {name}\">\n<h2>{name}</h2>\n<p class=\"facts\">{}</p>\n",
             facts.join(", ")
         );
-        let sides = map_sides(&analysis.pair.before, analysis.outer_radius);
+        // In the open plane a map needs no sides.
+        let sides = analysis.pair.before.domain().lengths().unwrap_or([2.0 * analysis.outer_radius; 2]);
         let (radii, boundary) = (analysis.pair.before.radii(), analysis.boundary());
         let frame = MapFrame::new(boundary, analysis.outer_radius, sides, widest(radii));
         html.push_str(&pictures(response_page::figures(&analysis.name, &analysis.response, radii, &frame, true)?));

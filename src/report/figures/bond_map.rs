@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::observe::BondChanges;
-use crate::report::figures::layer::Group;
+use crate::report::figures::layer::{Group, Segment};
 use crate::report::figures::map::{MapFrame, Range, colour_bar, level, map_label};
 use crate::report::figures::palette::red_over_blue;
 use crate::report::figures::{Figure, escaped};
@@ -34,7 +34,7 @@ pub fn bond_map(name: &str, changes: &BondChanges<2>, frame: &MapFrame, isostati
     let rescaled = |bond: &crate::observe::bond_changes::BondChange<2>| bond.distance * bond.parallel;
     let range = Range::of(changes.bonds.iter().map(rescaled));
     // Size, then sign: few groups, in an order that does not depend on the bonds.
-    let mut groups: BTreeMap<(i32, bool), Vec<[[i64; 2]; 2]>> = BTreeMap::new();
+    let mut groups: BTreeMap<(i32, bool), Vec<Segment>> = BTreeMap::new();
     for bond in &changes.bonds {
         let level = level(rescaled(bond), range.shown, LEVELS);
         // White on white.
@@ -82,7 +82,7 @@ pub fn bond_map(name: &str, changes: &BondChanges<2>, frame: &MapFrame, isostati
 }
 
 /// Strokes in strips across the map: each near the one before, so that relative paths have few letters.
-fn in_strips(mut bonds: Vec<[[i64; 2]; 2]>) -> Vec<[[i64; 2]; 2]> {
+fn in_strips(mut bonds: Vec<Segment>) -> Vec<Segment> {
     bonds.sort_unstable_by_key(|&[[x, y], end]| (y.div_euclid(STRIP), x, y, end));
     bonds
 }

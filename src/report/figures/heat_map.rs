@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::displacement::DisplacementField;
-use crate::report::figures::layer::Group;
+use crate::report::figures::layer::{Group, Segment};
 use crate::report::figures::map::{MapFrame, Range, colour_bar, level, map_label};
 use crate::report::figures::palette::diverging;
 use crate::report::figures::{Figure, RESCALED, escaped};
@@ -54,7 +54,7 @@ pub fn heat_map(name: &str, field: &DisplacementField<2>, radii: &[f64], frame: 
 /// All mobile disks and the inflated one, in a group whose origin is the centre.
 fn disks(frame: &MapFrame, field: &DisplacementField<2>, radii: &[f64], full: f64) -> String {
     // Colour level, then width: few groups, in an order that does not depend on the disks.
-    let mut groups: BTreeMap<(Option<i32>, i64), Vec<[[i64; 2]; 2]>> = BTreeMap::new();
+    let mut groups: BTreeMap<(Option<i32>, i64), Vec<Segment>> = BTreeMap::new();
     for disk in &field.disks {
         let level = disk.counted.then(|| level(disk.distance * disk.radial, full, LEVELS));
         let points = groups.entry((level, frame.tenths(2.0 * radii[disk.disk]))).or_default();

@@ -17,13 +17,16 @@ pub(crate) const MOST_VECTORS: usize = 20_000;
 /// Image pixels to a pixel of the picture: sharp on screens of high resolution and in print at 6 cm.
 const SHARPNESS: f32 = 3.0;
 
+/// From one point to another.
+pub(crate) type Segment = [[i64; 2]; 2];
+
 /// Strokes of one look. Points are strokes of no length; coordinates and width are tenths of a pixel, from the origin of the
 /// layer.
 pub(crate) struct Group {
     pub colour: String,
     pub width: i64,
     pub opacity: f32,
-    pub strokes: Vec<[[i64; 2]; 2]>,
+    pub strokes: Vec<Segment>,
 }
 
 /// Groups of strokes, each over the ones before.
@@ -33,7 +36,7 @@ pub(crate) struct Layer {
 
 impl Group {
     /// Full strokes.
-    pub(crate) fn new(colour: [u8; 3], width: i64, strokes: Vec<[[i64; 2]; 2]>) -> Self {
+    pub(crate) fn new(colour: [u8; 3], width: i64, strokes: Vec<Segment>) -> Self {
         Group { colour: hexadecimal(colour), width, opacity: 1.0, strokes }
     }
 
