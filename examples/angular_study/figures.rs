@@ -7,6 +7,7 @@ use std::path::Path;
 use jamscope::fit::angular::CrossoverOutcome;
 use jamscope::observe::angular::Mean;
 use jamscope::reference::lorentzian::{Lorentzian, USUAL_EXPONENT};
+use jamscope::vector::larger;
 use plotters::prelude::*;
 
 use crate::sample::Plan;
@@ -110,8 +111,8 @@ pub fn spectrum(path: &Path, plan: &Plan, summaries: &[Summary]) -> Result<(), B
         means.filter(|(_, mean)| mean.value > 0.0).map(|(f, mean)| (f as f64, mean)).collect()
     });
     let points = || curves.iter().flat_map(|curve| &curve.points);
-    let highest = points().map(|point| point.0).fold(1.0, f64::max);
-    let lowest = points().map(|point| point.1).fold(1.0, f64::min);
+    let highest = points().map(|point| point.0).fold(1.0, larger);
+    let lowest = -points().map(|point| -point.1).fold(-1.0, larger);
     let area = SVGBackend::new(path, SIZE).into_drawing_area();
     area.fill(&WHITE)?;
     let bottom = 0.5 * lowest;

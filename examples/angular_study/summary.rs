@@ -52,9 +52,14 @@ pub struct Summary {
     pub crossover: CrossoverFit,
     pub shares: [Value; 4],
     pub pressure_change: Value,
-    /// Changed contacts a sample, and the share of all of them that returned.
+    /// Contacts made and broken in a sample.
     pub changed: Value,
+    /// Share of them that return on deflation, mean over the samples that have any.
     pub returned: Value,
+    /// The same of the changed contacts of all samples together.
+    pub returned_together: Value,
+    /// Share of the samples in which all return.
+    pub wholly_returned: Value,
 }
 
 impl Summary {
@@ -93,6 +98,8 @@ impl Summary {
             let [all, back] = samples.iter().map(|sample| contacts(sample)).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
             Ok(back / all)
         };
+        let own: Vec<f64> =
+            measured.iter().map(|sample| contacts(sample)).filter(|[all, _]| *all > 0.0).map(|[all, back]| back / all).collect();
         Ok(Summary {
             reduced_pressure: rows[0].reduced_pressure,
             sample_count: rings.len(),
@@ -114,7 +121,9 @@ impl Summary {
             shares: std::array::from_fn(|mode| over(&|sample| sample.shares[mode])),
             pressure_change: over(&|sample| sample.pressure_change.unwrap_or(f64::NAN)),
             changed: over(&|sample| contacts(sample)[0]),
-            returned: jackknife(&measured, returned)?,
+            returned: mean(&own),
+            returned_together: jackknife(&measured, returned)?,
+            wholly_returned: mean(&own.iter().map(|&share| f64::from(u8::from(share == 1.0))).collect::<Vec<_>>()),
         })
     }
 
@@ -175,7 +184,7 @@ fn jackknife<T: Clone>(
 }
 
 /// Names of the columns that have an error, and their values.
-fn columns(summary: &Summary) -> [(&'static str, Value); 15] {
+fn columns(summary: &Summary) -> [(&'static str, Value); 17] {
     let of = |mean: jamscope::observe::angular::Mean| Value {
         value: mean.value,
         error: mean.standard_error.unwrap_or(f64::NAN),
@@ -200,6 +209,8 @@ fn columns(summary: &Summary) -> [(&'static str, Value); 15] {
         ("pressure_change", summary.pressure_change),
         ("changed_contacts", summary.changed),
         ("returned_share", summary.returned),
+        ("returned_together", summary.returned_together),
+        ("wholly_returned", summary.wholly_returned),
         ("stated_slope_error", Value { value: summary.stated_error.unwrap_or(f64::NAN), error: f64::NAN }),
     ]
 }
