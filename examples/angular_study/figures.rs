@@ -144,7 +144,10 @@ pub fn spectrum(path: &Path, plan: &Plan, summaries: &[Summary]) -> Result<(), B
     let frequencies = || (0..=120).map(|step| highest.powf(f64::from(step) / 120.0));
     let style = BLACK.stroke_width(1);
     chart
-        .draw_series(dashed(frequencies().map(|f| (f, f.powf(-USUAL_EXPONENT))).filter(|point| point.1 > bottom), style))?
+        .draw_series(dashed(
+            frequencies().map(|f| (f, f.powf(-USUAL_EXPONENT))).filter(|point| point.1 > bottom),
+            style,
+        ))?
         .label("f^−1.5")
         .legend(move |(x, y)| legend(x, y, style));
     for (summary, curve) in summaries.iter().zip(&curves) {

@@ -66,8 +66,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let seeds = first_seed..first_seed + sample_count;
     let asked = |row: &Row| reduced_pressures.contains(&row.reduced_pressure) && seeds.contains(&row.seed);
     let done: Vec<Row> = store.rows()?.into_iter().filter(asked).collect();
-    let is_done =
-        |reduced: f64, seed: u64| done.iter().any(|row| row.reduced_pressure == reduced && row.seed == seed);
+    let is_done = |reduced: f64, seed: u64| done.iter().any(|row| row.reduced_pressure == reduced && row.seed == seed);
     let open: Vec<(f64, u64)> = seeds
         .clone()
         .flat_map(|seed| reduced_pressures.iter().map(move |&reduced| (reduced, seed)))
@@ -82,10 +81,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let mut rows: Vec<Row> = store.rows()?.into_iter().filter(asked).collect();
     rows.sort_by(|a, b| a.reduced_pressure.total_cmp(&b.reduced_pressure).then(a.seed.cmp(&b.seed)));
-    let summaries: Vec<Summary> = rows
-        .chunk_by(|a, b| a.reduced_pressure == b.reduced_pressure)
-        .map(Summary::of)
-        .collect::<Result<_, _>>()?;
+    let summaries: Vec<Summary> =
+        rows.chunk_by(|a, b| a.reduced_pressure == b.reduced_pressure).map(Summary::of).collect::<Result<_, _>>()?;
     summary::print(&summaries);
     std::fs::write(folder.join("summary.csv"), summary::csv(&summaries))?;
     figures::correlation(&folder.join("correlation.svg"), &plan, &summaries)?;

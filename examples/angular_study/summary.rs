@@ -4,7 +4,8 @@ use std::error::Error;
 use std::f64::consts::PI;
 
 use jamscope::fit::angular::{
-    CrossoverFit, CrossoverOutcome, CrossoverSettings, SingleDiskNoise, SpectrumWindowSettings, fit_crossover, fit_slope,
+    CrossoverFit, CrossoverOutcome, CrossoverSettings, SingleDiskNoise, SpectrumWindowSettings, fit_crossover,
+    fit_slope,
 };
 use jamscope::observe::angular::{
     AngularCorrelation, CorrelationSettings, CorrelationStatistics, FrequencyLimit, Leakage, PowerSpectrum, RingSample,
@@ -49,6 +50,8 @@ pub struct Summary {
     /// θ* of the mean G over π, error by leaving out one sample at a time.
     pub angle_of_mean: Value,
     pub spectrum: SpectrumStatistics,
+    /// Powers at f = 1, 2, 3 and what is above f_max or of single disks, over the variance of the ring.
+    pub powers: [Value; 4],
     pub crossover: CrossoverFit,
     pub shares: [Value; 4],
     pub pressure_change: Value,
@@ -82,7 +85,8 @@ impl Summary {
         let spectra = spectra(&rings)?;
         let window = SpectrumWindowSettings::default();
         let noisy = SpectrumWindowSettings { noise: SingleDiskNoise::Fitted, ..window };
-        let slope = |rings: &[RingSample]| -> Result<f64, Box<dyn Error>> { Ok(fit_slope(rings, &window)?.exponent.best) };
+        let slope =
+            |rings: &[RingSample]| -> Result<f64, Box<dyn Error>> { Ok(fit_slope(rings, &window)?.exponent.best) };
         let slope_noise =
             |rings: &[RingSample]| -> Result<f64, Box<dyn Error>> { Ok(fit_slope(rings, &noisy)?.exponent.best) };
         let angle = |samples: &[AngularCorrelation]| -> Result<f64, Box<dyn Error>> {
@@ -95,11 +99,16 @@ impl Summary {
             [(made + broken) as f64, (made_returned + broken_returned) as f64]
         };
         let returned = |samples: &[&Measured]| -> Result<f64, Box<dyn Error>> {
-            let [all, back] = samples.iter().map(|sample| contacts(sample)).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+            let [all, back] =
+                samples.iter().map(|sample| contacts(sample)).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
             Ok(back / all)
         };
-        let own: Vec<f64> =
-            measured.iter().map(|sample| contacts(sample)).filter(|[all, _]| *all > 0.0).map(|[all, back]| back / all).collect();
+        let own: Vec<f64> = measured
+            .iter()
+            .map(|sample| contacts(sample))
+            .filter(|[all, _]| *all > 0.0)
+            .map(|[all, back]| back / all)
+            .collect();
         Ok(Summary {
             reduced_pressure: rows[0].reduced_pressure,
             sample_count: rings.len(),
@@ -117,6 +126,11 @@ impl Summary {
             correlation: correlation_statistics(&correlations)?,
             angle_of_mean: jackknife(&correlations, angle)?,
             spectrum: spectrum_statistics(&spectra)?,
+            powers: std::array::from_fn(|place| {
+                let of =
+                    |spectrum: &PowerSpectrum| if place < 3 { spectrum.power[place + 1] } else { spectrum.unresolved };
+                mean(&spectra.iter().map(|spectrum| of(spectrum) / spectrum.variance).collect::<Vec<_>>())
+            }),
             crossover: fit_crossover(&rings, &CrossoverSettings::default())?,
             shares: std::array::from_fn(|mode| over(&|sample| sample.shares[mode])),
             pressure_change: over(&|sample| sample.pressure_change.unwrap_or(f64::NAN)),
@@ -174,8 +188,12 @@ fn jackknife<T: Clone>(
     estimate: impl Fn(&[T]) -> Result<f64, Box<dyn Error>>,
 ) -> Result<Value, Box<dyn Error>> {
     let without = (0..samples.len()).map(|left_out| {
-        let rest: Vec<T> =
-            samples.iter().enumerate().filter(|&(index, _)| index != left_out).map(|(_, sample)| sample.clone()).collect();
+        let rest: Vec<T> = samples
+            .iter()
+            .enumerate()
+            .filter(|&(index, _)| index != left_out)
+            .map(|(_, sample)| sample.clone())
+            .collect();
         estimate(&rest)
     });
     let without: Vec<f64> = without.collect::<Result<_, _>>()?;
@@ -184,7 +202,7 @@ fn jackknife<T: Clone>(
 }
 
 /// Names of the columns that have an error, and their values.
-fn columns(summary: &Summary) -> [(&'static str, Value); 17] {
+fn columns(summary: &Summary) -> [(&'static str, Value); 21] {
     let of = |mean: jamscope::observe::angular::Mean| Value {
         value: mean.value,
         error: mean.standard_error.unwrap_or(f64::NAN),
@@ -200,6 +218,10 @@ fn columns(summary: &Summary) -> [(&'static str, Value); 17] {
         ("anticorrelation", of(summary.correlation.anticorrelation)),
         ("angle_over_pi", angle),
         ("angle_of_mean_over_pi", summary.angle_of_mean),
+        ("power_1", summary.powers[0]),
+        ("power_2", summary.powers[1]),
+        ("power_3", summary.powers[2]),
+        ("unresolved", summary.powers[3]),
         ("share_0", isotropic),
         ("share_1", dipole),
         ("share_2", quadrupole),
@@ -234,7 +256,11 @@ pub fn print(summaries: &[Summary]) {
             summary.ring_disk_count,
         );
         let [from, to] = summary.window;
-        println!("  fits from f = {from} to {to}; dispersion {:.2}; f† {}", summary.dispersion, summary.crossover_text());
+        println!(
+            "  fits from f = {from} to {to}; dispersion {:.2}; f† {}",
+            summary.dispersion,
+            summary.crossover_text()
+        );
         for (name, Value { value, error }) in columns(summary) {
             println!("  {name:<22} {value:>9.4} ± {error:.4}");
         }
@@ -246,8 +272,7 @@ pub fn csv(summaries: &[Summary]) -> String {
     let mut text = String::new();
     for (index, summary) in summaries.iter().enumerate() {
         if index == 0 {
-            let names: Vec<String> =
-                columns(summary).iter().map(|(name, _)| format!("{name},{name}_error")).collect();
+            let names: Vec<String> = columns(summary).iter().map(|(name, _)| format!("{name},{name}_error")).collect();
             text += &format!("reduced_pressure,pressure,samples,crossover,{}\n", names.join(","));
         }
         let values: Vec<String> =

@@ -1,5 +1,6 @@
 use jamscope::contact::{ContactNetwork, Hertzian, Hookean};
 use jamscope::inflation::{Inflation, inflate};
+use jamscope::io::read_packing;
 use jamscope::observe::contact_changes::{ContactChanges, ContactCycle, RattlerContacts};
 use jamscope::observe::{PressureChange, State};
 use jamscope::packing::{Mixture, Packing};
@@ -133,6 +134,42 @@ fn a_real_inflation_adds_up_state_by_state() {
     // p^(1/3), here by another route.
     let scaled = change.change / inflated.before.pressure.cbrt();
     assert!((change.scaled.expect("jammed") / scaled - 1.0).abs() < 1e-15);
+}
+
+/// Share of the changed contacts that return on deflation, mean and standard error over centres of a packing, and how many contacts in
+/// a thousand are left changed.
+fn returned(packing: &Packing<2>, centre_count: u64) -> [f64; 3] {
+    let (law, fire) = (Hertzian::default(), Fire::default());
+    let inflation = Inflation { deflate: true, ..Inflation::default() };
+    let (mut shares, mut left, mut all) = (Vec::new(), 0, 0);
+    for seed in 1..=centre_count {
+        let inflated = inflate(&inflation, packing, &law, &fire, seed, &mut ()).expect("an inflation");
+        let cycle = ContactCycle::of(&inflated, &law).expect("sound disks").expect("deflated");
+        // Without any change there is nothing to return, and nothing left.
+        shares.push(cycle.returned_share().unwrap_or(1.0));
+        let changed = cycle.inflation.made.len() + cycle.inflation.broken.len();
+        left += changed - cycle.made_returned_count - cycle.broken_returned_count;
+        all += inflated.before.contact_count;
+    }
+    let count = shares.len() as f64;
+    let mean = shares.iter().sum::<f64>() / count;
+    let square: f64 = shares.iter().map(|share| (share - mean).powi(2)).sum();
+    [mean, (square / (count - 1.0) / count).sqrt(), 1e3 * left as f64 / all as f64]
+}
+
+/// The smallest form of what `examples/angular_study` measures in ensembles (chapter "Contact changes"): p̂ = 2·10⁵ and 2·10⁸.
+#[test]
+fn deflation_returns_more_contacts_far_above_the_transition_than_below() {
+    let below = read_packing::<2>("fixtures/packings/hertz_N1000_p10.xyz").expect("a fixture");
+    let (mixture, target) = (Mixture::default(), Target::Pressure(1e4));
+    let preparation = Preparation { disk_count: 1000, mixture, target, tolerance: 0.01, seed: 1 };
+    let above =
+        prepare::<2, _>(&preparation, &Hertzian::default(), &Fire::default(), &mut ()).expect("a packing").packing;
+    let [below, above] = [returned(&below, 12), returned(above.get(), 12)];
+    println!("returned share, error, left in a thousand: {below:?} below, {above:?} above");
+    // Both by twice their joint error at least, and an order of magnitude less is left.
+    assert!(above[0] - below[0] > 2.0 * below[1].hypot(above[1]), "{below:?}, {above:?}");
+    assert!(below[2] > 10.0 * above[2], "{below:?}, {above:?}");
 }
 
 #[test]

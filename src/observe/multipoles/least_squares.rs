@@ -51,7 +51,8 @@ impl LeastSquares {
         }
         let diagonal = || (0..column_count).map(|k| columns[k][k].abs());
         // A diagonal entry that is no number makes both NaN, and nothing is above that.
-        let (least, most) = (-diagonal().map(|entry| -entry).fold(f64::NEG_INFINITY, larger), diagonal().fold(0.0, larger));
+        let (least, most) =
+            (-diagonal().map(|entry| -entry).fold(f64::NEG_INFINITY, larger), diagonal().fold(0.0, larger));
         (least > LEAST_DIAGONAL * most).then_some(LeastSquares { columns, column_count })
     }
 
