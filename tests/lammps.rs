@@ -291,7 +291,7 @@ fn the_minimum_lammps_found_among_four_thousand_hookean_disks_is_one_for_ours() 
     let fire = Fire { limit: ForceLimit::Relative(1e-12), ..Fire::default() };
     let start = inflated.packing(pushed, INFLATED_RADIUS);
     let end = fire.relax(start, &law, &mut ()).expect("no coincidence").converged().expect("at rest").into_inner();
-    relaxed_agrees(&inflated, name, &end, &law);
+    relaxed_agrees(&inflated, &inflated.name, &end, &law);
 }
 
 #[test]

@@ -50,6 +50,7 @@ impl Table {
 
 /// An inflated packing of LAMMPS: mobile disks, the centre, the rim.
 pub struct Inflated {
+    pub name: String,
     pub table: Table,
     pub mobile_count: usize,
     pub outer_radius: f64,
@@ -62,6 +63,7 @@ impl Inflated {
     pub fn read(name: &str) -> Self {
         let table = Table::read(&format!("lammps/inflated/{name}.txt"));
         Inflated {
+            name: name.to_string(),
             mobile_count: table.number("n_mobile") as usize,
             outer_radius: table.number("r_out"),
             labels: table.rows.iter().map(|row| row[0] as u64).collect(),

@@ -178,7 +178,6 @@ impl Ring {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
 
     /// Lawley's ε of exponential variates whose logarithms are linear in the columns x, H their hat matrix:
     /// −¼ Σ H_ii² + ⅙ Σ H_ij³ + ¼ Σ H_ii H_ij H_jj.
