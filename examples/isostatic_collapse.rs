@@ -7,7 +7,7 @@
 //! Packings at p = 100, 300, 1000 and 3000, everything relaxed by FIRE and Newton in turn. h of a pressure is the root of the mean of h²
 //! over samples: of bonds under the relaxed inflation, of bonds under the linear response to one, and of d_r. Printed for each: y/y_plateau
 //! at some x = r ΔZ, and C by the plateau rule: ℓ_iso is where y has risen to a share of its plateau, the median of y between two
-//! radii. Then how far the pressures lie apart: the standard deviation of ln y between them, rms over x = 2 to 6, y as it is (h over d_0)
+//! radii. Then how far the pressures lie apart: the standard deviation of ln y between them, rms over x = 3 to 6, y as it is (h over d_0)
 //! and y over h_0 near the centre.
 
 use std::error::Error;
@@ -34,7 +34,7 @@ const PRESSURES: [f64; 4] = [100.0, 300.0, 1000.0, 3000.0];
 const KINDS: [&str; 3] = ["h_∥ relaxed", "h_∥ linear", "h_r relaxed"];
 
 /// Where curves are compared.
-const SCALED_RADII: [f64; 5] = [2.0, 3.0, 4.0, 5.0, 6.0];
+const SCALED_RADII: [f64; 4] = [3.0, 4.0, 5.0, 6.0];
 
 /// The plateau: between these shares of R.
 const PLATEAU: [f64; 2] = [0.3, 0.6];
@@ -111,7 +111,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "{disk_count} disks, {sample_count} samples, d_0 = {increase}; y over its plateau at x = {SCALED_RADII:?}"
     );
     // y at the x above of every pressure: over d_0, and over h_0.
-    let mut curves: [[Vec<[f64; 5]>; 2]; 3] = Default::default();
+    let mut curves: [[Vec<[f64; 4]>; 2]; 3] = Default::default();
     for pressure in PRESSURES {
         let samples: Vec<Sample> = (1..=sample_count)
             .into_par_iter()
@@ -157,7 +157,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Standard deviation of ln y between pressures, rms over the radii.
-fn spread(curves: &[[f64; 5]]) -> f64 {
+fn spread(curves: &[[f64; 4]]) -> f64 {
     let count = curves.len() as f64;
     let variances = (0..SCALED_RADII.len()).map(|place| {
         let logarithms: Vec<f64> = curves.iter().map(|curve| curve[place].ln()).collect();

@@ -1,6 +1,5 @@
 use jamscope::contact::{ContactNetwork, Hertzian, Hookean};
 use jamscope::inflation::{Inflation, inflate};
-use jamscope::io::read_packing;
 use jamscope::observe::contact_changes::{ContactChanges, ContactCycle, RattlerContacts};
 use jamscope::observe::{PressureChange, State};
 use jamscope::packing::{Mixture, Packing};
@@ -136,40 +135,37 @@ fn a_real_inflation_adds_up_state_by_state() {
     assert!((change.scaled.expect("jammed") / scaled - 1.0).abs() < 1e-15);
 }
 
-/// Share of the changed contacts that return on deflation, mean and standard error over centres of a packing, and how many contacts in
-/// a thousand are left changed.
-fn returned(packing: &Packing<2>, centre_count: u64) -> [f64; 3] {
-    let (law, fire) = (Hertzian::default(), Fire::default());
+/// Of some packings of 1000 disks at a pressure: in how many all changed contacts return on deflation, and how many contacts in a thousand
+/// are left changed.
+#[cfg(feature = "linear")]
+fn returned(pressure: f64, packing_count: u64) -> (usize, f64) {
+    let (law, staged) = (Hertzian::default(), jamscope::relax::Staged::default());
     let inflation = Inflation { deflate: true, ..Inflation::default() };
-    let (mut shares, mut left, mut all) = (Vec::new(), 0, 0);
-    for seed in 1..=centre_count {
-        let inflated = inflate(&inflation, packing, &law, &fire, seed, &mut ()).expect("an inflation");
+    let (mut whole, mut left, mut all) = (0, 0, 0);
+    for seed in 1..=packing_count {
+        let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
+        let preparation = Preparation { disk_count: 1000, mixture, target, tolerance: 0.01, seed };
+        let packing = prepare::<2, _>(&preparation, &law, &staged, &mut ()).expect("a packing").packing;
+        let inflated = inflate(&inflation, packing.get(), &law, &staged, seed, &mut ()).expect("an inflation");
         let cycle = ContactCycle::of(&inflated, &law).expect("sound disks").expect("deflated");
-        // Without any change there is nothing to return, and nothing left.
-        shares.push(cycle.returned_share().unwrap_or(1.0));
         let changed = cycle.inflation.made.len() + cycle.inflation.broken.len();
-        left += changed - cycle.made_returned_count - cycle.broken_returned_count;
-        all += inflated.before.contact_count;
+        let remaining = changed - cycle.made_returned_count - cycle.broken_returned_count;
+        whole += usize::from(remaining == 0);
+        left += remaining;
+        all += cycle.inflation.kept_count + cycle.inflation.broken.len();
     }
-    let count = shares.len() as f64;
-    let mean = shares.iter().sum::<f64>() / count;
-    let square: f64 = shares.iter().map(|share| (share - mean).powi(2)).sum();
-    [mean, (square / (count - 1.0) / count).sqrt(), 1e3 * left as f64 / all as f64]
+    (whole, 1e3 * left as f64 / all as f64)
 }
 
-/// The smallest form of what `examples/angular_study` measures in ensembles (chapter "Contact changes"): p̂ = 2·10⁵ and 2·10⁸.
+/// The smallest form of what `examples/angular_study` measures in ensembles (chapter "Contact changes"): p̂ = 2·10⁵ and 3·10⁸, 16 packings
+/// each. When this was written all contacts returned in 6 and 15 of them, and 5.8 and 0.5 in a thousand were left: by chance
+/// counts so far apart are 1 in 500 (Fisher's exact test).
+#[cfg(feature = "linear")]
 #[test]
 fn deflation_returns_more_contacts_far_above_the_transition_than_below() {
-    let below = read_packing::<2>("fixtures/packings/hertz_N1000_p10.xyz").expect("a fixture");
-    let (mixture, target) = (Mixture::default(), Target::Pressure(1e4));
-    let preparation = Preparation { disk_count: 1000, mixture, target, tolerance: 0.01, seed: 1 };
-    let above =
-        prepare::<2, _>(&preparation, &Hertzian::default(), &Fire::default(), &mut ()).expect("a packing").packing;
-    let [below, above] = [returned(&below, 12), returned(above.get(), 12)];
-    println!("returned share, error, left in a thousand: {below:?} below, {above:?} above");
-    // Both by twice their joint error at least, and an order of magnitude less is left.
-    assert!(above[0] - below[0] > 2.0 * below[1].hypot(above[1]), "{below:?}, {above:?}");
-    assert!(below[2] > 10.0 * above[2], "{below:?}, {above:?}");
+    let (below, above) = (returned(10.27, 16), returned(15_405.0, 16));
+    println!("all return, left in a thousand: {below:?} below, {above:?} above");
+    assert!(above.0 >= below.0 + 6 && below.1 > 5.0 * above.1, "{below:?}, {above:?}");
 }
 
 #[test]
