@@ -1,11 +1,11 @@
 //! How often the stated intervals of slope and crossover hold the truth.
 //!
 //! ```text
-//! cargo run --release --example angular_coverage [TRIALS]
+//! cargo run --release --example angular_coverage -- [TRIALS [DISK_COUNT ...]]
 //! ```
 //!
 //! Gaussian rings of 60, 1000 and 4000 disks, anywhere and jittered, 1000 of each unless told otherwise. Two standard errors hold
-//! in 95.45 % of trials, ± 0.66 % for 1000.
+//! in 95.45 % of trials: ± 0.66 % for 1000, so that one such count in four is below 95 %, and ± 0.15 % for 20 000, of which one in 900 is.
 
 use std::error::Error;
 use std::time::Instant;
@@ -15,8 +15,10 @@ use jamscope::observe::angular::synthetic::{AngleLayout, SyntheticSettings, gaus
 
 fn main() -> Result<(), Box<dyn Error>> {
     let trials: usize = std::env::args().nth(1).map_or(Ok(1000), |text| text.parse())?;
+    let sizes: Vec<usize> = std::env::args().skip(2).map(|text| text.parse()).collect::<Result<_, _>>()?;
+    let sizes = if sizes.is_empty() { vec![60, 1000, 4000] } else { sizes };
     println!("disks, angles: s = 1.5 held (closed: mean ± scatter, mean standard error), ms a fit");
-    for disk_count in [60, 1000, 4000] {
+    for disk_count in sizes {
         for layout in [AngleLayout::Random, AngleLayout::Jittered(0.8)] {
             let settings = SyntheticSettings { disk_count, layout, seed: 1, ..SyntheticSettings::default() };
             slopes(&settings, trials)?;

@@ -23,6 +23,7 @@ use jamscope::observe::angular::{
     AngularCorrelation, CorrelationEstimator, CorrelationSettings, FrequencyLimit, Leakage, PowerSpectrum, RingSample,
     SpectrumEstimator, SpectrumSettings, Weights, fourier_sums,
 };
+use jamscope::vector::larger;
 use plotters::prelude::*;
 
 /// Disks and rings of a comparison.
@@ -249,8 +250,8 @@ fn plot(path: &str, marks: &[Mark]) -> Result<(), Box<dyn Error>> {
     let area = SVGBackend::new(path, (900, 560)).into_drawing_area();
     area.fill(&WHITE)?;
     let range = |of: &dyn Fn(&Mark) -> f64| {
-        let low = marks.iter().map(of).fold(f64::INFINITY, f64::min);
-        let high = marks.iter().map(of).fold(0.0, f64::max);
+        let low = -marks.iter().map(|mark| -of(mark)).fold(f64::NEG_INFINITY, larger);
+        let high = marks.iter().map(of).fold(0.0, larger);
         (0.7 * low..1.4 * high).log_scale()
     };
     let mut chart = ChartBuilder::on(&area)

@@ -31,6 +31,7 @@ use jamscope::report::figures::contact_map::contact_map;
 use jamscope::report::figures::isostatic::isostatic_figure;
 use jamscope::report::figures::map::MapFrame;
 use jamscope::report::figures::multipoles::{Component, multipole_figure};
+use jamscope::vector::larger;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -92,7 +93,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             };
             let fluctuations = Fluctuations::of_bonds(bonds, BondMeasure::Parallel, outer, settings.ring_width);
             let length = IsostaticLength::of(&fluctuations, excess, increase, outer, &settings)?;
-            let largest = length.curve.iter().map(|point| point.scaled_fluctuation).fold(0.0, f64::max);
+            let largest = length.curve.iter().map(|point| point.scaled_fluctuation).fold(0.0, larger);
             println!("  {name:<8} h_0 = {unit:<7} {largest:>9.4}  {:?}", length.outcome);
             lengths.push((name, length));
         }

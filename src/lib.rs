@@ -209,6 +209,8 @@ mod book {
     mod observe_power_spectrum {}
     #[doc = include_str!("../book/src/observe/angular_correlation.md")]
     mod observe_angular_correlation {}
+    #[doc = include_str!("../book/src/observe/angular_study.md")]
+    mod observe_angular_study {}
     #[doc = include_str!("../book/src/reference.md")]
     mod reference {}
     #[doc = include_str!("../book/src/reference/angular_modes.md")]

@@ -3,9 +3,10 @@
 //! The numbers are in `fixtures/lammps` and `fixtures/packings`; LAMMPS keeps one number a coordinate, so its overlaps
 //! carry the rounding of positions of order the box side L, about ulp(L).
 
+#[path = "scenes/lammps_inflated.rs"]
+mod lammps_inflated;
+
 use std::collections::{BTreeMap, BTreeSet};
-use std::f64::consts::PI;
-use std::path::PathBuf;
 
 use jamscope::contact::damping::{ConstantDamping, DampingChoice, DampingLaw};
 use jamscope::contact::forces::add_damping;
@@ -19,49 +20,10 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde_json::Value;
 
+use crate::lammps_inflated::{INFLATED_RADIUS, Inflated, Table, fixture, text};
+
 /// γ of the damped forces and runs \[force / velocity\].
 const RATE: f64 = 500.0;
-
-/// Radius of the inflated disk, 0.5 before.
-const INFLATED_RADIUS: f64 = 0.6;
-
-fn fixture(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name)
-}
-
-fn text(name: &str) -> String {
-    std::fs::read_to_string(fixture(name)).expect("fixture exists")
-}
-
-/// A table of LAMMPS: words of the header after `#`, rows of numbers.
-struct Table {
-    header: Vec<Vec<String>>,
-    rows: Vec<Vec<f64>>,
-}
-
-impl Table {
-    fn read(name: &str) -> Self {
-        let text = text(name);
-        let (header, rows): (Vec<&str>, Vec<&str>) = text.lines().partition(|line| line.starts_with('#'));
-        let words = |line: &&str| line[1..].split_whitespace().map(|word| word.trim_matches('"').to_string()).collect();
-        let numbers = |line: &&str| line.split_whitespace().map(|word| word.parse().expect("a number")).collect();
-        Table { header: header.iter().map(words).collect(), rows: rows.iter().map(numbers).collect() }
-    }
-
-    /// The number that follows `key` in the header.
-    fn find(&self, key: &str) -> Option<f64> {
-        let pairs = || self.header.iter().flat_map(|line| line.windows(2)).filter(|pair| pair[0] == key);
-        pairs().find_map(|pair| pair[1].parse().ok())
-    }
-
-    fn number(&self, key: &str) -> f64 {
-        self.find(key).unwrap_or_else(|| panic!("no number {key} in the header"))
-    }
-
-    fn columns<const D: usize>(&self, from: usize) -> Vec<Vector<D>> {
-        self.rows.iter().map(|row| std::array::from_fn(|d| row[from + d])).collect()
-    }
-}
 
 fn close(what: &str, ours: f64, theirs: f64, relative: f64) {
     println!("{what}: {ours} against {theirs}, relative difference {:.1e}", (ours / theirs - 1.0).abs());
@@ -189,59 +151,9 @@ fn every_packing_of_lammps_has_its_energy_pressure_contacts_and_rattlers() {
     assert_eq!(expected.len(), 16);
 }
 
-/// An inflated packing of LAMMPS: mobile disks, the centre, the rim.
-struct Inflated {
-    table: Table,
-    mobile_count: usize,
-    outer_radius: f64,
-    labels: Vec<u64>,
-    after: Vec<Vector<2>>,
-    rattler: Vec<bool>,
-}
-
-impl Inflated {
-    fn read(name: &str) -> Self {
-        let table = Table::read(&format!("lammps/inflated/{name}.txt"));
-        Inflated {
-            mobile_count: table.number("n_mobile") as usize,
-            outer_radius: table.number("r_out"),
-            labels: table.rows.iter().map(|row| row[0] as u64).collect(),
-            after: table.columns(5),
-            rattler: table.rows.iter().map(|row| row[7] != 0.0).collect(),
-            table,
-        }
-    }
-
-    fn packing(&self, positions: Vec<Vector<2>>, centre_radius: f64) -> Packing<2> {
-        let mut radii: Vec<f64> = self.table.rows.iter().map(|row| row[2]).collect();
-        radii[self.mobile_count] = centre_radius;
-        let held = (0..radii.len()).map(|disk| disk >= self.mobile_count).collect();
-        Packing::new(Domain::Open, positions, radii)
-            .and_then(|packing| packing.with_held(held))
-            .and_then(|packing| packing.with_labels(self.labels.clone()))
-            .expect("valid")
-    }
-
-    fn before(&self, centre_radius: f64) -> Packing<2> {
-        self.packing(self.table.columns(3), centre_radius)
-    }
-
-    fn pressure(&self, network: &ContactNetwork<2>) -> f64 {
-        let volume = PI * self.outer_radius * self.outer_radius;
-        network.cluster_pressure(volume, |disk| disk > self.mobile_count)
-    }
-
-    /// Largest distance of a mobile disk from where LAMMPS has it, over those that are rattlers in neither.
-    fn distance(&self, packing: &Packing<2>, network: &ContactNetwork<2>) -> f64 {
-        (0..self.mobile_count)
-            .filter(|&disk| network.backbone[disk] && !self.rattler[disk])
-            .map(|disk| norm(difference(packing.positions()[disk], self.after[disk])))
-            .fold(0.0, larger)
-    }
-
-    fn rattlers(&self) -> BTreeSet<usize> {
-        (0..self.mobile_count).filter(|&disk| self.rattler[disk]).collect()
-    }
+/// Disks that LAMMPS has as rattlers after the inflation.
+fn rattlers_of(inflated: &Inflated) -> BTreeSet<usize> {
+    (0..inflated.mobile_count).filter(|&disk| inflated.rattler[disk]).collect()
 }
 
 /// The states LAMMPS gives, evaluated as they are.
@@ -260,7 +172,7 @@ fn states_agree(name: &str, law: &impl PairLaw) {
     close(&format!("{name} energy after"), after.energy(), header(&["energy", "energy_md"]), 1e-11);
     close(&format!("{name} pressure after"), inflated.pressure(&after), header(&["p_circle", "p_md"]), 1e-11);
     let rattlers: BTreeSet<usize> = after.rattlers().collect();
-    assert_eq!(rattlers, inflated.rattlers(), "{name}: rattlers after");
+    assert_eq!(rattlers, rattlers_of(&inflated), "{name}: rattlers after");
     if inflated.table.find("contacts").is_some() {
         assert_eq!(after.contacts.len() as f64, inflated.table.number("contacts"), "{name}: contacts after");
     }
@@ -287,7 +199,7 @@ fn relaxed_agrees(inflated: &Inflated, what: &str, packing: &Packing<2>, law: &i
     let distance = inflated.distance(packing, &network);
     println!("{what}: backbone within {distance:.1e} of LAMMPS");
     assert!(distance < 1e-7, "{what}: backbone {distance:e} from LAMMPS");
-    assert_eq!(network.rattlers().collect::<BTreeSet<_>>(), inflated.rattlers(), "{what}: rattlers");
+    assert_eq!(network.rattlers().collect::<BTreeSet<_>>(), rattlers_of(inflated), "{what}: rattlers");
     // The energy is stationary: off by force × distance = 1e-7 · 1e-7 · 663 disks, far below its rounding.
     let energy = ["energy", "energy_md"].iter().find_map(|key| inflated.table.find(key)).expect("an energy");
     close(&format!("{what} energy"), network.energy(), energy, 1e-12);
@@ -379,7 +291,7 @@ fn the_minimum_lammps_found_among_four_thousand_hookean_disks_is_one_for_ours() 
     let fire = Fire { limit: ForceLimit::Relative(1e-12), ..Fire::default() };
     let start = inflated.packing(pushed, INFLATED_RADIUS);
     let end = fire.relax(start, &law, &mut ()).expect("no coincidence").converged().expect("at rest").into_inner();
-    relaxed_agrees(&inflated, name, &end, &law);
+    relaxed_agrees(&inflated, &inflated.name, &end, &law);
 }
 
 #[test]

@@ -3,7 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use jamscope::observe::angular::{
-    FrequencyLimit, Leakage, PowerSpectrum, RingSample, SpectralWindow, SpectrumSettings, Weights,
+    FrequencyLimit, Leakage, PowerSpectrum, RingSample, SpectralWindow, SpectrumSettings, Weights, dependence,
+    fourier_sums,
 };
 
 use crate::{direct, random_angles, ring};
@@ -101,4 +102,55 @@ fn bands_of_sources_stand_for_their_frequencies() {
     for (f, (banded, single)) in (1..).zip(banded.iter().zip(&single)) {
         assert!((banded / single - 1.0).abs() < 1e-3, "f = {f}: {banded} for {single}");
     }
+}
+
+/// D by real parts: the sums u + iv of fields that are added up with independent normal amplitudes,
+/// cov(P_f, P_f') = 8 Σ cov², over the four pairs of u, v with u', v'.
+fn dependence_by_real_parts(angles: &[f64], fields: &[Vec<f64>]) -> f64 {
+    let ring = ring(angles, |_| 0.0);
+    let weights = ring.weights(Weights::Gaps);
+    let sums: Vec<Vec<[f64; 2]>> = fields
+        .iter()
+        .map(|field| {
+            let mean: f64 = weights.iter().zip(field).map(|(w, x)| w * x).sum();
+            let strengths: Vec<f64> = weights.iter().zip(field).map(|(w, x)| w * (x - mean)).collect();
+            fourier_sums(ring.angles(), &strengths, LIMIT)[1..].iter().map(|sum| [sum.re, sum.im]).collect()
+        })
+        .collect();
+    let covariance =
+        |f: usize, a: usize, other: usize, b: usize| -> f64 { sums.iter().map(|sum| sum[f][a] * sum[other][b]).sum() };
+    let mean = |f: usize| 2.0 * (covariance(f, 0, f, 0) + covariance(f, 1, f, 1));
+    let mut total = 0.0;
+    for f in 0..LIMIT {
+        for other in 0..LIMIT {
+            let squares = (0..4).map(|pair| covariance(f, pair / 2, other, pair % 2).powi(2)).sum::<f64>();
+            total += 8.0 * squares / (mean(f) * mean(other));
+        }
+    }
+    total / LIMIT as f64
+}
+
+#[test]
+fn powers_depend_on_each_other_as_the_covariances_of_their_sums_say() {
+    let mut angles = random_angles(DISKS, 9);
+    angles.sort_by(f64::total_cmp);
+    let ring = ring(&angles, |_| 0.0);
+    // A cosine and a sine for every frequency; sums of 160 fields, then squares: 10⁻¹³.
+    let wave = |g: usize, phase: f64| -> Vec<f64> {
+        angles.iter().map(|angle| (g as f64).powf(-0.75) * (g as f64 * angle + phase).cos()).collect()
+    };
+    let fields: Vec<Vec<f64>> = (1..=80).flat_map(|g| [wave(g, 0.0), wave(g, FRAC_PI_2)]).collect();
+    let expected = dependence_by_real_parts(&angles, &fields);
+    let found = dependence(&ring, Weights::Gaps, LIMIT, |g| g.powf(-1.5), 80);
+    assert!((found / expected - 1.0).abs() < 1e-12, "{found} for {expected}");
+    assert!(found > 1.05, "angles anywhere: {found}");
+    // Beyond twice the disks a frequency counts as values of single disks.
+    let single = |disk: usize| (0..DISKS).map(|other| if other == disk { 1.0 } else { 0.0 }).collect();
+    let expected = dependence_by_real_parts(&angles, &(0..DISKS).map(single).collect::<Vec<_>>());
+    let found = dependence(&ring, Weights::Gaps, LIMIT, |g| if g > 80.0 { 1.0 } else { 0.0 }, 81);
+    assert!((found / expected - 1.0).abs() < 1e-12, "{found} for {expected}");
+    // Even angles and nothing that folds back: independent.
+    let even = crate::ring(&crate::even_angles(40), |_| 0.0);
+    let found = dependence(&even, Weights::Gaps, LIMIT, |g| g.powf(-1.5), 19);
+    assert!((found - 1.0).abs() < 1e-13, "{found}");
 }

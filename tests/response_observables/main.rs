@@ -7,6 +7,9 @@ mod excess;
 mod figures;
 mod invariance;
 mod isostatic;
+mod lammps;
+#[path = "../scenes/lammps_inflated.rs"]
+mod lammps_inflated;
 mod multipoles;
 mod penetration;
 

@@ -15,10 +15,12 @@
 //!
 //! A, of each ring its own, has its best value in closed form, P/E in the mean 1. Several rings, those of samples, are fitted
 //! together. The interval of a parameter holds where −2 ln L, all other parameters at their best, rises by no more than
-//! 4 (1 + 0.4/m), m the number of powers: two standard errors, with the correction of a small m (Bartlett's; 0.4 measured,
-//! `fits::power_law_interval_of_few_powers_holds_two_standard_errors`). The standard error is a fourth of the interval.
+//! 4 (1 + 0.4 D/m): two standard errors, with the correction of a small number of powers m (Bartlett's; 0.4 is that of independent
+//! exponential variates, by Lawley's expansion). m/D is how many independent powers would scatter as much: at few irregular angles
+//! what low frequencies leak is common to all ([`dependence`](crate::observe::angular::dependence)). The standard error is a fourth
+//! of the interval.
 //!
-//! Source: Whittle (1953), Ark. Mat. 2, 423; Sykulski et al. (2019), Biometrika 106, 251.
+//! Source: Whittle (1953), Ark. Mat. 2, 423; Sykulski et al. (2019), Biometrika 106, 251; Lawley (1956), Biometrika 43, 295.
 
 mod crossover;
 mod likelihood;

@@ -14,6 +14,7 @@
 mod block_errors;
 mod correlation;
 mod crossing;
+mod dependence;
 mod even_grid;
 mod fourier;
 mod pairs;
@@ -30,6 +31,7 @@ use thiserror::Error;
 pub use block_errors::{BlockErrors, block_errors};
 pub use correlation::{AngularCorrelation, CorrelationEstimator, CorrelationSettings};
 pub use crossing::{CrossingOutcome, ThresholdCrossing};
+pub use dependence::dependence;
 pub use fourier::{Route, fourier_sums, fourier_sums_by};
 pub use power_spectrum::{FrequencyLimit, Leakage, PowerSpectrum, SpectrumEstimator, SpectrumSettings};
 pub use radial_dependence::{RadialDependenceSettings, RingAnalysis, RingOutcome, radial_dependence};

@@ -7,6 +7,8 @@
 //! # Source
 //! Golub, Van Loan, Matrix Computations, §5.2 and §5.3.
 
+use crate::vector::larger;
+
 /// Smallest diagonal entry of R over the largest at which columns still count as independent \[1\]: beyond, half the digits
 /// of a coefficient are gone.
 const LEAST_DIAGONAL: f64 = 1e-8;
@@ -48,7 +50,9 @@ impl LeastSquares {
             }
         }
         let diagonal = || (0..column_count).map(|k| columns[k][k].abs());
-        let (least, most) = (diagonal().fold(f64::INFINITY, f64::min), diagonal().fold(0.0, f64::max));
+        // A diagonal entry that is no number makes both NaN, and nothing is above that.
+        let (least, most) =
+            (-diagonal().map(|entry| -entry).fold(f64::NEG_INFINITY, larger), diagonal().fold(0.0, larger));
         (least > LEAST_DIAGONAL * most).then_some(LeastSquares { columns, column_count })
     }
 

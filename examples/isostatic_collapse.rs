@@ -1,0 +1,168 @@
+//! Whether h_∥(r) of different pressures is one function of r ΔZ, with ℓ_iso ΔZ = C; and that h_r(r) is not.
+//!
+//! ```text
+//! cargo run --release --example isostatic_collapse -- [DISK_COUNT [SAMPLE_COUNT [INCREASE]]]      (5548 Hertzian disks, 10 samples, d_0 = 0.1)
+//! ```
+//!
+//! Packings at p = 100, 300, 1000 and 3000, everything relaxed by FIRE and Newton in turn. h of a pressure is the root of the mean of h²
+//! over samples: of bonds under the relaxed inflation, of bonds under the linear response to one, and of d_r. Printed for each: y/y_plateau
+//! at some x = r ΔZ, and C by the plateau rule: ℓ_iso is where y has risen to a share of its plateau, the median of y between two
+//! radii. Then how far the pressures lie apart: the standard deviation of ln y between them, rms over x = 3 to 6, y as it is (h over d_0)
+//! and y over h_0 near the centre.
+
+use std::error::Error;
+
+use jamscope::contact::{Hertzian, Prestress};
+use jamscope::displacement::DisplacementField;
+use jamscope::inflation::{Boundary, Inflation, inflate};
+use jamscope::linear::LinearResponse;
+use jamscope::observe::bond_changes::{BondChanges, BondSet};
+use jamscope::observe::fluctuations::{BondMeasure, FluctuationRing, Fluctuations};
+use jamscope::observe::isostatic::{
+    IsostaticLength, IsostaticOutcome, IsostaticRule, IsostaticSettings, Normalisation,
+};
+use jamscope::observe::{ExcessCoordination, State};
+use jamscope::packing::Mixture;
+use jamscope::preparation::{Preparation, Target, prepare};
+use jamscope::relax::Staged;
+use rayon::prelude::*;
+
+/// Pressures \[force / length\]: R is at least three times 75 p^(−1/3) at 5548 disks.
+const PRESSURES: [f64; 4] = [100.0, 300.0, 1000.0, 3000.0];
+
+/// What is measured, in this order.
+const KINDS: [&str; 3] = ["h_∥ relaxed", "h_∥ linear", "h_r relaxed"];
+
+/// Where curves are compared.
+const SCALED_RADII: [f64; 4] = [3.0, 4.0, 5.0, 6.0];
+
+/// The plateau: between these shares of R.
+const PLATEAU: [f64; 2] = [0.3, 0.6];
+
+/// Shares of the plateau that end the disordered region.
+const SHARES: [f64; 3] = [0.8, 0.9, 1.0];
+
+/// One sample: ΔZ, R, the three fluctuations.
+struct Sample {
+    excess: f64,
+    outer_radius: f64,
+    fluctuations: [Fluctuations; 3],
+}
+
+fn sample(disk_count: usize, pressure: f64, increase: f64, seed: u64) -> Result<Sample, Box<dyn Error>> {
+    let (law, staged) = (Hertzian::default(), Staged::default());
+    let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
+    let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed };
+    let packing = prepare::<2, _>(&preparation, &law, &staged, &mut ())?.packing.into_inner();
+    let boundary = Boundary::HeldRim { outer_radius_over_side: if disk_count < 10_000 { 0.480 } else { 0.486 } };
+    let inflation = Inflation { increase, boundary, ..Inflation::default() };
+    let inflated = inflate(&inflation, &packing, &law, &staged, seed, &mut ())?;
+    let before = State::new(inflated.before.packing.get(), &law)?;
+    let excess = ExcessCoordination::of(&before.network).ok_or("no backbone")?.value;
+    let response = LinearResponse::of_inflation(before.packing, inflated.centre, &law, Prestress::Included)?;
+    let relaxed = BondChanges::of_inflation(&inflated, &law, BondSet::Kept)?;
+    let linear = BondChanges::of_linear_response(&before, &response, increase);
+    let (outer_radius, width) = (inflated.outer_radius, IsostaticSettings::default().ring_width);
+    let of_bonds = |bonds| Fluctuations::of_bonds(bonds, BondMeasure::Parallel, outer_radius, width);
+    let radial = Fluctuations::of_radial(&DisplacementField::of_inflation(&inflated), width);
+    Ok(Sample { excess, outer_radius, fluctuations: [of_bonds(&relaxed), of_bonds(&linear), radial] })
+}
+
+/// Root of the mean square over samples, ring by ring; the error from the scatter of the squares.
+fn mean_fluctuation(samples: &[Sample], kind: usize) -> Fluctuations {
+    let ring_of = |ring: &FluctuationRing| ring.radius.floor() as usize;
+    let outermost = samples[0].outer_radius as usize;
+    let rings = (0..outermost).filter_map(|place| {
+        let here: Vec<FluctuationRing> = samples
+            .iter()
+            .filter_map(|sample| sample.fluctuations[kind].rings.iter().find(|ring| ring_of(ring) == place).copied())
+            .collect();
+        if here.len() < 2 {
+            return None;
+        }
+        let count = here.len() as f64;
+        let mean = here.iter().map(|ring| ring.fluctuation.powi(2)).sum::<f64>() / count;
+        let scatter = here.iter().map(|ring| (ring.fluctuation.powi(2) - mean).powi(2)).sum::<f64>() / (count - 1.0);
+        Some(FluctuationRing {
+            radius: here.iter().map(|ring| ring.radius).sum::<f64>() / count,
+            count: here.iter().map(|ring| ring.count).sum(),
+            mean: 0.0,
+            fluctuation: mean.sqrt(),
+            standard_error: 0.5 * (scatter / count / mean).sqrt(),
+        })
+    });
+    Fluctuations { rings: rings.collect() }
+}
+
+/// y at x, linear between rings.
+fn at(length: &IsostaticLength, x: f64) -> f64 {
+    let after = length.curve.iter().position(|point| point.scaled_radius >= x);
+    let Some(after) = after.filter(|&index| index > 0) else { return f64::NAN };
+    let (a, b) = (&length.curve[after - 1], &length.curve[after]);
+    let share = (x - a.scaled_radius) / (b.scaled_radius - a.scaled_radius);
+    a.scaled_fluctuation + share * (b.scaled_fluctuation - a.scaled_fluctuation)
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let number = |index: usize, default: f64| arguments.get(index).map_or(Ok(default), |text| text.parse::<f64>());
+    let (disk_count, sample_count, increase) = (number(0, 5548.0)? as usize, number(1, 10.0)? as u64, number(2, 0.1)?);
+    println!(
+        "{disk_count} disks, {sample_count} samples, d_0 = {increase}; y over its plateau at x = {SCALED_RADII:?}"
+    );
+    // y at the x above of every pressure: over d_0, and over h_0.
+    let mut curves: [[Vec<[f64; 4]>; 2]; 3] = Default::default();
+    for pressure in PRESSURES {
+        let samples: Vec<Sample> = (1..=sample_count)
+            .into_par_iter()
+            .map(|seed| sample(disk_count, pressure, increase, seed).map_err(|error| error.to_string()))
+            .collect::<Result<_, _>>()?;
+        let count = samples.len() as f64;
+        let excess = samples.iter().map(|sample| sample.excess).sum::<f64>() / count;
+        let outer_radius = samples.iter().map(|sample| sample.outer_radius).sum::<f64>() / count;
+        println!("p = {pressure}: ΔZ = {excess:.4}, R = {outer_radius:.1}");
+        for (kind, name) in KINDS.iter().enumerate() {
+            let fluctuations = mean_fluctuation(&samples, kind);
+            let length = |normalisation, share| {
+                let rule = IsostaticRule::Plateau { from: PLATEAU[0], to: PLATEAU[1], share };
+                let settings = IsostaticSettings { normalisation, rule, ..IsostaticSettings::default() };
+                IsostaticLength::of(&fluctuations, Some(excess), increase, outer_radius, &settings)
+            };
+            let plain = length(Normalisation::Increase, 1.0)?;
+            let near = length(Normalisation::NearCentre { radius: 1.5 }, 1.0)?;
+            for (which, found) in [&plain, &near].into_iter().enumerate() {
+                curves[kind][which].push(SCALED_RADII.map(|x| at(found, x)));
+            }
+            let plateau = plain.threshold.ok_or("no plateau")?;
+            print!("  {name:<12} plateau {plateau:.4} d_0 = {:.3} h_0;", near.threshold.unwrap_or(f64::NAN));
+            SCALED_RADII.iter().for_each(|&x| print!(" {:.2}", at(&plain, x) / plateau));
+            print!("; C at shares {SHARES:?}:");
+            for share in SHARES {
+                match length(Normalisation::Increase, share)?.outcome {
+                    IsostaticOutcome::Reached { product, .. } => print!(" {product:.2}"),
+                    other => print!(" {other:?}"),
+                }
+            }
+            println!();
+        }
+    }
+    for (name, [plain, near]) in KINDS.iter().zip(&curves) {
+        println!(
+            "{name:<12} pressures apart by {:.3} (over d_0), {:.3} (over h_0) in ln y",
+            spread(plain),
+            spread(near)
+        );
+    }
+    Ok(())
+}
+
+/// Standard deviation of ln y between pressures, rms over the radii.
+fn spread(curves: &[[f64; 4]]) -> f64 {
+    let count = curves.len() as f64;
+    let variances = (0..SCALED_RADII.len()).map(|place| {
+        let logarithms: Vec<f64> = curves.iter().map(|curve| curve[place].ln()).collect();
+        let mean = logarithms.iter().sum::<f64>() / count;
+        logarithms.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (count - 1.0)
+    });
+    (variances.sum::<f64>() / SCALED_RADII.len() as f64).sqrt()
+}
