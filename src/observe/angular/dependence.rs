@@ -42,13 +42,14 @@ pub fn dependence(
     let of = |sums: &[Complex64], h: i64| if h < 0 { sums[h.unsigned_abs() as usize] } else { sums[h as usize].conj() };
     let (w, w2) = (|h: i64| of(&sums, h), |h: i64| of(&square_sums, h));
     let single: f64 = (source_limit + 1..=highest).map(|g| spectrum(g as f64)).sum();
+    let strengths: Vec<f64> = (1..=source_limit).map(|g| (0.5 * spectrum(g as f64)).sqrt()).collect();
+    let sources = || (1..).zip(&strengths);
     // √(S/2) A and √(S/2) B of every f, one after the other.
     let rows: Vec<Vec<Complex64>> = (1..=frequency_limit as i64)
         .map(|f| {
-            let direct = |g: i64| w(g - f) - w(-f) * w(g);
-            let mirrored = |g: i64| w(-g - f) - w(-f) * w(-g);
-            let row = (1..=source_limit as i64).map(|g| (0.5 * spectrum(g as f64)).sqrt() * direct(g));
-            row.chain((1..=source_limit as i64).map(|g| (0.5 * spectrum(g as f64)).sqrt() * mirrored(g))).collect()
+            let direct = |(g, strength): (i64, &f64)| strength * (w(g - f) - w(-f) * w(g));
+            let mirrored = |(g, strength): (i64, &f64)| strength * (w(-g - f) - w(-f) * w(-g));
+            sources().map(direct).chain(sources().map(mirrored)).collect()
         })
         .collect();
     let pair = |f: usize, other: usize| {
