@@ -38,7 +38,7 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, ReportError
     Ok(files.written)
 }
 
-/// Writes analyses into `folder` as [`write`] does a report: `analysis.json`, the tables of each, and with the feature `plot`
+/// Writes analyses into `folder` as [`write()`] does a report: `analysis.json`, the tables of each, and with the feature `plot`
 /// one page.
 ///
 /// # Errors

@@ -135,37 +135,34 @@ fn a_real_inflation_adds_up_state_by_state() {
     assert!((change.scaled.expect("jammed") / scaled - 1.0).abs() < 1e-15);
 }
 
-/// Of some packings of 1000 disks at a pressure: in how many all changed contacts return on deflation, and how many contacts in a thousand
-/// are left changed.
+/// Of packings of 1000 disks at a pressure: how many contacts in a thousand are left changed after inflation and deflation.
 #[cfg(feature = "linear")]
-fn returned(pressure: f64, packing_count: u64) -> (usize, f64) {
+fn left_changed(pressure: f64, seeds: std::ops::Range<u64>) -> f64 {
     let (law, staged) = (Hertzian::default(), jamscope::relax::Staged::default());
     let inflation = Inflation { deflate: true, ..Inflation::default() };
-    let (mut whole, mut left, mut all) = (0, 0, 0);
-    for seed in 1..=packing_count {
+    let (mut left, mut all) = (0, 0);
+    for seed in seeds {
         let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
         let preparation = Preparation { disk_count: 1000, mixture, target, tolerance: 0.01, seed };
         let packing = prepare::<2, _>(&preparation, &law, &staged, &mut ()).expect("a packing").packing;
         let inflated = inflate(&inflation, packing.get(), &law, &staged, seed, &mut ()).expect("an inflation");
         let cycle = ContactCycle::of(&inflated, &law).expect("sound disks").expect("deflated");
         let changed = cycle.inflation.made.len() + cycle.inflation.broken.len();
-        let remaining = changed - cycle.made_returned_count - cycle.broken_returned_count;
-        whole += usize::from(remaining == 0);
-        left += remaining;
+        left += changed - cycle.made_returned_count - cycle.broken_returned_count;
         all += cycle.inflation.kept_count + cycle.inflation.broken.len();
     }
-    (whole, 1e3 * left as f64 / all as f64)
+    1e3 * left as f64 / all as f64
 }
 
 /// The smallest form of what `examples/angular_study` measures in ensembles (chapter "Contact changes"): p̂ = 2·10⁵ and 3·10⁸, 16 packings
-/// each. When this was written all contacts returned in 6 and 15 of them, and 5.8 and 0.5 in a thousand were left: by chance
-/// counts so far apart are 1 in 500 (Fisher's exact test).
+/// each. That at least twice as many contacts are left changed below was asked before these seeds were looked at; the share that
+/// returns, of those that change, does not tell the two apart at this size.
 #[cfg(feature = "linear")]
 #[test]
-fn deflation_returns_more_contacts_far_above_the_transition_than_below() {
-    let (below, above) = (returned(10.27, 16), returned(15_405.0, 16));
-    println!("all return, left in a thousand: {below:?} below, {above:?} above");
-    assert!(above.0 >= below.0 + 6 && below.1 > 5.0 * above.1, "{below:?}, {above:?}");
+fn fewer_contacts_are_left_changed_far_above_the_transition_than_below() {
+    let (below, above) = (left_changed(10.27, 2001..2017), left_changed(15_405.0, 2001..2017));
+    println!("left changed in a thousand: {below} below, {above} above");
+    assert!(below > 2.0 * above, "{below} below, {above} above");
 }
 
 #[test]

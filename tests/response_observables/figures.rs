@@ -92,12 +92,12 @@ fn charts_of_modes_and_fluctuations_are_well_formed() {
     let field = field(&places, |r, angle| [0.1 / r + 0.02 * angle.cos(), 0.01 * (2.0 * angle).sin()]);
     let multipoles = Multipoles::of(&field, &MultipoleSettings::default()).expect("sound settings");
     for component in [Component::Radial, Component::Transverse] {
-        let svg = multipole_figure("modes", &multipoles, component, 3).expect("finite").to_svg();
+        let svg = multipole_figure("modes", &multipoles, component, 3, None).expect("finite").to_svg();
         well_formed(&svg);
         assert!(svg.contains("n = 3"));
     }
     let none = Multipoles { rings: Vec::new() };
-    assert!(multipole_figure("modes", &none, Component::Radial, 3).is_err());
+    assert!(multipole_figure("modes", &none, Component::Radial, 3, None).is_err());
 
     let ring = |k: u32| FluctuationRing {
         radius: f64::from(k),
