@@ -9,7 +9,7 @@ use crate::contact::forces::Totals;
 use crate::packing::{Packing, PackingError};
 use crate::relax::implicit::Finish;
 use crate::relax::implicit::motion::{ImplicitMotion, Inertia, Stepped};
-use crate::relax::implicit::pace::Pace;
+use crate::relax::implicit::pace::{Kind, Pace, SHARE};
 use crate::relax::implicit::restless::Restless;
 use crate::relax::monitor::Monitor;
 use crate::relax::newton::{Descent, End, Patience, WATCH};
@@ -24,6 +24,8 @@ pub(super) struct Integration {
     pub(super) finish: Finish,
     pub(super) step_limit: usize,
 }
+
+const TRIED: f64 = 2.0;
 
 /// Largest ratio of a step to the one before; 1 after a rejected one, since the contact that made it fail is mostly still near.
 const LARGEST_GROWTH: f64 = 2.0;
@@ -132,25 +134,88 @@ impl Integration {
             }
             // Explicit steps follow contacts that come and go; where there is no backbone, nothing bounds them.
             let pressed = monitor.backbone()[..motion.assembly.mobile_count()].iter().any(|&member| member);
-            if pressed && pace.is_explicit(time_step) {
-                if cost.step_count >= self.step_limit {
-                    return Ok(Stop::StepLimit);
+            let kind = if pressed { pace.kind(time_step) } else { Kind::Implicit };
+            match kind {
+                Kind::Implicit => {
+                    match self.advance(motion, monitor, cost, &mut time_step, (overlap, pressed.then_some(&pace)))? {
+                        Ok(Some(reached)) => totals = reached,
+                        // Back at the start of the step.
+                        Ok(None) => {}
+                        Err(stop) => return Ok(stop),
+                    }
                 }
-                cost.step_count += 1;
-                totals = pace.stretch(motion, &mut time_step, cost)?;
-                continue;
-            }
-            let shortest = if pressed { pace.shortest() } else { 0.0 };
-            match self.advance(motion, monitor, cost, &mut time_step, (overlap, shortest))? {
-                Ok(Some(reached)) => {
+                _ if cost.step_count >= self.step_limit => return Ok(Stop::StepLimit),
+                Kind::Explicit => {
+                    cost.step_count += 1;
+                    let count = 2 * pace.worth;
+                    let (reached, explicit_step) =
+                        motion.go_explicitly(count, SHARE, TRIED * pace.worth as f64 * pace.explicit_step)?;
                     totals = reached;
-                    pace.stepped();
+                    cost.explicit_count += count;
+                    pace.set_explicit_step(explicit_step);
+                    time_step = TRIED * pace.worth as f64 * pace.explicit_step;
                 }
-                // Back at the start of the step.
-                Ok(None) => {}
-                Err(stop) => return Ok(stop),
+                Kind::Stabilised(_) => {
+                    cost.step_count += 1;
+                    totals = self.stretch(motion, monitor, cost, &mut time_step, (overlap, &mut pace))?.unwrap_or(totals);
+                }
             }
         }
+    }
+
+    /// A stretch of stabilised steps, of about the work of an implicit one.
+    fn stretch<const D: usize, L: PairLaw, C: DampingLaw>(
+        &self,
+        motion: &mut ImplicitMotion<D, L, C>,
+        monitor: &Monitor,
+        cost: &mut Cost,
+        time_step: &mut f64,
+        (overlap, pace): (f64, &mut Pace),
+    ) -> Result<Option<Totals<D>>, PackingError> {
+        motion.margin = overlap;
+        pace.look(motion);
+        let before = motion.work.evaluation_count;
+        let mut totals = None;
+        while motion.work.evaluation_count - before < pace.worth {
+            let Kind::Stabilised(stage_count) = pace.kind(*time_step) else { break };
+            let step = pace.stiffness.map_or(*time_step, |stiffness| time_step.min(stiffness.longest_step()));
+            let mut growth = SMALLEST_GROWTH;
+            if let Stepped::Moved(reached) = motion.stabilised_step(step, stage_count)? {
+                let of_disk = |disk: usize| {
+                    motion.stabilised_error(step, disk)
+                        * if monitor.backbone()[disk] { 1.0 } else { 1.0 / OFF_BACKBONE }
+                };
+                let (mut error, mut worst) = (0.0, 0);
+                for disk in 0..motion.assembly.mobile_count() {
+                    let e = of_disk(disk);
+                    if !(e <= error) {
+                        error = e;
+                        worst = disk;
+                    }
+                }
+                let error = error / (self.tolerance * overlap);
+                if std::env::var("RKC").is_ok() {
+                    eprintln!(
+                        "t {:.5e} h {step:.3e} s {stage_count} err {error:.3e} worst {worst} {} {:?}",
+                        motion.time, monitor.backbone()[worst], pace.stiffness
+                    );
+                }
+                growth = (SAFETY / error).cbrt().clamp(SMALLEST_GROWTH, LARGEST_GROWTH);
+                if growth.is_nan() {
+                    growth = SMALLEST_GROWTH;
+                }
+                if error <= 1.0 {
+                    *time_step = step * growth;
+                    totals = Some(reached);
+                    continue;
+                }
+            }
+            cost.rejected_count += 1;
+            motion.take_back()?;
+            *time_step = step * growth;
+        }
+        cost.explicit_count += motion.work.evaluation_count - before;
+        Ok(totals)
     }
 
     /// One step, repeated with shorter ones until its error is small enough; `time_step` is that of the next afterwards. None
@@ -161,7 +226,7 @@ impl Integration {
         monitor: &Monitor,
         cost: &mut Cost,
         time_step: &mut f64,
-        (overlap, shortest): (f64, f64),
+        (overlap, pace): (f64, Option<&Pace>),
     ) -> Result<Result<Option<Totals<D>>, Stop>, PackingError> {
         motion.prestressed.copy_from_slice(monitor.backbone());
         motion.margin = overlap;
@@ -191,7 +256,7 @@ impl Integration {
             rejected = true;
             motion.take_back()?;
             *time_step *= growth;
-            if *time_step < shortest {
+            if pace.is_some_and(|pace| pace.kind(*time_step) != Kind::Implicit) {
                 return Ok(Ok(None));
             }
         }

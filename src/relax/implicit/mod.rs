@@ -10,6 +10,7 @@
 //! jumps, the stages disagree, and the step is repeated with a shorter one. Near the minimum the steps grow without bound
 //! and become Newton's. See [`ImplicitMotion`] for the step, [`tableau`] for the method.
 
+mod chebyshev;
 mod integration;
 mod matrix;
 mod motion;

@@ -12,6 +12,7 @@
 
 mod explicit;
 mod rosenbrock;
+mod stabilised;
 
 use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
@@ -24,6 +25,7 @@ use crate::relax::implicit::tableau::{ROS34PW2, STAGE_COUNT};
 use crate::vector::Vector;
 
 use rosenbrock::Stage;
+use stabilised::Chain;
 
 /// What resists motion beside the contacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,6 +102,7 @@ pub struct ImplicitMotion<const D: usize, L, C> {
     moved: Vec<Vector<D>>,
     taken_back: bool,
     stages: [Stage<D>; STAGE_COUNT],
+    chain: Chain<D>,
     before: Before<D>,
     /// Velocities of all disks, and all forces with damping.
     all_velocities: Vec<Vector<D>>,
@@ -147,6 +150,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             moved: vec![[f64::INFINITY; D]; mobile],
             taken_back: false,
             stages: std::array::from_fn(|_| Stage { way: zero.clone(), kick: zero.clone(), work: 0.0 }),
+            chain: Chain::default(),
             before: Before::default(),
             all_velocities: vec![[0.0; D]; assembly.len()],
             all_forces: Vec::new(),
