@@ -157,7 +157,7 @@ impl Integration {
                 }
                 Kind::Stabilised(_) => {
                     cost.step_count += 1;
-                    totals = self.stretch(motion, monitor, cost, &mut time_step, (overlap, &mut pace))?.unwrap_or(totals);
+                    totals = self.stretch(motion, monitor, cost, &mut time_step, (overlap, &mut pace))?;
                 }
             }
         }
@@ -171,16 +171,15 @@ impl Integration {
         cost: &mut Cost,
         time_step: &mut f64,
         (overlap, pace): (f64, &mut Pace),
-    ) -> Result<Option<Totals<D>>, PackingError> {
+    ) -> Result<Totals<D>, PackingError> {
         motion.margin = overlap;
         pace.look(motion);
         let before = motion.work.evaluation_count;
-        let mut totals = None;
         while motion.work.evaluation_count - before < pace.worth {
             let Kind::Stabilised(stage_count) = pace.kind(*time_step) else { break };
             let step = pace.stiffness.map_or(*time_step, |stiffness| time_step.min(stiffness.longest_step()));
             let mut growth = SMALLEST_GROWTH;
-            if let Stepped::Moved(reached) = motion.stabilised_step(step, stage_count)? {
+            if motion.stabilised_step(step, stage_count)? {
                 let of_disk = |disk: usize| {
                     motion.stabilised_error(step, disk)
                         * if monitor.backbone()[disk] { 1.0 } else { 1.0 / OFF_BACKBONE }
@@ -206,7 +205,6 @@ impl Integration {
                 }
                 if error <= 1.0 {
                     *time_step = step * growth;
-                    totals = Some(reached);
                     continue;
                 }
             }
@@ -215,7 +213,7 @@ impl Integration {
             *time_step = step * growth;
         }
         cost.explicit_count += motion.work.evaluation_count - before;
-        Ok(totals)
+        Ok(motion.evaluate())
     }
 
     /// One step, repeated with shorter ones until its error is small enough; `time_step` is that of the next afterwards. None

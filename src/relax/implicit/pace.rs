@@ -34,14 +34,13 @@ pub(super) struct Pace {
 impl Pace {
     pub(super) fn new<const D: usize, L: PairLaw, C: DampingLaw>(motion: &mut ImplicitMotion<D, L, C>) -> Self {
         let worth = (WORTH * (motion.assembly.mobile_count() as f64).powf(0.25)) as usize;
-        let mut pace = Pace { worth, explicit_step: 0.0, stiffness: None };
-        pace.look(motion);
+        let mut pace = Pace { worth, explicit_step: 0.0, stiffness: motion.stiffness() };
+        pace.set_explicit_step(if motion.has_masses() { SHARE * motion.stable_step() } else { 0.0 });
         pace
     }
 
     /// Bounds for the present contacts.
     pub(super) fn look<const D: usize, L: PairLaw, C: DampingLaw>(&mut self, motion: &mut ImplicitMotion<D, L, C>) {
-        self.set_explicit_step(if motion.has_masses() { SHARE * motion.stable_step() } else { 0.0 });
         self.stiffness = motion.stiffness();
     }
 

@@ -2,10 +2,11 @@
 
 use crate::contact::PairLaw;
 use crate::contact::damping::DampingLaw;
-use crate::contact::forces::{add_damping, geometry};
+use crate::contact::damped_forces::damped_forces;
+use crate::contact::forces::geometry;
 use crate::packing::PackingError;
-use crate::relax::implicit::chebyshev::{Chebyshev, Stiffness};
-use crate::relax::implicit::motion::{ImplicitMotion, Inertia, Stepped};
+use crate::relax::implicit::chebyshev::{Chebyshev, StageTerms, Stiffness};
+use crate::relax::implicit::motion::{ImplicitMotion, Inertia};
 use crate::relax::implicit::tableau::ROS34PW2;
 use crate::vector::{Vector, difference, dot, larger, scaled, sum};
 
@@ -21,6 +22,72 @@ pub(super) struct Chain<const D: usize> {
     earlier_velocity: Vec<Vector<D>>,
     /// Sums of c n n over the contacts of a disk.
     blocks: Vec<[Vector<D>; D]>,
+}
+
+/// Lanes of a maximum.
+const LANES: usize = 8;
+
+impl<const D: usize> Chain<D> {
+    /// Everything where a step starts.
+    fn begin(&mut self, velocities: &[Vector<D>], disk_count: usize) {
+        for way in [&mut self.way, &mut self.earlier_way] {
+            way.clear();
+            way.resize(velocities.len(), [0.0; D]);
+        }
+        for velocity in [&mut self.velocity, &mut self.earlier_velocity] {
+            velocity.clear();
+            velocity.extend_from_slice(velocities);
+            velocity.resize(disk_count, [0.0; D]);
+        }
+    }
+
+    /// One stage; the longest way since the last one and since the start of the step, of a coordinate.
+    fn go(
+        &mut self,
+        terms: &StageTerms,
+        [slope, start_slope]: [f64; 2],
+        (start_velocities, start_forces): (&[f64], &[f64]),
+        forces: &[f64],
+        displacements: &mut [f64],
+    ) -> (f64, f64) {
+        let count = displacements.len();
+        let (way, velocity) = (&self.way.as_flattened()[..count], &self.velocity.as_flattened()[..count]);
+        let next_way = &mut self.earlier_way.as_flattened_mut()[..count];
+        let next_velocity = &mut self.earlier_velocity.as_flattened_mut()[..count];
+        let (start_velocities, start_forces) = (&start_velocities[..count], &start_forces[..count]);
+        let forces = &forces[..count];
+        let (mut change, mut farthest) = ([0.0f64; LANES], [0.0f64; LANES]);
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                for k in 0..count {
+                    let way = terms.last * way[k]
+                        + terms.earlier * next_way[k]
+                        + slope * velocity[k]
+                        + start_slope * start_velocities[k];
+                    next_velocity[k] = terms.start * start_velocities[k]
+                        + terms.last * velocity[k]
+                        + terms.earlier * next_velocity[k]
+                        + slope * forces[k]
+                        + start_slope * start_forces[k];
+                    next_way[k] = way;
+                }
+                for ((next, last), u) in
+                    next_way.chunks(LANES).zip(way.chunks(LANES)).zip(displacements.chunks_mut(LANES))
+                {
+                    for (k, ((&next, &last), u)) in next.iter().zip(last).zip(u).enumerate() {
+                        let moved = next - last;
+                        *u += moved;
+                        change[k] = if moved.abs() > change[k] { moved.abs() } else { change[k] };
+                        farthest[k] = if next.abs() > farthest[k] { next.abs() } else { farthest[k] };
+                    }
+                }
+            },
+        );
+        std::mem::swap(&mut self.way, &mut self.earlier_way);
+        std::mem::swap(&mut self.velocity, &mut self.earlier_velocity);
+        (change.into_iter().fold(0.0, larger), farthest.into_iter().fold(0.0, larger))
+    }
 }
 
 impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
@@ -68,11 +135,15 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         (ratio.is_finite() && decay.is_finite()).then_some(Stiffness { decay, ratio })
     }
 
-    /// One explicit step of length h \[time\] in this many stages; [`ImplicitMotion::take_back`] undoes it.
+    /// One explicit step of length h \[time\] in this many stages; [`ImplicitMotion::take_back`] undoes it. False if a disk
+    /// would go farther than the smallest radius: to be taken back.
+    ///
+    /// Net forces are those at the end afterwards, elastic ones in [`ImplicitMotion::assembly`] are not:
+    /// [`ImplicitMotion::evaluate`] makes them. Not for gradient flow, nor for laws with sites.
     ///
     /// # Errors
     /// Two disks with the same centre.
-    pub fn stabilised_step(&mut self, time_step: f64, stage_count: usize) -> Result<Stepped<D>, PackingError> {
+    pub fn stabilised_step(&mut self, time_step: f64, stage_count: usize) -> Result<bool, PackingError> {
         let mut chain = std::mem::take(&mut self.chain);
         self.taken_back = false;
         self.remember();
@@ -80,10 +151,10 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             Some(method) if method.stages.len() == stage_count.max(2) => method,
             _ => Chebyshev::new(stage_count),
         };
-        let stepped = self.chain_of_stages(time_step, &method, &mut chain);
+        let moved = self.chain_of_stages(time_step, &method, &mut chain);
         chain.method = Some(method);
         self.chain = chain;
-        stepped
+        moved
     }
 
     fn chain_of_stages(
@@ -91,81 +162,47 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         time_step: f64,
         method: &Chebyshev,
         chain: &mut Chain<D>,
-    ) -> Result<Stepped<D>, PackingError> {
-        let (mobile, count) = (self.assembly.mobile_count(), self.assembly.len());
-        for way in [&mut chain.way, &mut chain.earlier_way] {
-            way.clear();
-            way.resize(mobile, [0.0; D]);
-        }
-        for velocity in [&mut chain.velocity, &mut chain.earlier_velocity] {
-            velocity.clear();
-            velocity.extend_from_slice(&self.velocities);
-            velocity.resize(count, [0.0; D]);
-        }
-        let start_dissipation = self.before.dissipation;
-        let (mut work, mut earlier_work, mut dissipation) = (0.0, 0.0, start_dissipation);
-        for (index, terms) in method.stages.iter().enumerate() {
-            let [slope, start_slope] = [terms.slope, terms.start_slope].map(|factor| time_step * factor);
-            let (start_velocities, start_forces) = (&self.velocities, &self.before.net_forces);
-            let forces = if index == 0 { start_forces } else { &self.assembly.forces };
-            let (mut longest, mut farthest) = (0.0f64, 0.0f64);
-            for disk in 0..mobile {
-                let (v, a) = (start_velocities[disk], start_forces[disk]);
-                let (last_way, last_velocity) = (chain.way[disk], chain.velocity[disk]);
-                let (earlier_way, earlier_velocity) = (chain.earlier_way[disk], chain.earlier_velocity[disk]);
-                let mut way = [0.0; D];
-                let mut velocity = [0.0; D];
-                for d in 0..D {
-                    way[d] = terms.last * last_way[d]
-                        + terms.earlier * earlier_way[d]
-                        + slope * last_velocity[d]
-                        + start_slope * v[d];
-                    velocity[d] = terms.start * v[d]
-                        + terms.last * last_velocity[d]
-                        + terms.earlier * earlier_velocity[d]
-                        + slope * forces[disk][d]
-                        + start_slope * a[d];
-                }
-                let change = difference(way, last_way);
-                longest = larger(dot(change, change), longest);
-                farthest = larger(dot(way, way), farthest);
-                self.assembly.displacements[disk] = sum(self.assembly.displacements[disk], change);
-                chain.earlier_way[disk] = way;
-                chain.earlier_velocity[disk] = velocity;
-            }
-            std::mem::swap(&mut chain.way, &mut chain.earlier_way);
-            std::mem::swap(&mut chain.velocity, &mut chain.earlier_velocity);
+    ) -> Result<bool, PackingError> {
+        let mobile = self.assembly.mobile_count();
+        chain.begin(&self.velocities, self.assembly.len());
+        let start_dissipation = self.dissipation;
+        let (mut work, mut earlier_work) = (0.0, 0.0);
+        self.all_forces[..mobile].copy_from_slice(&self.before.net_forces);
+        for terms in &method.stages {
+            let slopes = [terms.slope, terms.start_slope].map(|factor| time_step * factor);
+            let start = (self.velocities.as_flattened(), self.before.net_forces.as_flattened());
+            let forces = self.all_forces.as_flattened();
+            let displacements = self.assembly.displacements[..mobile].as_flattened_mut();
+            let (change, farthest) = chain.go(terms, slopes, start, forces, displacements);
             let next_work = terms.last * work
                 + terms.earlier * earlier_work
-                + slope * dissipation
-                + start_slope * start_dissipation;
+                + slopes[0] * self.dissipation
+                + slopes[1] * start_dissipation;
             (earlier_work, work) = (work, next_work);
-            if farthest.is_nan() || farthest.sqrt() > self.smallest_radius {
-                return Ok(Stepped::TooFar);
+            // Of each coordinate.
+            let longest = (D as f64).sqrt();
+            if farthest * longest > self.smallest_radius {
+                return Ok(false);
             }
-            if self.assembly.keep_listed(longest.sqrt())? {
+            if self.assembly.keep_listed(change * longest)? {
                 self.set_damping_coefficients();
             }
-            if index + 1 < method.stages.len() {
-                self.work.evaluation_count += 1;
-                self.assembly.evaluate();
-                let mut forces = std::mem::take(&mut self.assembly.forces);
-                dissipation = add_damping(
-                    &self.damping,
-                    self.assembly.pairs(),
-                    &self.damping_coefficient,
-                    &self.assembly.displacements,
-                    &chain.velocity,
-                    &mut forces,
-                );
-                self.assembly.forces = forces;
-            }
+            self.work.evaluation_count += 1;
+            self.dissipation = damped_forces(
+                (self.assembly.law(), &self.damping),
+                self.assembly.pairs(),
+                &self.damping_coefficient,
+                &self.assembly.displacements,
+                &chain.velocity,
+                &mut self.all_forces,
+            );
         }
+        self.net_forces.copy_from_slice(&self.all_forces[..mobile]);
         self.velocities.copy_from_slice(&chain.velocity[..mobile]);
         self.moved.copy_from_slice(&chain.way);
         self.dissipated += work;
         self.time += time_step;
-        Ok(Stepped::Moved(self.evaluate()))
+        Ok(true)
     }
 
     /// Estimated error of the last stabilised step for each mobile disk, in the measure of [`ImplicitMotion::error`]
