@@ -9,8 +9,9 @@ use crate::contact::forces::Totals;
 use crate::packing::{Packing, PackingError};
 use crate::relax::implicit::Finish;
 use crate::relax::implicit::motion::{ImplicitMotion, Inertia, Stepped};
-use crate::relax::implicit::pace::{Kind, Pace, SHARE};
+use crate::relax::implicit::pace::{Kind, Pace};
 use crate::relax::implicit::restless::Restless;
+use crate::relax::implicit::stretch;
 use crate::relax::monitor::Monitor;
 use crate::relax::newton::{Descent, End, Patience, WATCH};
 use crate::relax::{Cost, ForceLimit, Look, NetForce, Outcome, Stop, Trace};
@@ -25,13 +26,11 @@ pub(super) struct Integration {
     pub(super) step_limit: usize,
 }
 
-const TRIED: f64 = 2.0;
-
 /// Largest ratio of a step to the one before; 1 after a rejected one, since the contact that made it fail is mostly still near.
 const LARGEST_GROWTH: f64 = 2.0;
 
 /// Smallest one.
-const SMALLEST_GROWTH: f64 = 0.1;
+pub(super) const SMALLEST_GROWTH: f64 = 0.1;
 
 /// Ratio after a step whose matrix was not positive definite.
 const INDEFINITE_GROWTH: f64 = 0.5;
@@ -135,99 +134,44 @@ impl Integration {
             // Explicit steps follow contacts that come and go; where there is no backbone, nothing bounds them.
             let pressed = monitor.backbone()[..motion.assembly.mobile_count()].iter().any(|&member| member);
             let kind = if pressed { pace.kind(time_step) } else { Kind::Implicit };
+            if kind != Kind::Implicit {
+                if cost.step_count >= self.step_limit {
+                    return Ok(Stop::StepLimit);
+                }
+                cost.step_count += 1;
+            }
+            let allowed = Allowed { overlap, tolerance: self.tolerance, backbone: monitor.backbone() };
             match kind {
+                Kind::Explicit => totals = stretch::explicit(motion, &mut pace, &mut time_step, cost)?,
+                Kind::Stabilised { .. } => {
+                    totals = stretch::stabilised(motion, &mut pace, &mut time_step, cost, &allowed)?;
+                }
                 Kind::Implicit => {
-                    match self.advance(motion, monitor, cost, &mut time_step, (overlap, pressed.then_some(&pace)))? {
-                        Ok(Some(reached)) => totals = reached,
+                    match self.advance(motion, cost, &mut time_step, (&allowed, pressed.then_some(&pace)))? {
+                        Ok(Some(reached)) => {
+                            totals = reached;
+                            pace.stepped();
+                        }
                         // Back at the start of the step.
                         Ok(None) => {}
                         Err(stop) => return Ok(stop),
                     }
                 }
-                _ if cost.step_count >= self.step_limit => return Ok(Stop::StepLimit),
-                Kind::Explicit => {
-                    cost.step_count += 1;
-                    let count = 2 * pace.worth;
-                    let (reached, explicit_step) =
-                        motion.go_explicitly(count, SHARE, TRIED * pace.worth as f64 * pace.explicit_step)?;
-                    totals = reached;
-                    cost.explicit_count += count;
-                    pace.set_explicit_step(explicit_step);
-                    time_step = TRIED * pace.worth as f64 * pace.explicit_step;
-                }
-                Kind::Stabilised(_) => {
-                    cost.step_count += 1;
-                    totals = self.stretch(motion, monitor, cost, &mut time_step, (overlap, &mut pace))?;
-                }
             }
         }
     }
 
-    /// A stretch of stabilised steps, of about the work of an implicit one.
-    fn stretch<const D: usize, L: PairLaw, C: DampingLaw>(
-        &self,
-        motion: &mut ImplicitMotion<D, L, C>,
-        monitor: &Monitor,
-        cost: &mut Cost,
-        time_step: &mut f64,
-        (overlap, pace): (f64, &mut Pace),
-    ) -> Result<Totals<D>, PackingError> {
-        motion.margin = overlap;
-        pace.look(motion);
-        let before = motion.work.evaluation_count;
-        while motion.work.evaluation_count - before < pace.worth {
-            let Kind::Stabilised(stage_count) = pace.kind(*time_step) else { break };
-            let step = pace.stiffness.map_or(*time_step, |stiffness| time_step.min(stiffness.longest_step()));
-            let mut growth = SMALLEST_GROWTH;
-            if motion.stabilised_step(step, stage_count)? {
-                let of_disk = |disk: usize| {
-                    motion.stabilised_error(step, disk)
-                        * if monitor.backbone()[disk] { 1.0 } else { 1.0 / OFF_BACKBONE }
-                };
-                let (mut error, mut worst) = (0.0, 0);
-                for disk in 0..motion.assembly.mobile_count() {
-                    let e = of_disk(disk);
-                    if !(e <= error) {
-                        error = e;
-                        worst = disk;
-                    }
-                }
-                let error = error / (self.tolerance * overlap);
-                if std::env::var("RKC").is_ok() {
-                    eprintln!(
-                        "t {:.5e} h {step:.3e} s {stage_count} err {error:.3e} worst {worst} {} {:?}",
-                        motion.time, monitor.backbone()[worst], pace.stiffness
-                    );
-                }
-                growth = (SAFETY / error).cbrt().clamp(SMALLEST_GROWTH, LARGEST_GROWTH);
-                if growth.is_nan() {
-                    growth = SMALLEST_GROWTH;
-                }
-                if error <= 1.0 {
-                    *time_step = step * growth;
-                    continue;
-                }
-            }
-            cost.rejected_count += 1;
-            motion.take_back()?;
-            *time_step = step * growth;
-        }
-        cost.explicit_count += motion.work.evaluation_count - before;
-        Ok(motion.evaluate())
-    }
-
-    /// One step, repeated with shorter ones until its error is small enough; `time_step` is that of the next afterwards. None
-    /// if it would have to be shorter than `shortest`.
+    /// One implicit step, repeated with shorter ones until its error is small enough; `time_step` is that of the next
+    /// afterwards. None if it would have to be so short that other steps pay.
     fn advance<const D: usize, L: PairLaw, C: DampingLaw>(
         &self,
         motion: &mut ImplicitMotion<D, L, C>,
-        monitor: &Monitor,
         cost: &mut Cost,
         time_step: &mut f64,
-        (overlap, pace): (f64, Option<&Pace>),
+        (allowed, pace): (&Allowed<'_>, Option<&Pace>),
     ) -> Result<Result<Option<Totals<D>>, Stop>, PackingError> {
-        motion.prestressed.copy_from_slice(monitor.backbone());
-        motion.margin = overlap;
+        motion.prestressed.copy_from_slice(allowed.backbone);
+        motion.margin = allowed.overlap;
         *time_step = time_step.min(motion.longest_step(LONGEST_STEP));
         let mut rejected = false;
         loop {
@@ -240,14 +184,13 @@ impl Integration {
                 Stepped::Indefinite => INDEFINITE_GROWTH,
                 Stepped::TooFar => SMALLEST_GROWTH,
                 Stepped::Moved(reached) => {
-                    let error = self.error(motion, monitor.backbone(), *time_step) / (self.tolerance * overlap);
-                    // The embedded solution is of second order: its error in a step grows as the third power of h.
-                    let growth = (SAFETY / error).cbrt().clamp(SMALLEST_GROWTH, LARGEST_GROWTH);
+                    let error = allowed.share(motion, |motion, disk| motion.error(*time_step, disk));
+                    let growth = allowed.growth(error);
                     if error <= 1.0 {
                         *time_step *= if rejected { growth.min(1.0) } else { growth };
                         return Ok(Ok(Some(reached)));
                     }
-                    if growth.is_nan() { SMALLEST_GROWTH } else { growth }
+                    growth
                 }
             };
             cost.rejected_count += 1;
@@ -260,18 +203,6 @@ impl Integration {
         }
     }
 
-    /// Largest error of a disk in the last step \[length\]; NaN if one is.
-    fn error<const D: usize, L: PairLaw, C: DampingLaw>(
-        &self,
-        motion: &ImplicitMotion<D, L, C>,
-        backbone: &[bool],
-        time_step: f64,
-    ) -> f64 {
-        let of_disk =
-            |disk: usize| motion.error(time_step, disk) * if backbone[disk] { 1.0 } else { 1.0 / OFF_BACKBONE };
-        (0..motion.assembly.mobile_count()).map(of_disk).fold(0.0, |most, error| larger(error, most))
-    }
-
     /// The net forces the limit is on.
     fn judged<'a, const D: usize, L: PairLaw, C: DampingLaw>(
         &self,
@@ -281,6 +212,36 @@ impl Integration {
             NetForce::Elastic => &motion.assembly.forces[..motion.assembly.mobile_count()],
             NetForce::Total => motion.net_forces(),
         }
+    }
+}
+
+/// What error a step may have.
+pub(super) struct Allowed<'a> {
+    /// Mean overlap \[length\].
+    pub(super) overlap: f64,
+    /// Error allowed over that.
+    pub(super) tolerance: f64,
+    /// See [`Monitor::backbone`].
+    pub(super) backbone: &'a [bool],
+}
+
+impl Allowed<'_> {
+    /// Largest error of a disk in the last step over what is allowed \[1\]; NaN if one is.
+    pub(super) fn share<const D: usize, L: PairLaw, C: DampingLaw>(
+        &self,
+        motion: &ImplicitMotion<D, L, C>,
+        error: impl Fn(&ImplicitMotion<D, L, C>, usize) -> f64,
+    ) -> f64 {
+        let of_disk = |disk: usize| error(motion, disk) * if self.backbone[disk] { 1.0 } else { 1.0 / OFF_BACKBONE };
+        let largest = (0..motion.assembly.mobile_count()).map(of_disk).fold(0.0, |most, error| larger(error, most));
+        largest / (self.tolerance * self.overlap)
+    }
+
+    /// Length of the next step over that of one with this share: errors are those of second order, of either method, and in a
+    /// step grow as the third power of h.
+    pub(super) fn growth(&self, share: f64) -> f64 {
+        let growth = (SAFETY / share).cbrt().clamp(SMALLEST_GROWTH, LARGEST_GROWTH);
+        if growth.is_nan() { SMALLEST_GROWTH } else { growth }
     }
 }
 

@@ -16,6 +16,7 @@ mod matrix;
 mod motion;
 mod pace;
 mod restless;
+mod stretch;
 pub mod tableau;
 
 use serde::{Deserialize, Serialize};

@@ -1,8 +1,8 @@
 //! One step of the stabilised explicit method of [`super::super::chebyshev`]: stages, error, and the bounds that set how many.
 
 use crate::contact::PairLaw;
-use crate::contact::damping::DampingLaw;
 use crate::contact::damped_forces::damped_forces;
+use crate::contact::damping::DampingLaw;
 use crate::contact::forces::geometry;
 use crate::packing::PackingError;
 use crate::relax::implicit::chebyshev::{Chebyshev, StageTerms, Stiffness};
