@@ -159,3 +159,43 @@ fn evaluate<const D: usize, L: PairLaw, C: DampingLaw>(
         block.factor[k] = (law.force(coefficient, overlap) - resisted) * over_distance;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Hertzian;
+    use crate::contact::assembly::Assembly;
+    use crate::contact::damping::ConstantDamping;
+    use crate::contact::forces;
+    use crate::io::read_packing;
+    use crate::vector::norm;
+
+    /// Both passes give the same sums, of terms of up to 10⁴ and 10⁶, to their rounding.
+    fn agree<C: DampingLaw>(damping: &C) {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz");
+        let packing = read_packing::<2>(file).expect("a stored packing");
+        let law = Hertzian::default();
+        let assembly = Assembly::new(&packing, law).expect("no coincidence");
+        let (pairs, at, radii) = (assembly.pairs(), &assembly.displacements, assembly.radii());
+        let of_pair = |(&i, &j): (&u32, &u32)| damping.coefficient(radii[i as usize], radii[j as usize]);
+        let coefficients: Vec<f64> = pairs.first.iter().zip(&pairs.second).map(of_pair).collect();
+        let wave = |i: usize| [(7.0 * i as f64).sin(), (11.0 * i as f64).cos()];
+        let velocities: Vec<Vector<2>> = (0..assembly.len()).map(wave).collect();
+        let mut apart = vec![[0.0; 2]; assembly.len()];
+        forces::forces(&law, pairs, at, &mut apart);
+        let power = forces::add_damping(damping, pairs, &coefficients, at, &velocities, &mut apart);
+        let mut together = vec![[1.0; 2]; assembly.len()];
+        let found = damped_forces((&law, damping), pairs, &coefficients, at, &velocities, &mut together);
+        assert!((found - power).abs() < 1e-13 * power, "{found} for {power}");
+        assert!(power > 0.0);
+        for (one, two) in apart.iter().zip(&together) {
+            assert!(norm(difference(*one, *two)) < 1e-10, "{one:?} {two:?}");
+        }
+    }
+
+    #[test]
+    fn one_pass_is_elastic_forces_and_damping() {
+        agree(&ConstantDamping { rate: 500.0 });
+        agree(&Hertzian::default().viscoelastic(500.0));
+    }
+}

@@ -8,7 +8,8 @@
 //! contacts. Here a step follows what still moves. Its length is set by the estimated error, the largest one over the
 //! backbone in units of the mean overlap; where a contact opens or closes within a step, the force or the damping kinks or
 //! jumps, the stages disagree, and the step is repeated with a shorter one. Near the minimum the steps grow without bound
-//! and become Newton's. See [`ImplicitMotion`] for the step, [`tableau`] for the method.
+//! and become Newton's. See [`ImplicitMotion`] for the step, [`tableau`] for the method. While collisions keep steps short,
+//! stabilised explicit steps take their place.
 
 mod chebyshev;
 mod integration;
@@ -43,7 +44,7 @@ pub struct ImplicitDynamics {
     pub tolerance: f64,
     /// What the last part of the way is left to.
     pub finish: Finish,
-    /// Steps allowed, rejected ones included; a stretch of explicit steps counts as one.
+    /// Steps allowed, rejected ones included; a stretch of explicit or stabilised steps counts as one.
     pub step_limit: usize,
 }
 

@@ -241,3 +241,50 @@ fn largest_eigenvalue<const D: usize>(matrix: &[Vector<D>; D]) -> f64 {
     }
     mean + (squares / D as f64 * (D as f64 - 1.0)).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Hertzian;
+    use crate::contact::damping::ConstantDamping;
+    use crate::contact::forces::add_damping;
+    use crate::io::read_packing;
+
+    fn stored() -> ImplicitMotion<2, Hertzian, ConstantDamping> {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz");
+        let packing = read_packing::<2>(file).expect("a stored packing");
+        let (law, damping) = (Hertzian::default(), ConstantDamping { rate: 500.0 });
+        ImplicitMotion::new(&packing, &law, &damping, Inertia::Massive).expect("no coincidence")
+    }
+
+    #[test]
+    fn the_bound_on_decays_holds_and_is_half_of_gershgorins() {
+        let mut motion = stored();
+        let bound = motion.stiffness().expect("every contact is damped").decay;
+        // The largest eigenvalue from below, by the power method from a velocity that is no mode.
+        let count = motion.assembly.len();
+        let mut x: Vec<Vector<2>> = (0..count).map(|i| [(7.0 * i as f64).sin(), (11.0 * i as f64).cos()]).collect();
+        let mut value = 0.0;
+        for _ in 0..300 {
+            let mut forces = vec![[0.0; 2]; count];
+            let at = &motion.assembly.displacements;
+            let coefficients = &motion.damping_coefficient;
+            let power = add_damping(&motion.damping, motion.assembly.pairs(), coefficients, at, &x, &mut forces);
+            value = power / x.iter().map(|x| dot(*x, *x)).sum::<f64>();
+            let length = forces.iter().map(|f| dot(*f, *f)).sum::<f64>().sqrt();
+            x = forces.iter().map(|f| scaled(-1.0 / length, *f)).collect();
+        }
+        let (assembly, rate) = (&motion.assembly, 500.0);
+        let rows = assembly.row_bound(&mut Vec::new(), |_, _, _| rate);
+        assert!(value <= bound && bound < 1.4 * value, "{value}, bound {bound}");
+        assert!(bound < 0.6 * rows, "{bound}, rows {rows}");
+    }
+
+    #[test]
+    fn the_largest_eigenvalue_is_exact_in_two_dimensions_and_a_bound_in_three() {
+        // 3 ± √(1 + 4); 1, 2 and 4, where m = 7/3, s = √(14)/3: (7 + √28)/3.
+        assert!((largest_eigenvalue(&[[4.0, 2.0], [2.0, 2.0]]) - (3.0 + 5f64.sqrt())).abs() < 1e-14);
+        let bound = largest_eigenvalue(&[[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 4.0]]);
+        assert!((bound - (7.0 + 28f64.sqrt()) / 3.0).abs() < 1e-14 && bound >= 4.0, "{bound}");
+    }
+}
