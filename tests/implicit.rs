@@ -293,8 +293,9 @@ fn explicit_and_implicit_dynamics_end_in_one_minimum_far_above_jamming() {
             relaxed(&DampedDynamics { limit: ForceLimit::Relative(1e-4), ..DampedDynamics::default() }, &start);
         let implicit = relaxed(&ImplicitDynamics::default(), &start);
         assert!(matches!(implicit.stop, Stop::Converged(_)), "{:?}", implicit.stop);
-        // 40 to 90 each where this was written; the explicit ones take 10⁴.
-        assert!(implicit.cost.factorisation_count <= 150, "{:?}", implicit.cost);
+        // Stabilised steps, and Newton at the end. The explicit ones take 10⁴ evaluations.
+        assert!(implicit.cost.factorisation_count <= 20, "{:?}", implicit.cost);
+        assert!(implicit.cost.force_evaluation_count <= 4000, "{:?}", implicit.cost);
         assert!(implicit.cost.simulated_time > 0.0);
         same += usize::from(apart(explicit.state, implicit.state) <= 1e-8);
     }
@@ -390,10 +391,12 @@ fn work_of_a_fixed_scene() {
     // Counts, not seconds. Explicit dynamics takes 4·10⁴ evaluations to 10⁻⁵ here, FIRE 900 to 10⁻¹⁰.
     let outcome = relaxed(&ImplicitDynamics::default(), &inflated("hertz_N1000_p100", 2));
     println!("{:?}", outcome.cost);
-    assert!(outcome.cost.step_count <= 200 && outcome.cost.rejected_count <= 60, "{:?}", outcome.cost);
-    assert!(outcome.cost.force_evaluation_count <= 800, "{:?}", outcome.cost);
-    // While disks collide everywhere explicit steps are the cheaper ones: some hundreds of them, then long steps to the end.
-    assert!((200..2000).contains(&outcome.cost.explicit_count), "{:?}", outcome.cost);
+    // While disks collide everywhere stabilised steps are the cheapest: here to where Newton takes over. 27 steps (stretches of some
+    // 80 stages), 62 repeated stabilised steps, 1973 evaluations, 3 factorisations where this was written.
+    assert!(outcome.cost.step_count <= 50 && outcome.cost.rejected_count <= 120, "{:?}", outcome.cost);
+    assert!(outcome.cost.force_evaluation_count <= 3000, "{:?}", outcome.cost);
+    assert!(outcome.cost.factorisation_count <= 10, "{:?}", outcome.cost);
+    assert!((1000..3000).contains(&outcome.cost.explicit_count), "{:?}", outcome.cost);
     let flow = relaxed(&GradientFlow::default(), &inflated("hertz_N1000_p100", 2));
     assert_eq!(flow.cost.explicit_count, 0);
     let fire = relaxed(&Fire::default(), &inflated("hertz_N1000_p100", 2));

@@ -75,7 +75,6 @@ pub(super) struct Chebyshev {
     /// One a stage.
     pub(super) stages: Vec<StageTerms>,
     /// β.
-    #[cfg_attr(not(test), expect(dead_code, reason = "tests hold the choice of stages against it"))]
     pub(super) extent: f64,
 }
 

@@ -27,7 +27,7 @@ pub(super) struct Integration {
 }
 
 /// Largest ratio of a step to the one before; 1 after a rejected one, since the contact that made it fail is mostly still near.
-const LARGEST_GROWTH: f64 = 2.0;
+pub(super) const LARGEST_GROWTH: f64 = 2.0;
 
 /// Smallest one.
 pub(super) const SMALLEST_GROWTH: f64 = 0.1;
@@ -185,7 +185,7 @@ impl Integration {
                 Stepped::TooFar => SMALLEST_GROWTH,
                 Stepped::Moved(reached) => {
                     let error = allowed.share(motion, |motion, disk| motion.error(*time_step, disk));
-                    let growth = allowed.growth(error);
+                    let growth = allowed.growth(error, LARGEST_GROWTH);
                     if error <= 1.0 {
                         *time_step *= if rejected { growth.min(1.0) } else { growth };
                         return Ok(Ok(Some(reached)));
@@ -239,8 +239,8 @@ impl Allowed<'_> {
 
     /// Length of the next step over that of one with this share: errors are those of second order, of either method, and in a
     /// step grow as the third power of h.
-    pub(super) fn growth(&self, share: f64) -> f64 {
-        let growth = (SAFETY / share).cbrt().clamp(SMALLEST_GROWTH, LARGEST_GROWTH);
+    pub(super) fn growth(&self, share: f64, largest: f64) -> f64 {
+        let growth = (SAFETY / share).cbrt().clamp(SMALLEST_GROWTH, largest);
         if growth.is_nan() { SMALLEST_GROWTH } else { growth }
     }
 }

@@ -99,6 +99,11 @@ impl Pace {
         kind
     }
 
+    /// Whether no stabilised step is longer than this one \[time\].
+    pub(super) fn is_longest(&self, step: f64) -> bool {
+        self.stiffness.is_some_and(|stiffness| step >= stiffness.longest_step())
+    }
+
     /// The implicit step to try after a stretch of explicit ones \[time\].
     pub(super) fn tried(&self) -> f64 {
         TRIED * self.worth / VERLET * self.explicit_step

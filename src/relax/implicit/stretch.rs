@@ -5,13 +5,16 @@ use crate::contact::damping::DampingLaw;
 use crate::contact::forces::Totals;
 use crate::packing::PackingError;
 use crate::relax::Cost;
-use crate::relax::implicit::integration::{Allowed, SMALLEST_GROWTH};
+use crate::relax::implicit::integration::{Allowed, LARGEST_GROWTH, SMALLEST_GROWTH};
 use crate::relax::implicit::motion::ImplicitMotion;
 use crate::relax::implicit::pace::{Kind, Pace, SHARE};
 
 /// Error allowed in a stabilised step over that allowed in an implicit one. Of twelve motions of 1000 disks at p = 10 (constant
 /// damping) seven end where explicit dynamics do at 1/2, ten at 1/4, eleven at 1/10; of twenty at p = 100 and at p = 800 all, at each.
 const TOLERANCE_SHARE: f64 = 0.1;
+
+/// Largest growth from the longest stable step: no step follows it but an implicit one, which pays only if it is much longer.
+const GROWTH_FROM_LONGEST: f64 = 20.0;
 
 /// Verlet's steps, as many as [`Pace`] says; `time_step` is that of the implicit one to try after it.
 pub(super) fn explicit<const D: usize, L: PairLaw, C: DampingLaw>(
@@ -44,7 +47,8 @@ pub(super) fn stabilised<const D: usize, L: PairLaw, C: DampingLaw>(
         let Kind::Stabilised { step, stage_count } = pace.kind(*time_step) else { break };
         let growth = if motion.stabilised_step(step, stage_count)? {
             let error = allowed.share(motion, |motion, disk| motion.stabilised_error(step, disk)) / TOLERANCE_SHARE;
-            let growth = allowed.growth(error);
+            let stable = pace.is_longest(step);
+            let growth = allowed.growth(error, if stable { GROWTH_FROM_LONGEST } else { LARGEST_GROWTH });
             if error <= 1.0 {
                 *time_step = step * if rejected { growth.min(1.0) } else { growth };
                 rejected = false;
