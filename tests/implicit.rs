@@ -220,7 +220,8 @@ fn a_stabilised_step_of_many_stages_is_stable_where_an_explicit_one_of_its_lengt
     let mut motion = ImplicitMotion::new(&start, &law, &damping, Inertia::Massive).expect("disks apart");
     // Four stages are stable up to hλ = 9.8: what is left of the disks flies apart.
     let flown = (0..200).any(|_| !motion.stabilised_step(0.01, 4).expect("no coincidence"));
-    assert!(flown || !(motion.kinetic_energy() < first), "{}", motion.kinetic_energy());
+    let kinetic = motion.kinetic_energy();
+    assert!(flown || kinetic.is_nan() || kinetic >= first, "{kinetic}");
 }
 
 #[test]
