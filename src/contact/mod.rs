@@ -3,6 +3,7 @@
 //! Start from [`ContactNetwork`] to look at a packing, from [`Assembly`] to move one.
 
 pub mod assembly;
+pub mod damped_forces;
 pub mod damping;
 pub mod forces;
 #[cfg(feature = "linear")]

@@ -156,10 +156,12 @@ pub struct Outcome<T> {
 pub struct Cost {
     /// Steps taken.
     pub step_count: usize,
-    /// Steps among them whose error was too large, so that they were repeated; not written where there are none.
+    /// Steps whose error was too large, so that they were repeated, those within stretches included; not written where there are
+    /// none.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub rejected_count: usize,
-    /// Explicit steps of implicit dynamics, a stretch of which is one of its steps; not written where there are none.
+    /// Evaluations in the stretches of explicit and stabilised steps of implicit dynamics, one an explicit step, s a stabilised
+    /// one of s stages; a stretch is one of its steps. Not written where there are none.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub explicit_count: usize,
     /// Evaluations of all forces.

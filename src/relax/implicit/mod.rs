@@ -8,27 +8,25 @@
 //! contacts. Here a step follows what still moves. Its length is set by the estimated error, the largest one over the
 //! backbone in units of the mean overlap; where a contact opens or closes within a step, the force or the damping kinks or
 //! jumps, the stages disagree, and the step is repeated with a shorter one. Near the minimum the steps grow without bound
-//! and become Newton's. See [`ImplicitMotion`] for the step, [`tableau`] for the method.
+//! and become Newton's. See [`ImplicitMotion`] for the step, [`tableau`] for the method. While collisions keep steps short,
+//! stabilised explicit steps take their place.
 
+mod chebyshev;
+mod integration;
 mod matrix;
 mod motion;
 mod pace;
+mod restless;
+mod stretch;
 pub mod tableau;
-
-use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
 use crate::contact::PairLaw;
-use crate::contact::assembly::Assembly;
-use crate::contact::damping::{ConstantDamping, DampingChoice, DampingLaw};
-use crate::contact::forces::Totals;
+use crate::contact::damping::{ConstantDamping, DampingChoice};
 use crate::packing::{Packing, PackingError};
-use crate::relax::implicit::pace::Pace;
-use crate::relax::monitor::Monitor;
-use crate::relax::newton::{Descent, End, Patience, WATCH};
-use crate::relax::{Cost, ForceLimit, Look, NetForce, Outcome, Relaxer, Stop, Trace};
-use crate::vector::{Vector, difference, larger, norm};
+use crate::relax::implicit::integration::Integration;
+use crate::relax::{ForceLimit, NetForce, Outcome, Relaxer, Trace};
 
 pub use motion::{ImplicitMotion, Inertia, Stepped, Work};
 
@@ -46,7 +44,7 @@ pub struct ImplicitDynamics {
     pub tolerance: f64,
     /// What the last part of the way is left to.
     pub finish: Finish,
-    /// Steps allowed, rejected ones included; a stretch of explicit steps counts as one.
+    /// Steps allowed, rejected ones included; a stretch of explicit or stabilised steps counts as one.
     pub step_limit: usize,
 }
 
@@ -154,292 +152,4 @@ impl Relaxer for GradientFlow {
         // The unit of time is that of the friction: 1 is as good as any.
         run.relax(packing, law, &ConstantDamping { rate: 0.0 }, Inertia::Friction(1.0), trace)
     }
-}
-
-/// Settings of either.
-struct Integration {
-    limit: ForceLimit,
-    net_force: NetForce,
-    tolerance: f64,
-    finish: Finish,
-    step_limit: usize,
-}
-
-/// Largest ratio of a step to the one before; 1 after a rejected one, since the contact that made it fail is mostly still near.
-const LARGEST_GROWTH: f64 = 2.0;
-
-/// Smallest one.
-const SMALLEST_GROWTH: f64 = 0.1;
-
-/// Ratio after a step whose matrix was not positive definite.
-const INDEFINITE_GROWTH: f64 = 0.5;
-
-/// Aim of the next step's error over what is allowed. Contacts come and go, so errors vary from step to step by much, and a
-/// repeated step costs as much as a short one.
-const SAFETY: f64 = 0.5;
-
-/// Error allowed off the backbone over that on it. Rattlers fly and hit; where they hit matters little to the backbone, but an
-/// error there is an overlap, and so energy.
-const OFF_BACKBONE: f64 = 3.0;
-
-/// Overlap over a radius that stands in for the mean one where nothing is pressed \[1\].
-const SMALLEST_OVERLAP: f64 = 1e-6;
-
-/// (hγ)² λ, or hγ λ/ζ, of the stiffest contacts beyond which a step grows no more: disks that touch nothing are held by the
-/// mass term alone, and the pivots of the matrix must stay well apart from rounding.
-const LONGEST_STEP: f64 = 1e12;
-
-/// Steps in which the residual has not fallen by a tenth and damping has taken less than half of the kinetic energy there was,
-/// after which the motion counts as one that does not come to rest.
-const RESTLESS_AFTER: usize = 3000;
-
-/// Share of the kinetic energy meant there.
-const RESTLESS_LOSS: f64 = 0.5;
-
-/// Factorisations in which Newton must bring the residual down to a tenth.
-const PATIENCE: usize = 12;
-
-/// Longest way of a disk in one of Newton's steps over its radius \[1\], as is [`Newton`](super::Newton)'s default.
-const LONGEST_NEWTON_STEP: f64 = 0.1;
-
-/// Newton's factorisations at most.
-const NEWTON_LIMIT: usize = 100;
-
-impl Integration {
-    fn relax<const D: usize, L: PairLaw, C: DampingLaw>(
-        &self,
-        packing: Packing<D>,
-        law: &L,
-        damping: &C,
-        inertia: Inertia,
-        trace: &mut impl Trace,
-    ) -> Result<Outcome<Packing<D>>, PackingError> {
-        let start = Instant::now();
-        let mut motion = ImplicitMotion::new(&packing, law, damping, inertia)?;
-        let mut monitor = Monitor::with(self.limit, WATCH, &motion.assembly);
-        let mut cost = Cost::default();
-        let stop = self.run(&mut motion, &mut monitor, &mut cost, trace)?;
-        let assembly = &motion.assembly;
-        let net_forces = self.judged(&motion);
-        let (residual, rounding_floor) = monitor.finish(assembly, net_forces);
-        cost.force_evaluation_count += motion.work.evaluation_count;
-        cost.factorisation_count += motion.work.factorisation_count;
-        cost.iteration_count += motion.work.iteration_count;
-        cost.simulated_time = motion.time;
-        cost.rebuild_count = assembly.rebuild_count();
-        cost.seconds = start.elapsed().as_secs_f64();
-        Ok(Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost })
-    }
-
-    fn run<const D: usize, L: PairLaw, C: DampingLaw>(
-        &self,
-        motion: &mut ImplicitMotion<D, L, C>,
-        monitor: &mut Monitor,
-        cost: &mut Cost,
-        trace: &mut impl Trace,
-    ) -> Result<Stop, PackingError> {
-        let mut totals = motion.evaluate();
-        let mut hand_over = match self.finish {
-            Finish::Motion => 0.0,
-            Finish::Newton(residual) => residual,
-        };
-        let mut time_step = 0.0;
-        let mut restless = Restless::default();
-        let mut pace = Pace::new(motion);
-        loop {
-            let kinetic_energy = motion.kinetic_energy();
-            let look = Look {
-                step_count: cost.step_count,
-                energy: totals.energy,
-                kinetic_energy,
-                residual: 0.0,
-                time_step,
-                restart: false,
-            };
-            if let Some(stop) = monitor.look(&motion.assembly, self.judged(motion), &totals, look, trace) {
-                return Ok(stop);
-            }
-            let residual = monitor.residual().relative();
-            if restless.after(cost.step_count, (kinetic_energy, motion.dissipated), residual) {
-                return Ok(Stop::Restless);
-            }
-            if monitor.takes_new_anchors() {
-                motion.reanchor()?;
-            }
-            let overlap = mean_overlap(&motion.assembly, &totals);
-            let slow = kinetic_energy <= hand_over * hand_over * totals.energy_scale();
-            if residual <= hand_over && slow {
-                if let Some(stop) = finish(motion, monitor, cost, overlap, trace)? {
-                    return Ok(stop);
-                }
-                hand_over *= 0.1;
-            }
-            if time_step == 0.0 {
-                time_step = first_step(motion, self.tolerance * overlap);
-            }
-            // Explicit steps follow contacts that come and go; where there is no backbone, nothing bounds them.
-            let pressed = monitor.backbone()[..motion.assembly.mobile_count()].iter().any(|&member| member);
-            if pressed && pace.is_explicit(time_step) {
-                if cost.step_count >= self.step_limit {
-                    return Ok(Stop::StepLimit);
-                }
-                cost.step_count += 1;
-                totals = pace.stretch(motion, &mut time_step, cost)?;
-                continue;
-            }
-            let shortest = if pressed { pace.shortest() } else { 0.0 };
-            match self.advance(motion, monitor, cost, &mut time_step, (overlap, shortest))? {
-                Ok(Some(reached)) => {
-                    totals = reached;
-                    pace.stepped();
-                }
-                // Back at the start of the step.
-                Ok(None) => {}
-                Err(stop) => return Ok(stop),
-            }
-        }
-    }
-
-    /// One step, repeated with shorter ones until its error is small enough; `time_step` is that of the next afterwards. None
-    /// if it would have to be shorter than `shortest`.
-    fn advance<const D: usize, L: PairLaw, C: DampingLaw>(
-        &self,
-        motion: &mut ImplicitMotion<D, L, C>,
-        monitor: &Monitor,
-        cost: &mut Cost,
-        time_step: &mut f64,
-        (overlap, shortest): (f64, f64),
-    ) -> Result<Result<Option<Totals<D>>, Stop>, PackingError> {
-        motion.prestressed.copy_from_slice(monitor.backbone());
-        motion.margin = overlap;
-        *time_step = time_step.min(motion.longest_step(LONGEST_STEP));
-        let mut rejected = false;
-        loop {
-            if cost.step_count >= self.step_limit {
-                return Ok(Err(Stop::StepLimit));
-            }
-            cost.step_count += 1;
-            let growth = match motion.step(*time_step)? {
-                Stepped::OutOfMemory => return Ok(Err(Stop::OutOfMemory)),
-                Stepped::Indefinite => INDEFINITE_GROWTH,
-                Stepped::TooFar => SMALLEST_GROWTH,
-                Stepped::Moved(reached) => {
-                    let error = self.error(motion, monitor.backbone(), *time_step) / (self.tolerance * overlap);
-                    // The embedded solution is of second order: its error in a step grows as the third power of h.
-                    let growth = (SAFETY / error).cbrt().clamp(SMALLEST_GROWTH, LARGEST_GROWTH);
-                    if error <= 1.0 {
-                        *time_step *= if rejected { growth.min(1.0) } else { growth };
-                        return Ok(Ok(Some(reached)));
-                    }
-                    if growth.is_nan() { SMALLEST_GROWTH } else { growth }
-                }
-            };
-            cost.rejected_count += 1;
-            rejected = true;
-            motion.take_back()?;
-            *time_step *= growth;
-            if *time_step < shortest {
-                return Ok(Ok(None));
-            }
-        }
-    }
-
-    /// Largest error of a disk in the last step \[length\]; NaN if one is.
-    fn error<const D: usize, L: PairLaw, C: DampingLaw>(
-        &self,
-        motion: &ImplicitMotion<D, L, C>,
-        backbone: &[bool],
-        time_step: f64,
-    ) -> f64 {
-        let of_disk =
-            |disk: usize| motion.error(time_step, disk) * if backbone[disk] { 1.0 } else { 1.0 / OFF_BACKBONE };
-        (0..motion.assembly.mobile_count()).map(of_disk).fold(0.0, |most, error| larger(error, most))
-    }
-
-    /// The net forces the limit is on.
-    fn judged<'a, const D: usize, L: PairLaw, C: DampingLaw>(
-        &self,
-        motion: &'a ImplicitMotion<D, L, C>,
-    ) -> &'a [Vector<D>] {
-        match self.net_force {
-            NetForce::Elastic => &motion.assembly.forces[..motion.assembly.mobile_count()],
-            NetForce::Total => motion.net_forces(),
-        }
-    }
-}
-
-/// Leaves the last part of the way to Newton. None if that is not where the motion leads: everything is as before then.
-fn finish<const D: usize, L: PairLaw, C: DampingLaw>(
-    motion: &mut ImplicitMotion<D, L, C>,
-    monitor: &mut Monitor,
-    cost: &mut Cost,
-    overlap: f64,
-    trace: &mut impl Trace,
-) -> Result<Option<Stop>, PackingError> {
-    let before = motion.assembly.clone();
-    let mut descent = Descent::new(LONGEST_NEWTON_STEP, NEWTON_LIMIT, Patience::Factorisations(PATIENCE));
-    let end = descent.run(&mut motion.assembly, monitor, trace)?;
-    *cost = cost.plus(descent.cost);
-    let far = |disk: usize| {
-        let way = difference(motion.assembly.place(disk), before.place(disk));
-        monitor.backbone()[disk] && norm(way) > overlap
-    };
-    let here = !(0..before.mobile_count()).any(far);
-    match end {
-        End::Stop(stop @ (Stop::Converged(_) | Stop::RoundingFloor)) if here => Ok(Some(stop)),
-        _ => {
-            motion.assembly = before;
-            motion.put_back()?;
-            Ok(None)
-        }
-    }
-}
-
-/// Watches for a motion that does not come to rest.
-struct Restless {
-    /// The lowest residual so far.
-    residual: f64,
-    /// Steps, kinetic energy and work of damping when the watch last began anew.
-    since: (usize, f64, f64),
-}
-
-impl Default for Restless {
-    fn default() -> Self {
-        Restless { residual: f64::INFINITY, since: (0, 0.0, 0.0) }
-    }
-}
-
-impl Restless {
-    /// Whether for too long neither the residual has fallen nor damping has taken much of what moves.
-    fn after(&mut self, step_count: usize, (kinetic_energy, dissipated): (f64, f64), residual: f64) -> bool {
-        let (first_step, first_energy, first_work) = self.since;
-        let nearer = residual < 0.9 * self.residual;
-        let over = step_count - first_step >= RESTLESS_AFTER;
-        if over && !nearer && dissipated - first_work < RESTLESS_LOSS * first_energy {
-            return true;
-        }
-        if nearer {
-            self.residual = residual;
-        }
-        if nearer || over {
-            self.since = (step_count, kinetic_energy, dissipated);
-        }
-        false
-    }
-}
-
-/// The overlap of a contact, in the mean over contacts by their force: α Σu / ΣF.
-fn mean_overlap<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, totals: &Totals<D>) -> f64 {
-    let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
-    let contacts = totals.energy - totals.on_site_energy;
-    let overlap = if totals.force_sum > 0.0 { assembly.law().exponent() * contacts / totals.force_sum } else { 0.0 };
-    larger(overlap, SMALLEST_OVERLAP * radius)
-}
-
-/// The step in which the largest force moves a disk by as much as an error may be.
-fn first_step<const D: usize, L: PairLaw, C: DampingLaw>(motion: &ImplicitMotion<D, L, C>, allowed: f64) -> f64 {
-    let largest = motion.net_forces().iter().fold(0.0, |most, &force| larger(norm(force), most));
-    let step = motion.time_of_way(allowed, largest);
-    // Nothing pushes: any step is as good, and the look that follows finds it at rest.
-    if step.is_finite() && step > 0.0 { step } else { 1.0 }
 }

@@ -1,66 +1,112 @@
-//! [`Pace`]: whether the next stretch of a motion is for one implicit step or for many explicit ones.
+//! [`Pace`]: which kind of steps the next stretch of a motion is made of.
 //!
 //! ```text
-//! explicit while h < E h_x        E = 6.7 n^(1/4)        h_x = 0.9 of the bound on a stable explicit step
+//! kind          work of a unit of time                       limit
+//! implicit      E/h
+//! stabilised    s(h)/h                                       h ≤ 2.25/ρ
+//! explicit      V/h_x                                        h_x = 0.9 of the bound on a stable Verlet step
 //! ```
 //!
-//! E is the number of explicit steps that take the time of one implicit step, of n mobile disks: 36 of 750, 54 of 4 124, 109 of
-//! 66 000 in two dimensions (constant damping, p = 10). While disks collide everywhere, the errors of contacts that open and
-//! close keep implicit steps short, and explicit ones are cheaper. After a stretch of them an implicit step of 2 E h_x is
-//! tried; where it fails at once, the next stretch is twice as long.
+//! h is the step that errors allow, s(h) the number of stages of a stabilised step, see [`super::chebyshev`]. Work is counted in
+//! stages, evaluations of all forces: an implicit step of n mobile disks takes the time of E of them, a Verlet step that of V. The
+//! kind with the least work is taken. While disks collide everywhere, the errors of contacts that open and close keep h short, and
+//! that is the stabilised one, or the explicit one where oscillations are hardly damped. After a stretch of explicit steps an
+//! implicit one of 2 E h_x/V is tried; where it fails at once, the next stretch is twice as long.
 
 use crate::contact::PairLaw;
 use crate::contact::damping::DampingLaw;
-use crate::contact::forces::Totals;
-use crate::packing::PackingError;
-use crate::relax::Cost;
+use crate::relax::implicit::chebyshev::Stiffness;
 use crate::relax::implicit::motion::ImplicitMotion;
 
-/// E over n^(1/4).
-const WORTH: f64 = 6.7;
+/// E over n^(1/8).
+const WORTH: f64 = 34.0;
+
+/// V.
+const VERLET: f64 = 1.8;
 
 /// An explicit step over the bound on a stable one, about half of the longest stable step: see
 /// [`TimeStep`](crate::relax::TimeStep).
-const SHARE: f64 = 0.9;
+pub(super) const SHARE: f64 = 0.9;
 
-/// Implicit step that is tried, over the shortest one that pays.
+/// Implicit step that is tried after explicit ones, over the shortest one that pays.
 const TRIED: f64 = 2.0;
 
-/// Shortest stretch of explicit steps over E, and the longest.
+/// Work of the shortest stretch of explicit steps over E, and of the longest.
 const STRETCHES: (usize, usize) = (2, 8);
 
-/// Implicit steps after which the next stretch is a short one again.
+/// Implicit steps after which the next stretch of explicit ones is a short one again.
 const SETTLED: usize = 4;
+
+/// A kind of steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Kind {
+    Implicit,
+    Stabilised {
+        /// Length of the next one \[time\].
+        step: f64,
+        stage_count: usize,
+    },
+    Explicit,
+}
 
 /// Which kind of steps pays.
 #[derive(Debug)]
 pub(super) struct Pace {
-    /// E; 0 where there is nothing to choose.
-    worth: usize,
-    /// Length of the next stretch over E.
+    /// E.
+    worth: f64,
+    /// Work of the next stretch of explicit steps over E.
     length: usize,
-    /// h_x \[time\].
+    /// h_x \[time\]; 0 where no explicit step is of use.
     explicit_step: f64,
-    /// Implicit steps since the last stretch.
+    /// For stabilised steps, where they are of use.
+    pub(super) stiffness: Option<Stiffness>,
+    /// Implicit steps since the last stretch of explicit ones.
     step_count: usize,
 }
 
 impl Pace {
     pub(super) fn new<const D: usize, L: PairLaw, C: DampingLaw>(motion: &mut ImplicitMotion<D, L, C>) -> Self {
-        let worth = (WORTH * (motion.assembly.mobile_count() as f64).powf(0.25)) as usize;
+        let worth = WORTH * (motion.assembly.mobile_count() as f64).powf(0.125);
         let explicit_step = if motion.has_masses() { SHARE * motion.stable_step() } else { 0.0 };
-        let explicit_step = if explicit_step.is_finite() { explicit_step } else { 0.0 };
-        Pace { worth, length: STRETCHES.0, explicit_step, step_count: 0 }
+        let stiffness = motion.stiffness();
+        let mut pace = Pace { worth, length: STRETCHES.0, explicit_step: 0.0, stiffness, step_count: 0 };
+        pace.set_explicit_step(explicit_step);
+        pace
     }
 
-    /// The shortest implicit step that pays \[time\].
-    pub(super) fn shortest(&self) -> f64 {
-        self.worth as f64 * self.explicit_step
+    pub(super) fn set_explicit_step(&mut self, time_step: f64) {
+        self.explicit_step = if time_step.is_finite() { time_step } else { 0.0 };
     }
 
-    /// Whether an implicit step of this length \[time\] does not pay.
-    pub(super) fn is_explicit(&self, time_step: f64) -> bool {
-        time_step < self.shortest()
+    /// E, rounded down.
+    pub(super) fn worth(&self) -> usize {
+        self.worth as usize
+    }
+
+    /// The kind of least work where errors allow steps of this length \[time\].
+    pub(super) fn kind(&self, time_step: f64) -> Kind {
+        let (mut kind, mut rate) = (Kind::Implicit, self.worth / time_step);
+        if self.explicit_step > 0.0 && VERLET / self.explicit_step < rate {
+            (kind, rate) = (Kind::Explicit, VERLET / self.explicit_step);
+        }
+        if let Some(stiffness) = self.stiffness {
+            let step = time_step.min(stiffness.longest_step());
+            let stage_count = stiffness.stage_count(step);
+            if (stage_count as f64) < rate * step {
+                kind = Kind::Stabilised { step, stage_count };
+            }
+        }
+        kind
+    }
+
+    /// Whether no stabilised step is longer than this one \[time\].
+    pub(super) fn is_longest(&self, step: f64) -> bool {
+        self.stiffness.is_some_and(|stiffness| step >= stiffness.longest_step())
+    }
+
+    /// The implicit step to try after a stretch of explicit ones \[time\].
+    pub(super) fn tried(&self) -> f64 {
+        TRIED * self.worth / VERLET * self.explicit_step
     }
 
     /// An implicit step was made.
@@ -71,22 +117,12 @@ impl Pace {
         }
     }
 
-    /// A stretch of explicit steps; `time_step` is that of the implicit one to try after it.
-    pub(super) fn stretch<const D: usize, L: PairLaw, C: DampingLaw>(
-        &mut self,
-        motion: &mut ImplicitMotion<D, L, C>,
-        time_step: &mut f64,
-        cost: &mut Cost,
-    ) -> Result<Totals<D>, PackingError> {
+    /// How many explicit steps the next stretch of them has; it begins now.
+    pub(super) fn next_stretch(&mut self) -> usize {
         if self.step_count == 0 {
             self.length = (2 * self.length).min(STRETCHES.1);
         }
         self.step_count = 0;
-        let count = self.length * self.worth;
-        let (totals, explicit_step) = motion.go_explicitly(count, SHARE, TRIED * self.shortest())?;
-        cost.explicit_count += count;
-        self.explicit_step = if explicit_step.is_finite() { explicit_step } else { 0.0 };
-        *time_step = TRIED * self.shortest();
-        Ok(totals)
+        ((self.length as f64) * self.worth / VERLET) as usize
     }
 }
