@@ -49,21 +49,31 @@ fn bonds(count: usize) -> BondChanges<2> {
 
 #[test]
 fn the_bond_map_draws_every_bond_that_changes_in_few_letters() {
-    let changes = bonds(100_000);
+    let changes = bonds(20_000);
     let svg = bond_map("a <b> & c", &changes, &frame(), Some(12.0)).to_svg();
     well_formed(&svg);
     // One stroke a bond but for the fifth of them that does not change; four colours, weak ones first.
     let paths: Vec<&str> =
         svg.lines().filter(|line| line.starts_with("<path stroke=\"#") && line.contains(" d=\"m")).collect();
     assert_eq!(paths.len(), 4);
-    assert_eq!(paths.iter().map(|path| path.matches('l').count()).sum::<usize>(), 80_000);
+    assert_eq!(paths.iter().map(|path| path.matches('l').count()).sum::<usize>(), 16_000);
     // Half of full lies halfway between two classes of the scale: #d6604d and #f4a582.
     assert!(paths[0].contains("#e58368"), "half of full, red first");
     assert!(paths[2].contains("#67001f") && paths[3].contains("#053061"), "ends of the scale last");
     assert!(svg.contains("stroke-dasharray") && svg.contains("&lt;b&gt;"));
-    // Tens of thousands of bonds stay a small page.
-    assert!(svg.len() < 13 * 100_000, "{}", svg.len());
+    // Thirteen letters a bond, and some 10 000 for the frame and the scale.
+    assert!(svg.len() < 13 * 20_000 + 10_000, "{}", svg.len());
     assert_eq!(svg, bond_map("a <b> & c", &changes, &frame(), Some(12.0)).to_svg());
+}
+
+#[test]
+fn a_map_of_very_many_bonds_is_one_image_within_its_axes() {
+    let svg = bond_map("many", &bonds(100_000), &frame(), Some(12.0)).to_svg();
+    well_formed(&svg);
+    assert!(svg.contains("href=\"data:image/png;base64,") && !svg.contains(" d=\"m"));
+    // 1104 × 1104 pixels of at most 4 bytes, uncompressed, in base 64; what stands around it stays vectors.
+    assert!(svg.len() < 1104 * 1104 * 4 * 4 / 3, "{}", svg.len());
+    assert!(svg.contains("stroke-dasharray") && svg.contains("diameters of a small disk"));
 }
 
 #[test]
@@ -82,7 +92,7 @@ fn the_contact_map_has_a_point_a_contact() {
     // 5 · 368/40.7 tenths of a pixel to a length; up is minus.
     let zoom = 5.0 * 368.0 / 40.7;
     let (x, y) = ((10.0f64 * zoom).round(), (20.0f64 * zoom).round());
-    assert!(svg.contains(&format!("M{x} {y}h0")) && svg.contains("2 made") && svg.contains("1 broken"));
+    assert!(svg.contains(&format!("m{x} {y}h0")) && svg.contains("2 made") && svg.contains("1 broken"));
 }
 
 #[test]
