@@ -89,6 +89,27 @@ fn an_analysis_of_the_files_of_a_run_is_that_run() {
 }
 
 #[test]
+fn overlaps_of_rounding_are_no_contacts() {
+    // Two unjammed packings: what their relaxation left of overlaps, 10⁻¹², looks like contacts, and some of it like a backbone.
+    let sample = |seed| Sample {
+        name: format!("loose-{seed}"),
+        seed,
+        source: Source::PackingFraction(0.82),
+        relaxer: RelaxerChoice::default(),
+    };
+    let scene = Scene { disk_count: 600, sample: vec![sample(1), sample(2)], ..Scene::default() };
+    for sample in run(&scene, &()).expect("the scene makes sense").samples {
+        let SampleOutcome::Done(result) = &sample.result else { panic!("unjammed packings come to rest") };
+        let [before, after] = [&result.inflated.before, &result.inflated.after].map(|rest| rest.packing.get().clone());
+        let settings = PairSettings { outer_radius: Some(result.inflation.outer_radius), ..PairSettings::default() };
+        let analysis = analysed(Pair::new(before, &after, None, &settings).expect("one experiment"));
+        assert_eq!((analysis.before.pressure, analysis.after.pressure, analysis.pressure_change), (0.0, 0.0, 0.0));
+        let json = |response| serde_json::to_value(response).expect("serialisable");
+        assert_eq!(json(&analysis.response), json(&result.response));
+    }
+}
+
+#[test]
 fn in_a_periodic_box_nothing_is_held() {
     let [before, after, deflated] = states(result(periodic()));
     let pair = Pair::new(before, &after, Some(&deflated), &PairSettings::default()).expect("one experiment");

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! Whether the states are at rest is not taken on trust: each has a [`Certificate`] with its residual. The inflated disk is
-//! the one whose radius changed, unless it is named. Disks beyond R are held, and so is the centre, where either R is given
+//! the one whose radius changed, unless it is named. A state is unjammed by the rule of the relaxers: its contact forces are those
+//! of rounding. Disks beyond R are held, and so is the centre, where either R is given
 //! or the file says which disks are held; otherwise the box is periodic and R half its shortest side.
 
 mod pair;
@@ -21,6 +22,7 @@ use crate::inflation::Boundary;
 use crate::observe::PressureChange;
 use crate::observe::state::State;
 use crate::packing::{PackingError, ball_volume};
+use crate::relax::UNJAMMED_FORCE;
 use crate::response::{Response, Subject};
 use crate::scene::Observables;
 
@@ -64,7 +66,7 @@ pub struct Analysis {
 /// One state in numbers.
 #[derive(Debug, Clone, Serialize)]
 pub struct StateAnalysis {
-    /// Pressure of the circle or the box, 0 without a backbone \[force / length\].
+    /// Pressure of the circle or the box, 0 of an unjammed packing \[force / length\].
     pub pressure: f64,
     /// Elastic energy \[energy\].
     pub energy: f64,
@@ -105,7 +107,7 @@ impl Analysis {
         let third = deflated.as_ref().map(known).transpose()?;
         let pressure = PressureChange::between(first.pressure, second.pressure, choice.exponent());
         let inner_radius = pair.before.radii()[centre];
-        let unjammed = [&before, &after].iter().any(|state| state.network.backbone_count() == 0);
+        let unjammed = [&before, &after].iter().any(|state| is_unjammed(state, law));
         let states = [(before.packing, before.network.backbone.as_slice()), (after.packing, &after.network.backbone)];
         let field = DisplacementField::of_states(states, unjammed, centre, inner_radius, outer_radius);
         let subject = Subject { field, before, after, deflated, centre, pressure_change: pressure.change };
@@ -138,7 +140,7 @@ impl StateAnalysis {
     fn of<L: PairLaw>(state: &State<'_, 2>, pair: &Pair, law: &L) -> Result<Self, PackingError> {
         let (packing, network) = (state.packing, &state.network);
         let pressure = match (pair.boundary, packing.domain().volume()) {
-            _ if network.backbone_count() == 0 => 0.0,
+            _ if is_unjammed(state, law) => 0.0,
             (Boundary::Periodic, Some(volume)) => network.pressure(volume),
             _ => {
                 let rim = |disk: usize| packing.held()[disk] && disk != pair.centre;
@@ -153,4 +155,14 @@ impl StateAnalysis {
             certificate: Certificate::of(packing, law, None)?,
         })
     }
+}
+
+/// Whether a state is unjammed: without a backbone, or with contact forces that are none in the sense of [`UNJAMMED_FORCE`].
+/// What is left of overlaps in an unjammed packing after rounding may well look like a backbone.
+fn is_unjammed<L: PairLaw>(state: &State<'_, 2>, law: &L) -> bool {
+    let network = &state.network;
+    let radius = state.packing.radii().iter().copied().fold(f64::INFINITY, f64::min);
+    let total: f64 = network.contacts.iter().map(|contact| contact.force).sum();
+    let mean = total / network.contacts.len().max(1) as f64;
+    network.backbone_count() == 0 || mean <= UNJAMMED_FORCE * law.force_scale(radius)
 }
