@@ -15,6 +15,7 @@ pub(crate) const BOTTOM: f64 = HEIGHT as f64 - 50.0;
 pub(crate) const FONT_SIZE: u32 = 13;
 
 /// Decades below the largest value that are drawn: what lies lower, zero included, stands on the lower edge.
+#[cfg(feature = "linear")]
 const MOST_DECADES: i32 = 16;
 
 /// Labels of an axis, at most.
@@ -36,6 +37,7 @@ pub(crate) struct LogAxis {
 
 impl LogAxis {
     /// Over the whole decades that hold these values, those above zero; none without such a value.
+    #[cfg(feature = "linear")]
     pub(crate) fn over(values: impl Iterator<Item = f64>, ends: [f64; 2]) -> Option<Self> {
         let (low, high) = values
             .filter(|&value| value > 0.0)
@@ -143,6 +145,7 @@ pub(crate) fn axes(x_axis: &LogAxis, y_axis: &LogAxis, x_label: &str, y_label: &
 mod tests {
     use super::*;
 
+    #[cfg(feature = "linear")]
     #[test]
     fn decades_have_their_places_and_zero_stands_on_the_edge() {
         let axis = LogAxis::over([0.0, 3e-9, 2e-3].into_iter(), [100.0, 0.0]).expect("positive values");
