@@ -5,7 +5,6 @@ use std::process::ExitCode;
 
 use clap::Args;
 use jamscope::analysis::{Analysis, Pair, PairSettings};
-use jamscope::contact::LawChoice;
 use jamscope::io::{read_packing, read_properties};
 use jamscope::report;
 use jamscope::scene::Observables;
@@ -101,12 +100,8 @@ fn analyse(files: &Files, arguments: &AnalyseArguments, observables: &Observable
     let settings = PairSettings { centre_label: arguments.centre, outer_radius };
     let (before, after) = (read_packing(&files.before)?, read_packing(&files.after)?);
     let pair = Pair::new(before, &after, deflated.as_ref(), &settings)?;
-    check(&law)?;
+    law.check()?;
     Ok(Analysis::of(&files.name, pair, &law, observables)?)
-}
-
-fn check(law: &LawChoice) -> Result<(), Failure> {
-    Ok(law.check()?)
 }
 
 fn says_law(path: &Path) -> Result<bool, Failure> {

@@ -6,6 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::Serialize;
 
+use crate::observe::angular::quantile;
 use crate::response::PhaseOutcome;
 use crate::study::record::{Cell, FailureKind, Record, RecordOutcome};
 
@@ -147,14 +148,6 @@ fn bootstrap(values: &[f64]) -> [[f64; 2]; 2] {
         all.sort_unstable_by(f64::total_cmp);
         [quantile(&all, 0.025), quantile(&all, 0.975)]
     })
-}
-
-/// Linear between the order statistics.
-fn quantile(ascending: &[f64], share: f64) -> f64 {
-    let at = share * (ascending.len() - 1) as f64;
-    let (below, rest) = (at.floor() as usize, at - at.floor());
-    let above = (below + 1).min(ascending.len() - 1);
-    ascending[below] + rest * (ascending[above] - ascending[below])
 }
 
 #[cfg(test)]

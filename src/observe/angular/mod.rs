@@ -36,6 +36,7 @@ pub use fourier::{Route, fourier_sums, fourier_sums_by};
 pub use power_spectrum::{FrequencyLimit, Leakage, PowerSpectrum, SpectrumEstimator, SpectrumSettings};
 pub use radial_dependence::{RadialDependenceSettings, RingAnalysis, RingOutcome, radial_dependence};
 pub use ring::{RingSample, RingSettings, Weights};
+pub(crate) use statistics::quantile;
 pub use statistics::{
     CorrelationStatistics, CrossingStatistics, Mean, SpectrumStatistics, correlation_statistics, spectrum_statistics,
 };

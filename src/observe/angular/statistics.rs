@@ -141,8 +141,8 @@ fn alike<T>(samples: &[T], difference: impl Fn(&T, &T) -> Option<&'static str>) 
     Ok(first)
 }
 
-/// Linear between the order statistics.
-fn quantile(ascending: &[f64], share: f64) -> f64 {
+/// Linear between the order statistics, of which there is at least one.
+pub(crate) fn quantile(ascending: &[f64], share: f64) -> f64 {
     let at = share * (ascending.len() - 1) as f64;
     let (below, rest) = (at.floor() as usize, at - at.floor());
     let above = (below + 1).min(ascending.len() - 1);
