@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use crate::precision::ladder::{Method, Varied};
 use crate::precision::results::{Run, SamplePrecision};
 use crate::relax::Stop;
-use crate::report::figures::log_axes::{BOTTOM, FONT_SIZE, LEFT, LogAxis, RIGHT, TOP, axes};
+use crate::report::figures::log_axes::{Axis, BOTTOM, FONT_SIZE, LEFT, LogAxis, RIGHT, TOP, axes};
 use crate::report::figures::{Figure, INK};
 
 /// What is on the vertical axis.
@@ -67,8 +67,8 @@ fn figure(sample: &SamplePrecision, quantity: Quantity, price: Price) -> Option<
         .filter_map(|run| Some((run, (price.of)(run), (quantity.of)(run)?)))
         .filter(|&(_, x, y)| x > 0.0 && x.is_finite() && y.is_finite())
         .collect();
-    let x_axis = LogAxis::over(points.iter().map(|point| point.1), [LEFT, RIGHT])?;
-    let y_axis = LogAxis::over(points.iter().map(|point| point.2), [BOTTOM, TOP])?;
+    let x_axis = Axis::Log(LogAxis::over(points.iter().map(|point| point.1), [LEFT, RIGHT])?);
+    let y_axis = Axis::Log(LogAxis::over(points.iter().map(|point| point.2), [BOTTOM, TOP])?);
     let mut svg = axes(&x_axis, &y_axis, price.label, quantity.label);
     for method in Method::ALL {
         for varied in [Varied::ForceLimit, Varied::TimeStep, Varied::Tolerance] {

@@ -9,7 +9,8 @@ use serde::Serialize;
 use crate::io::write_atomically;
 use crate::study::plan::Plan;
 use crate::study::settings::StudyError;
-use crate::study::statistics::{CellStatistics, Gathered};
+use crate::study::samples::CellSamples;
+use crate::study::statistics::CellStatistics;
 use crate::study::store::{Problem, Store, StoreError, TaskState};
 
 /// What a merge found.
@@ -25,6 +26,9 @@ pub struct Merged {
     pub foreign: Vec<Problem>,
     /// Statistics in the order of the plan.
     pub cells: Vec<CellStatistics>,
+    /// What the statistics are of, cell by cell.
+    #[serde(skip)]
+    pub samples: Vec<CellSamples>,
     /// The files written.
     #[serde(skip)]
     pub files: Vec<PathBuf>,
@@ -51,7 +55,7 @@ pub enum MergeError {
 /// Gathers what is there of the study in `folder`: `records.jsonl` (a record a line), `summary.json`, `summary.csv` (a row a
 /// cell and number).
 ///
-/// Records are read one task at a time; kept of each are its numbers, some 40, not its curves: 10⁵ samples take 32 MB.
+/// Records are read one task at a time; what is kept of each is told by [`CellSamples`].
 ///
 /// # Errors
 /// A folder without a study, or that cannot be written.
@@ -64,9 +68,10 @@ pub fn merge(folder: &Path) -> Result<Merged, MergeError> {
         damaged: Vec::new(),
         foreign: store.foreign(&plan.tasks)?,
         cells: Vec::new(),
+        samples: Vec::new(),
         files: Vec::new(),
     };
-    let mut cells: Vec<Gathered> = Vec::new();
+    let mut cells: Vec<CellSamples> = Vec::new();
     let path = folder.join("records.jsonl");
     write_atomically(&path, |writer| {
         for task in &plan.tasks {
@@ -86,7 +91,7 @@ pub fn merge(folder: &Path) -> Result<Merged, MergeError> {
                 match cells.iter_mut().rev().find(|cell| cell.has(record)) {
                     Some(cell) => cell.add(record),
                     None => {
-                        let mut cell = Gathered::new(record.cell);
+                        let mut cell = CellSamples::new(record.cell);
                         cell.add(record);
                         cells.push(cell);
                     }
@@ -96,7 +101,8 @@ pub fn merge(folder: &Path) -> Result<Merged, MergeError> {
         Ok(())
     })?;
     merged.files.push(path);
-    merged.cells = cells.into_iter().map(Gathered::statistics).collect();
+    merged.cells = cells.iter().map(CellSamples::statistics).collect();
+    merged.samples = cells;
     let summary =
         serde_json::to_string_pretty(&Summary { jamscope_version: env!("CARGO_PKG_VERSION"), merged: &merged })?;
     merged.files.push(store.write_result("summary.json", &(summary + "\n"))?);

@@ -11,10 +11,13 @@
 //!
 //! Start from [`execute()`] and [`merge()`].
 
+mod curves;
 mod execute;
 mod merge;
 mod plan;
+mod recipe;
 mod record;
+mod samples;
 mod settings;
 mod statistics;
 mod store;
@@ -22,8 +25,10 @@ mod store;
 pub use execute::{ExecuteError, Execution, StudyProgress, execute};
 pub use merge::{MergeError, Merged, merge};
 pub use plan::{Plan, Shard, Task};
+pub use recipe::{Recipe, Scale};
 pub use record::{Cell, FailureKind, Record, RecordOutcome};
-pub use settings::{Seeds, Study, StudyError, Target};
+pub use samples::{CellSamples, MeanCurve, MeanPoint, Single};
+pub use settings::{Part, Seeds, Study, StudyError, Target};
 pub use statistics::{CellStatistics, NumberStatistics, PhaseCounts};
 pub use store::{Problem, StoreError};
 

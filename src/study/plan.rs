@@ -1,5 +1,7 @@
 //! [`Plan`]: all packings of a study with the inflations done to each, in an order that only the study decides.
 
+use std::collections::HashSet;
+
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
@@ -56,7 +58,23 @@ impl Plan {
     /// A study that makes no sense.
     pub fn of(study: &Study) -> Result<Self, StudyError> {
         study.check()?;
-        let mut tasks = Vec::new();
+        let mut plan = Plan { tasks: Vec::new(), time_limit: study.time_limit };
+        let mut known = HashSet::new();
+        for (place, part) in study.parted().iter().enumerate() {
+            let first = plan.tasks.len();
+            plan.add(part);
+            for task in &plan.tasks[first..] {
+                if !known.insert(task.identity()) {
+                    let scene = &task.scenes[0];
+                    let (disk_count, seed) = (scene.disk_count, scene.sample[0].seed);
+                    return Err(StudyError::PartsOverlap { part: place + 1, disk_count, target: task.target, seed });
+                }
+            }
+        }
+        Ok(plan)
+    }
+
+    fn add(&mut self, study: &Study) {
         for law in study.laws() {
             for disk_count in study.disk_counts() {
                 for &target in &study.targets {
@@ -67,12 +85,12 @@ impl Plan {
                             .into_iter()
                             .flat_map(|increase| study.relaxers().into_iter().map(move |relaxer| (increase, relaxer)));
                         let scene = |inflation| study.scene_of(law, disk_count, target, inflation, seed);
-                        tasks.push(Task { index: tasks.len(), target, scenes: inflations.map(scene).collect() });
+                        let scenes = inflations.map(scene).collect();
+                        self.tasks.push(Task { index: self.tasks.len(), target, scenes });
                     }
                 }
             }
         }
-        Ok(Plan { tasks, time_limit: study.time_limit })
     }
 
     /// Samples, one an inflation.

@@ -7,8 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::LawChoice;
 #[cfg(feature = "fit")]
 use crate::fit::angular::{CrossoverOutcome, SlopeOutcome};
-use crate::inflation::InflationError;
-use crate::observe::angular::RingOutcome;
+use crate::inflation::{Boundary, InflationError};
 use crate::observe::isostatic::IsostaticOutcome;
 use crate::observe::multipoles::MultipoleFit;
 use crate::preparation::PreparationError;
@@ -16,6 +15,7 @@ use crate::relax::{RelaxerChoice, Stop};
 use crate::response::{PhaseDecision, Response};
 use crate::run::{RunError, SampleResult};
 use crate::scene::Scene;
+use crate::study::curves::curves;
 use crate::study::plan::Task;
 use crate::study::settings::{Target, reduction};
 
@@ -32,6 +32,8 @@ pub struct Cell {
     pub increase: f64,
     /// How it came to rest after the inflation.
     pub relaxer: RelaxerChoice,
+    /// What is held.
+    pub boundary: Boundary,
 }
 
 /// What a study keeps of a sample.
@@ -115,12 +117,13 @@ impl Record {
     pub(super) fn of(task: &Task, scene: &Scene, result: Result<&SampleResult, &RunError>) -> Self {
         let sample = &scene.sample[0];
         let (disk_count, increase) = (scene.disk_count, scene.inflation.increase);
-        let cell = Cell { law: scene.law, disk_count, target: task.target, increase, relaxer: sample.relaxer };
+        let boundary = scene.inflation.boundary;
+        let cell = Cell { law: scene.law, disk_count, target: task.target, increase, relaxer: sample.relaxer, boundary };
         let outcome = match result {
             Ok(result) => RecordOutcome::Done {
                 phase: result.response.phase,
                 numbers: Numbers::of(scene, result).0,
-                curves: curves(&result.response),
+                curves: curves(scene, &result.response),
             },
             Err(error) => {
                 let kind = FailureKind::of(error);
@@ -244,6 +247,9 @@ impl Numbers {
         if let Some(fit) = response.profile_fit.as_ref().and_then(|it| it.measured()) {
             self.put("elastic_amplitude", fit.elastic.amplitude.value);
             self.put("elastic_share_described", fit.elastic.share_described);
+            self.maybe("wavenumber_bound", fit.elastic.wavenumber_bound);
+            self.maybe("screened_share_described", fit.screened.map(|screened| screened.share_described));
+            self.maybe("chance_of_elastic", fit.screened.map(|screened| screened.chance_of_elastic));
             // κ of the best fit; 0 where no κ above 0 fits better.
             self.put("wavenumber", fit.screened.map_or(0.0, |screened| screened.wavenumber.value));
             self.maybe("wavenumber_error", fit.screened.map(|screened| screened.wavenumber.standard_error));
@@ -277,35 +283,3 @@ impl Numbers {
     }
 }
 
-/// The curves of a response.
-fn curves(response: &Response) -> BTreeMap<String, Vec<[f64; 2]>> {
-    let mut all = BTreeMap::new();
-    if let Some(profile) = &response.radial_profile {
-        all.insert("radial_profile".into(), profile.rings.iter().map(|ring| [ring.radius, ring.mean]).collect());
-    }
-    if let Some(ring) = response.angular_correlation.as_ref().and_then(|it| it.measured()) {
-        let correlation = &ring.correlation;
-        let points = correlation.angles.iter().zip(&correlation.values).map(|(&angle, &value)| [angle, value]);
-        // Two degrees are enough to draw.
-        all.insert("angular_correlation".into(), points.step_by(4).filter(|point| point[1].is_finite()).collect());
-        let variance = ring.spectrum.variance;
-        let powers = ring.spectrum.power.iter().enumerate().skip(1).map(|(f, &power)| [f as f64, power / variance]);
-        all.insert("power_spectrum".into(), powers.filter(|point| point[1].is_finite()).collect());
-    }
-    if let Some(rings) = response.radial_dependence.as_ref().and_then(|it| it.measured()) {
-        let measured = |of: fn(&crate::observe::angular::AngularCorrelation) -> Option<f64>| -> Vec<[f64; 2]> {
-            let point = |ring: &crate::observe::angular::RingAnalysis| match &ring.outcome {
-                RingOutcome::Measured { correlation, .. } => Some([ring.relative_radius, of(correlation)?]),
-                _ => None,
-            };
-            rings.iter().filter_map(point).filter(|point| point[1].is_finite()).collect()
-        };
-        all.insert("anticorrelation_by_radius".into(), measured(|it| Some(it.anticorrelation)));
-        all.insert("correlation_angle_by_radius".into(), measured(|it| it.crossings.first()?.outcome.angle()));
-    }
-    if let Some(isostatic) = response.isostatic_length.as_ref().and_then(|it| it.measured()) {
-        let points = isostatic.curve.iter().map(|point| [point.scaled_radius, point.scaled_fluctuation]);
-        all.insert("isostatic_fluctuation".into(), points.collect());
-    }
-    all
-}

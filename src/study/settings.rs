@@ -25,9 +25,39 @@ pub struct Study {
     pub relaxers: Vec<RelaxerChoice>,
     /// Samples of every combination.
     pub seeds: Seeds,
+    /// Parts, run one after the other, each with lists of its own; none, the lists above are all there is.
+    #[serde(rename = "part", skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<Part>,
     /// Wall time allowed to a packing and its inflations \[s\]; absent, as long as it takes. What is beyond is recorded as failed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_limit: Option<f64>,
+}
+
+/// A part of a study: what it names stands in the place of what the study names.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Part {
+    /// Numbers of disks in the box; empty, those of the study.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub disk_counts: Vec<usize>,
+    /// Pressures, reduced pressures or packing fractions; empty, those of the study.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub targets: Vec<Target>,
+    /// Increases d_0; empty, those of the study \[length\].
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub increases: Vec<f64>,
+    /// Contact laws; empty, those of the study.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub laws: Vec<LawChoice>,
+    /// How samples come to rest; empty, as the study says.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub relaxers: Vec<RelaxerChoice>,
+    /// Samples of every combination; absent, those of the study.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seeds: Option<Seeds>,
+    /// The boundary; absent, that of the scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub boundary: Option<Boundary>,
 }
 
 /// What a packing is prepared to.
@@ -74,6 +104,7 @@ impl Default for Study {
             laws: Vec::new(),
             relaxers: Vec::new(),
             seeds: Seeds { first: 1, count: 1 },
+            parts: Vec::new(),
             time_limit: None,
         }
     }
@@ -111,6 +142,18 @@ pub enum StudyError {
         /// The value.
         value: String,
     },
+    /// Two parts have a packing in common.
+    #[error("part {part}: {disk_count} disks at {target:?} with seed {seed} are in an earlier part already")]
+    PartsOverlap {
+        /// The later part, from 1.
+        part: usize,
+        /// Disks of the packing.
+        disk_count: usize,
+        /// Its target.
+        target: Target,
+        /// Its seed.
+        seed: u64,
+    },
     /// Seeds beyond the largest number.
     #[error("seeds: {count} from {first} on is beyond the largest seed")]
     SeedsTooLarge {
@@ -130,6 +173,39 @@ impl Study {
         if !self.scene.sample.is_empty() {
             return Err(StudyError::SamplesNamed);
         }
+        if let Some(value) = self.time_limit.filter(|value| value.is_nan() || *value <= 0.0) {
+            return Err(StudyError::NotPositive { field: "time_limit", value });
+        }
+        self.parted().iter().try_for_each(Study::check_lists)
+    }
+
+    /// Studies without parts, one after the other; itself, if it has none.
+    pub(super) fn parted(&self) -> Vec<Study> {
+        if self.parts.is_empty() {
+            return vec![self.clone()];
+        }
+        fn or<T: Clone>(own: &[T], common: &[T]) -> Vec<T> {
+            if own.is_empty() { common.to_vec() } else { own.to_vec() }
+        }
+        let study = |part: &Part| {
+            let mut scene = self.scene.clone();
+            scene.inflation.boundary = part.boundary.unwrap_or(scene.inflation.boundary);
+            Study {
+                scene,
+                disk_counts: or(&part.disk_counts, &self.disk_counts),
+                targets: or(&part.targets, &self.targets),
+                increases: or(&part.increases, &self.increases),
+                laws: or(&part.laws, &self.laws),
+                relaxers: or(&part.relaxers, &self.relaxers),
+                seeds: part.seeds.unwrap_or(self.seeds),
+                parts: Vec::new(),
+                time_limit: self.time_limit,
+            }
+        };
+        self.parts.iter().map(study).collect()
+    }
+
+    fn check_lists(&self) -> Result<(), StudyError> {
         for (list, empty) in [("targets", self.targets.is_empty()), ("seeds.count", self.seeds.count == 0)] {
             if empty {
                 return Err(StudyError::Empty { list });
@@ -145,9 +221,6 @@ impl Study {
             {
                 return Err(StudyError::NotPositive { field: "targets.reduced_pressure", value });
             }
-        }
-        if let Some(value) = self.time_limit.filter(|value| value.is_nan() || *value <= 0.0) {
-            return Err(StudyError::NotPositive { field: "time_limit", value });
         }
         twice("disk_counts", &self.disk_counts)?;
         twice("targets", &self.targets)?;

@@ -7,8 +7,7 @@ use rand_pcg::Pcg64;
 use serde::Serialize;
 
 use crate::observe::angular::quantile;
-use crate::response::PhaseOutcome;
-use crate::study::record::{Cell, FailureKind, Record, RecordOutcome};
+use crate::study::record::{Cell, FailureKind};
 
 /// Resamplings of a bootstrap: its ends at 2.5 and 97.5 % then stand on the 25th value from either end.
 const RESAMPLINGS: usize = 1000;
@@ -59,56 +58,6 @@ pub struct PhaseCounts {
     pub quasielastic: usize,
     /// Undecided.
     pub undecided: usize,
-}
-
-/// What has been seen of a cell so far: its numbers, not its curves.
-pub(super) struct Gathered {
-    cell: Cell,
-    done_count: usize,
-    failures: BTreeMap<FailureKind, usize>,
-    phases: PhaseCounts,
-    values: BTreeMap<String, Vec<f64>>,
-}
-
-impl Gathered {
-    pub(super) fn new(cell: Cell) -> Self {
-        let (failures, values) = (BTreeMap::new(), BTreeMap::new());
-        Gathered { cell, done_count: 0, failures, phases: PhaseCounts::default(), values }
-    }
-
-    /// Whether a record belongs to it.
-    pub(super) fn has(&self, record: &Record) -> bool {
-        self.cell == record.cell
-    }
-
-    pub(super) fn add(&mut self, record: &Record) {
-        match &record.outcome {
-            RecordOutcome::Failed { kind, .. } => *self.failures.entry(*kind).or_default() += 1,
-            RecordOutcome::Done { phase, numbers, .. } => {
-                self.done_count += 1;
-                let phases = &mut self.phases;
-                *match phase.outcome {
-                    PhaseOutcome::Unjammed => &mut phases.unjammed,
-                    PhaseOutcome::Plastic => &mut phases.plastic,
-                    PhaseOutcome::Quasielastic => &mut phases.quasielastic,
-                    PhaseOutcome::Undecided => &mut phases.undecided,
-                } += 1;
-                for (name, &value) in numbers {
-                    self.values.entry(name.clone()).or_default().push(value);
-                }
-            }
-        }
-    }
-
-    pub(super) fn statistics(self) -> CellStatistics {
-        CellStatistics {
-            cell: self.cell,
-            done_count: self.done_count,
-            failures: self.failures,
-            phases: self.phases,
-            numbers: self.values.iter().map(|(name, values)| (name.clone(), NumberStatistics::of(values))).collect(),
-        }
-    }
 }
 
 impl NumberStatistics {

@@ -1,9 +1,9 @@
-//! [`LogAxis`]: logarithmic axes over whole decades, or between two values.
+//! [`LogAxis`], [`LinearAxis`]: axes over whole decades, between two values, or with equal steps; and how they are drawn.
 
 use std::fmt::Write as _;
 
 use crate::report::figures::{HEIGHT, INK, WIDTH};
-use crate::report::number::superscript;
+use crate::report::number::{significant, superscript};
 
 /// Ends of the axes \[px\].
 pub(crate) const LEFT: f64 = 66.0;
@@ -20,6 +20,9 @@ const MOST_DECADES: i32 = 16;
 
 /// Labels of an axis, at most.
 const MOST_LABELS: i32 = 8;
+
+/// Labels of an axis with equal steps, at most.
+const LINEAR_LABELS: f64 = 7.0;
 
 /// Decades up to which every tick from 2 to 9 is drawn too.
 const FINE_DECADES: f64 = 4.5;
@@ -57,7 +60,8 @@ impl LogAxis {
 
     /// Where a value stands \[px\].
     pub(crate) fn place(&self, value: f64) -> f64 {
-        let share = (value.log10() - self.range[0]) / (self.range[1] - self.range[0]);
+        // What is not positive stands at the lower end.
+        let share = (value.max(0.0).log10() - self.range[0]) / (self.range[1] - self.range[0]);
         self.ends[0] + share.clamp(0.0, 1.0) * (self.ends[1] - self.ends[0])
     }
 
@@ -103,8 +107,88 @@ impl LogAxis {
     }
 }
 
+/// An axis with equal steps.
+pub(crate) struct LinearAxis {
+    range: [f64; 2],
+    /// Where its ends stand \[px\].
+    ends: [f64; 2],
+}
+
+impl LinearAxis {
+    /// From one value to a larger one.
+    pub(crate) fn between(low: f64, high: f64, ends: [f64; 2]) -> Self {
+        LinearAxis { range: [low, high], ends }
+    }
+
+    /// Where a value stands \[px\].
+    pub(crate) fn place(&self, value: f64) -> f64 {
+        let share = (value - self.range[0]) / (self.range[1] - self.range[0]);
+        self.ends[0] + share.clamp(0.0, 1.0) * (self.ends[1] - self.ends[0])
+    }
+
+    /// Whether a value stands on the axis.
+    pub(crate) fn holds(&self, value: f64) -> bool {
+        (self.range[0]..=self.range[1]).contains(&value)
+    }
+
+    /// Labels at multiples of 1, 2 or 5 times a power of ten, and where they stand.
+    fn labels(&self) -> Vec<(String, f64)> {
+        let span = self.range[1] - self.range[0];
+        let power = 10f64.powi((span / LINEAR_LABELS).log10().floor() as i32);
+        let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|it| it * power).find(|step| span / step <= LINEAR_LABELS);
+        let step = step.unwrap_or(10.0 * power);
+        let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
+        let first = (self.range[0] / step - 1e-9).ceil() as i64;
+        let last = (self.range[1] / step + 1e-9).floor() as i64;
+        let label = |multiple: i64| {
+            let value = multiple as f64 * step;
+            let text = if value.abs() < 1e5 { format!("{value:.decimals$}") } else { significant(value, 2) };
+            (text.replace('-', "−"), self.place(value))
+        };
+        (first..=last).map(label).collect()
+    }
+}
+
+/// Either kind.
+pub(crate) enum Axis {
+    Log(LogAxis),
+    Linear(LinearAxis),
+}
+
+impl Axis {
+    /// Where a value stands \[px\].
+    pub(crate) fn place(&self, value: f64) -> f64 {
+        match self {
+            Axis::Log(axis) => axis.place(value),
+            Axis::Linear(axis) => axis.place(value),
+        }
+    }
+
+    /// Whether a value stands on the axis.
+    pub(crate) fn holds(&self, value: f64) -> bool {
+        match self {
+            Axis::Log(axis) => axis.holds(value),
+            Axis::Linear(axis) => axis.holds(value),
+        }
+    }
+
+    fn labels(&self) -> Vec<(String, f64)> {
+        match self {
+            Axis::Log(axis) => axis.labels(),
+            Axis::Linear(axis) => axis.labels(),
+        }
+    }
+
+    fn fine_ticks(&self) -> Vec<f64> {
+        match self {
+            Axis::Log(axis) => axis.fine_ticks(),
+            Axis::Linear(_) => Vec::new(),
+        }
+    }
+}
+
 /// Both axes with ticks, labels and thin lines across, as SVG elements.
-pub(crate) fn axes(x_axis: &LogAxis, y_axis: &LogAxis, x_label: &str, y_label: &str) -> String {
+pub(crate) fn axes(x_axis: &Axis, y_axis: &Axis, x_label: &str, y_label: &str) -> String {
     let mut svg = format!("<g font-size=\"{FONT_SIZE}\" stroke-width=\"1\">\n");
     for (text, x) in x_axis.labels() {
         let _ = writeln!(
@@ -157,6 +241,17 @@ mod tests {
         let labels: Vec<String> = axis.labels().into_iter().map(|(text, _)| text).collect();
         assert_eq!(labels.first().map(String::as_str), Some("10⁻⁹"));
         assert_eq!(labels.len(), 8);
+    }
+
+    #[test]
+    fn equal_steps_are_round_numbers() {
+        let labels = |low, high| {
+            let axis = LinearAxis::between(low, high, [0.0, 1.0]);
+            axis.labels().into_iter().map(|(text, _)| text).collect::<Vec<_>>()
+        };
+        assert_eq!(labels(-0.1, 0.3), ["−0.1", "0.0", "0.1", "0.2", "0.3"]);
+        assert_eq!(labels(0.0, 41.0), ["0", "10", "20", "30", "40"]);
+        assert_eq!(labels(0.0012, 0.0031), ["0.0015", "0.0020", "0.0025", "0.0030"]);
     }
 
     #[test]

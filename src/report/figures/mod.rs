@@ -20,6 +20,7 @@ pub(crate) mod log_axes;
 pub mod map;
 pub mod multipoles;
 mod palette;
+pub(crate) mod plot;
 pub mod radial;
 pub mod radial_dependence;
 pub mod spectrum;

@@ -16,6 +16,17 @@ pub(crate) const SKY: [u8; 3] = [0x56, 0xB4, 0xE9];
 /// Colours of curves side by side, in this order, then from the front again; the first three as in the study, fig. 1.
 pub(crate) const SEQUENCE: [[u8; 3]; 6] = [PURPLE, GREEN, VERMILLION, BLUE, ORANGE, SKY];
 
+/// Dark to light, for series that have an order. Source: viridis (Smith, van der Walt 2015, CC0), five of its colours.
+const ORDERED: [[u8; 3]; 5] =
+    [[0x44, 0x01, 0x54], [0x3B, 0x52, 0x8B], [0x21, 0x90, 0x8C], [0x5D, 0xC8, 0x63], [0xE3, 0xC5, 0x1E]];
+
+/// The colour of one of `count` series that have an order.
+pub(crate) fn ordered(index: usize, count: usize) -> [u8; 3] {
+    let place = index as f64 / count.saturating_sub(1).max(1) as f64 * (ORDERED.len() - 1) as f64;
+    let class = (place as usize).min(ORDERED.len() - 2);
+    mixed(ORDERED[class], ORDERED[class + 1], place - class as f64)
+}
+
 /// Purple over white to orange. Source: ColorBrewer 2.0 (Brewer, Harrower), PuOr in 11 classes, "colorblind safe".
 const DIVERGING: [[u8; 3]; 11] = [
     [0x2D, 0x00, 0x4B],
@@ -60,8 +71,10 @@ pub(crate) fn red_over_blue(value: f64) -> [u8; 3] {
 fn between(scale: &[[u8; 3]; 11], value: f64) -> [u8; 3] {
     let place = (value.clamp(-1.0, 1.0) + 1.0) / 2.0 * (scale.len() - 1) as f64;
     let class = (place as usize).min(scale.len() - 2);
-    let share = place - class as f64;
-    let (low, high) = (scale[class], scale[class + 1]);
+    mixed(scale[class], scale[class + 1], place - class as f64)
+}
+
+fn mixed(low: [u8; 3], high: [u8; 3], share: f64) -> [u8; 3] {
     std::array::from_fn(|i| (f64::from(low[i]) + share * (f64::from(high[i]) - f64::from(low[i]))).round() as u8)
 }
 

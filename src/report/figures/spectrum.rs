@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::report::figures::log_axes::{BOTTOM, FONT_SIZE, LEFT, LogAxis, RIGHT, TOP, axes};
+use crate::report::figures::log_axes::{Axis, BOTTOM, FONT_SIZE, LEFT, LogAxis, RIGHT, TOP, axes};
 use crate::report::figures::palette::{SEQUENCE, hexadecimal};
 use crate::report::figures::{Figure, INK};
 
@@ -43,8 +43,8 @@ pub fn spectrum_figure(name: &str, spectra: &[SpectrumPoints], curves: &[Spectru
         || spectra.iter().flat_map(|it| &it.values).copied().filter(|&value| value > 0.0 && value.is_finite());
     let largest = positive().reduce(f64::max)?;
     let smallest = positive().fold(largest, f64::min).max(DECADES * largest);
-    let x_axis = LogAxis::between(0.9, 1.1 * highest as f64, [LEFT, RIGHT]);
-    let y_axis = LogAxis::between(0.5 * smallest, 2.0 * largest, [BOTTOM, TOP]);
+    let x_axis = Axis::Log(LogAxis::between(0.9, 1.1 * highest as f64, [LEFT, RIGHT]));
+    let y_axis = Axis::Log(LogAxis::between(0.5 * smallest, 2.0 * largest, [BOTTOM, TOP]));
     let mut svg = axes(&x_axis, &y_axis, "f", "S(f) / S(1)");
     let lines = spectra.len() + curves.len();
     // The last line of the legend stands just above the axes.

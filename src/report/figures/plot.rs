@@ -1,0 +1,292 @@
+//! [`Plot`]: series of points with errors and lines, each axis linear or logarithmic, a legend above.
+
+use std::fmt::Write as _;
+
+use crate::report::figures::log_axes::{Axis, BOTTOM, FONT_SIZE, LEFT, LinearAxis, LogAxis, RIGHT, TOP, axes};
+use crate::report::figures::palette::{SEQUENCE, hexadecimal, ordered};
+use crate::report::figures::{Figure, INK};
+
+/// Height of a line of the legend \[px\].
+const LEGEND_LINE: f64 = 17.0;
+
+/// Lines of the legend that have room above the axes.
+const LEGEND_LINES: usize = 5;
+
+/// Room beyond the outermost points: a share of a linear axis, this to the power of ten of a logarithmic one.
+const MARGIN: f64 = 0.05;
+
+/// Decades below the largest value that a logarithmic axis shows.
+const MOST_DECADES: f64 = 1e-9;
+
+/// An axis of a plot.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PlotAxis {
+    /// SVG text, with its unit.
+    pub label: String,
+    /// Whether its steps are factors.
+    pub logarithmic: bool,
+    /// Its ends; absent, what the points need.
+    pub range: Option<[f64; 2]>,
+}
+
+impl PlotAxis {
+    /// With factors as steps, over what the points need.
+    pub(crate) fn logarithmic(label: impl Into<String>) -> Self {
+        PlotAxis { label: label.into(), logarithmic: true, range: None }
+    }
+
+    /// With equal steps, over what the points need.
+    pub(crate) fn linear(label: impl Into<String>) -> Self {
+        PlotAxis { label: label.into(), logarithmic: false, range: None }
+    }
+
+    /// From one value to another.
+    pub(crate) fn within(self, low: f64, high: f64) -> Self {
+        PlotAxis { range: Some([low, high]), ..self }
+    }
+
+    fn axis(&self, values: impl Iterator<Item = f64>, ends: [f64; 2]) -> Option<Axis> {
+        let usable = |value: &f64| value.is_finite() && (!self.logarithmic || *value > 0.0);
+        let [low, high] = match self.range {
+            Some(range) => range,
+            None => {
+                let first = [f64::INFINITY, f64::NEG_INFINITY];
+                let found = values.filter(usable).fold(first, |[low, high], it| [low.min(it), high.max(it)]);
+                if !(found[0].is_finite() && found[1].is_finite()) {
+                    return None;
+                }
+                if self.logarithmic {
+                    let low = found[0].max(MOST_DECADES * found[1]);
+                    let margin = (found[1] / low).powf(MARGIN).max(1.1);
+                    [low / margin, found[1] * margin]
+                } else {
+                    let margin = (MARGIN * (found[1] - found[0])).max(1e-3 * found[1].abs()).max(f64::MIN_POSITIVE);
+                    [found[0] - margin, found[1] + margin]
+                }
+            }
+        };
+        Some(match self.logarithmic {
+            true => Axis::Log(LogAxis::between(low, high, ends)),
+            false => Axis::Linear(LinearAxis::between(low, high, ends)),
+        })
+    }
+}
+
+/// A point, with the ends of its interval where it has one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PlotPoint {
+    pub x: f64,
+    pub y: f64,
+    pub interval: Option<[f64; 2]>,
+}
+
+/// How a series is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Look {
+    /// Points alone.
+    Points,
+    /// Hollow points.
+    Hollow,
+    /// Points joined.
+    Joined,
+    /// A line.
+    Line,
+    /// A dashed line.
+    Dashed,
+}
+
+/// A series of points, or a curve.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Series {
+    /// What it is, in the legend, as SVG text; empty, it has no entry.
+    pub label: String,
+    pub points: Vec<PlotPoint>,
+    pub look: Look,
+    pub colour: [u8; 3],
+}
+
+/// The colour of one of `count` series.
+pub(crate) fn colour(index: usize, count: usize) -> [u8; 3] {
+    if count <= 4 { SEQUENCE[index % SEQUENCE.len()] } else { ordered(index, count) }
+}
+
+/// Points without intervals.
+pub(crate) fn bare(points: impl Iterator<Item = (f64, f64)>) -> Vec<PlotPoint> {
+    points.map(|(x, y)| PlotPoint { x, y, interval: None }).collect()
+}
+
+/// A straight line across the axes, with a few words beside it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Guide {
+    /// At this x.
+    Vertical(f64, String),
+    /// At this y.
+    Horizontal(f64, String),
+}
+
+/// A picture still to be drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Plot {
+    pub title: String,
+    pub description: String,
+    pub x: PlotAxis,
+    pub y: PlotAxis,
+    pub series: Vec<Series>,
+    pub guides: Vec<Guide>,
+}
+
+impl Plot {
+    /// The picture; none where no point can be shown.
+    pub(crate) fn draw(self) -> Option<Figure> {
+        let points = || self.series.iter().flat_map(|series| &series.points);
+        let x_axis = self.x.axis(points().map(|point| point.x), [LEFT, RIGHT])?;
+        let heights = points().flat_map(|point| point.interval.into_iter().flatten().chain([point.y]));
+        let y_axis = self.y.axis(heights, [BOTTOM, TOP])?;
+        let shown = |point: &&PlotPoint| x_axis.holds(point.x) && y_axis.holds(point.y);
+        if !points().any(|point| shown(&point)) {
+            return None;
+        }
+        let mut svg = axes(&x_axis, &y_axis, &self.x.label, &self.y.label);
+        self.guides.iter().for_each(|guide| guide.markup(&mut svg, &x_axis, &y_axis));
+        for series in &self.series {
+            series.markup(&mut svg, &x_axis, &y_axis);
+        }
+        self.legend(&mut svg);
+        Some(Figure { title: self.title, description: self.description, elements: svg })
+    }
+
+    /// Entries in as many columns as they need.
+    fn legend(&self, svg: &mut String) {
+        let named: Vec<&Series> = self.series.iter().filter(|series| !series.label.is_empty()).collect();
+        let columns = named.len().div_ceil(LEGEND_LINES).max(1);
+        let lines = named.len().div_ceil(columns);
+        for (index, series) in named.iter().enumerate() {
+            let (column, line) = (index / lines, index % lines);
+            let x = LEFT + 2.0 + column as f64 * (RIGHT - LEFT) / columns as f64;
+            let y = TOP - 8.0 - (lines as f64 - 0.5 - line as f64) * LEGEND_LINE;
+            series.sign(svg, x, y);
+            let _ = writeln!(
+                svg,
+                "<text x=\"{}\" y=\"{}\" font-size=\"{FONT_SIZE}\" fill=\"{INK}\">{}</text>",
+                x + 30.0,
+                y + 4.5,
+                series.label
+            );
+        }
+    }
+}
+
+impl Series {
+    fn markup(&self, svg: &mut String, x_axis: &Axis, y_axis: &Axis) {
+        let colour = hexadecimal(self.colour);
+        let shown = |point: &&PlotPoint| x_axis.holds(point.x) && y_axis.holds(point.y);
+        if matches!(self.look, Look::Joined | Look::Line | Look::Dashed) {
+            let (width, dashes) = match self.look {
+                Look::Joined => (1.0, ""),
+                Look::Dashed => (1.8, " stroke-dasharray=\"6 4\""),
+                _ => (1.8, ""),
+            };
+            let all: Vec<&PlotPoint> = self.points.iter().collect();
+            for run in all.split(|point| !shown(point)).filter(|run| run.len() > 1) {
+                let place = |point: &&PlotPoint| format!("{:.1},{:.1}", x_axis.place(point.x), y_axis.place(point.y));
+                let _ = writeln!(
+                    svg,
+                    "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"{dashes}/>",
+                    run.iter().map(place).collect::<Vec<_>>().join(" ")
+                );
+            }
+        }
+        if matches!(self.look, Look::Line | Look::Dashed) {
+            return;
+        }
+        let fill = if self.look == Look::Hollow { "#ffffff" } else { &colour };
+        for point in self.points.iter().filter(shown) {
+            let (x, y) = (x_axis.place(point.x), y_axis.place(point.y));
+            if let Some(interval) = point.interval {
+                let [low, high] = interval.map(|end| if end.is_finite() { y_axis.place(end) } else { y });
+                let _ = write!(svg, "<path d=\"M{x:.1} {low:.1}V{high:.1}\" stroke=\"{colour}\"/>");
+            }
+            let _ =
+                write!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.6\" fill=\"{fill}\" stroke=\"{colour}\"/>");
+        }
+        svg.push('\n');
+    }
+
+    /// What stands before its name in the legend.
+    fn sign(&self, svg: &mut String, x: f64, y: f64) {
+        let colour = hexadecimal(self.colour);
+        let fill = if self.look == Look::Hollow { "#ffffff" } else { &colour };
+        let line = match self.look {
+            Look::Points | Look::Hollow => None,
+            Look::Joined => Some(("1", "")),
+            Look::Line => Some(("2", "")),
+            Look::Dashed => Some(("2", " stroke-dasharray=\"6 4\"")),
+        };
+        if let Some((width, dashes)) = line {
+            let _ = write!(svg, "<path d=\"M{x} {y}h24\" stroke=\"{colour}\" stroke-width=\"{width}\"{dashes}/>");
+        }
+        if !matches!(self.look, Look::Line | Look::Dashed) {
+            let middle = x + 12.0;
+            let _ =
+                write!(svg, "<circle cx=\"{middle}\" cy=\"{y}\" r=\"2.8\" fill=\"{fill}\" stroke=\"{colour}\"/>");
+        }
+    }
+}
+
+impl Guide {
+    fn markup(&self, svg: &mut String, x_axis: &Axis, y_axis: &Axis) {
+        let style = "stroke=\"#777777\" stroke-dasharray=\"2 3\"";
+        match self {
+            Guide::Vertical(at, text) if x_axis.holds(*at) => {
+                let x = x_axis.place(*at);
+                let _ = writeln!(
+                    svg,
+                    "<path d=\"M{x:.1} {TOP}V{BOTTOM}\" {style}/><text x=\"{:.1}\" y=\"{}\" font-size=\"12\" \
+                     fill=\"#555555\">{text}</text>",
+                    x + 4.0,
+                    BOTTOM - 8.0
+                );
+            }
+            Guide::Horizontal(at, text) if y_axis.holds(*at) => {
+                let y = y_axis.place(*at);
+                let _ = writeln!(
+                    svg,
+                    "<path d=\"M{LEFT} {y:.1}H{RIGHT}\" {style}/><text x=\"{}\" y=\"{:.1}\" font-size=\"12\" \
+                     text-anchor=\"end\" fill=\"#555555\">{text}</text>",
+                    RIGHT - 4.0,
+                    y - 4.0
+                );
+            }
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plot(points: Vec<PlotPoint>, y: PlotAxis) -> Option<Figure> {
+        let series = Series { label: "a".into(), points, look: Look::Joined, colour: colour(0, 1) };
+        let (title, description) = ("t".to_string(), "d".to_string());
+        Plot { title, description, x: PlotAxis::logarithmic("x"), y, series: vec![series], guides: Vec::new() }.draw()
+    }
+
+    #[test]
+    fn points_off_the_axes_are_left_out_and_break_the_line() {
+        let points = bare([(1.0, 1.0), (2.0, 2.0), (3.0, -1.0), (4.0, 4.0), (5.0, 5.0)].into_iter());
+        let figure = plot(points, PlotAxis::logarithmic("y")).expect("four points");
+        assert_eq!(figure.elements.matches("<polyline").count(), 2);
+        // Four points and the sign of the legend.
+        assert_eq!(figure.elements.matches("<circle").count(), 5);
+    }
+
+    #[test]
+    fn nothing_to_show_is_no_picture() {
+        assert!(plot(Vec::new(), PlotAxis::linear("y")).is_none());
+        assert!(plot(bare([(1.0, f64::NAN)].into_iter()), PlotAxis::linear("y")).is_none());
+        assert!(plot(bare([(1.0, -2.0)].into_iter()), PlotAxis::logarithmic("y")).is_none());
+        let one = plot(bare([(1.0, 0.0)].into_iter()), PlotAxis::linear("y"));
+        assert!(one.is_some_and(|figure| !figure.elements.contains("NaN")));
+    }
+}

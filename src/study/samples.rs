@@ -1,0 +1,188 @@
+//! [`CellSamples`]: what is kept of all samples of a cell, so that a study of any length fits in memory.
+//!
+//! Of every sample its numbers and the powers of its ring, some 80 numbers; of curves sums over samples; of the first few samples
+//! the radial profile as it is.
+
+use std::collections::BTreeMap;
+
+use crate::response::PhaseOutcome;
+use crate::study::record::{Cell, FailureKind, Record, RecordOutcome};
+use crate::study::statistics::{CellStatistics, NumberStatistics, PhaseCounts};
+
+/// Samples whose radial profile is kept as it is.
+const SINGLE_COUNT: usize = 4;
+
+/// All samples of a cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellSamples {
+    /// The cell.
+    pub cell: Cell,
+    /// Samples measured.
+    pub done_count: usize,
+    /// Samples that failed, by kind.
+    pub failures: BTreeMap<FailureKind, usize>,
+    /// Samples of every phase.
+    pub phases: PhaseCounts,
+    /// Numbers by name, of the samples that have them, in the order of the plan.
+    pub numbers: BTreeMap<String, Vec<f64>>,
+    /// P_f over the variance of the ring, f = 1, 2, …, of every sample that has it.
+    pub powers: Vec<Vec<f64>>,
+    /// Curves by name, averaged.
+    pub curves: BTreeMap<String, MeanCurve>,
+    /// The first samples.
+    pub singles: Vec<Single>,
+}
+
+/// One sample's radial profile.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Single {
+    /// Its seed.
+    pub seed: u64,
+    /// (r, ⟨d_r⟩) \[length\].
+    pub profile: Vec<[f64; 2]>,
+    /// Its numbers.
+    pub numbers: BTreeMap<String, f64>,
+}
+
+/// A curve averaged over samples, place by place.
+///
+/// Angles and frequencies are the same in all samples; points at distances and r̂ go to places one ring, or a tenth of R, wide.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MeanCurve {
+    /// By place.
+    sums: BTreeMap<i64, Sums>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Sums {
+    count: usize,
+    abscissa: f64,
+    /// About the first value, so that no digits are lost.
+    first: f64,
+    ordinate: f64,
+    square: f64,
+}
+
+/// One point of a mean curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeanPoint {
+    /// Mean abscissa.
+    pub x: f64,
+    /// Mean ordinate.
+    pub y: f64,
+    /// Its standard error; none from one sample.
+    pub standard_error: Option<f64>,
+    /// Samples in it.
+    pub count: usize,
+}
+
+impl MeanCurve {
+    fn add(&mut self, points: &[[f64; 2]], place: impl Fn(usize, f64) -> i64) {
+        for (index, &[x, y]) in points.iter().enumerate() {
+            let sums = self.sums.entry(place(index, x)).or_insert(Sums { first: y, ..Sums::default() });
+            sums.count += 1;
+            sums.abscissa += x;
+            sums.ordinate += y - sums.first;
+            sums.square += (y - sums.first) * (y - sums.first);
+        }
+    }
+
+    /// Its points, ascending.
+    pub fn points(&self) -> Vec<MeanPoint> {
+        let point = |sums: &Sums| {
+            let count = sums.count as f64;
+            let mean = sums.ordinate / count;
+            let square = (sums.square - count * mean * mean).max(0.0);
+            let standard_error = (sums.count > 1).then(|| (square / (count - 1.0) / count).sqrt());
+            MeanPoint { x: sums.abscissa / count, y: sums.first + mean, standard_error, count: sums.count }
+        };
+        self.sums.values().map(point).collect()
+    }
+}
+
+impl CellSamples {
+    pub(super) fn new(cell: Cell) -> Self {
+        CellSamples {
+            cell,
+            done_count: 0,
+            failures: BTreeMap::new(),
+            phases: PhaseCounts::default(),
+            numbers: BTreeMap::new(),
+            powers: Vec::new(),
+            curves: BTreeMap::new(),
+            singles: Vec::new(),
+        }
+    }
+
+    /// Whether a record belongs to it.
+    pub(super) fn has(&self, record: &Record) -> bool {
+        self.cell == record.cell
+    }
+
+    pub(super) fn add(&mut self, record: &Record) {
+        let (phase, numbers, curves) = match &record.outcome {
+            RecordOutcome::Failed { kind, .. } => {
+                *self.failures.entry(*kind).or_default() += 1;
+                return;
+            }
+            RecordOutcome::Done { phase, numbers, curves } => (phase, numbers, curves),
+        };
+        self.done_count += 1;
+        let phases = &mut self.phases;
+        *match phase.outcome {
+            PhaseOutcome::Unjammed => &mut phases.unjammed,
+            PhaseOutcome::Plastic => &mut phases.plastic,
+            PhaseOutcome::Quasielastic => &mut phases.quasielastic,
+            PhaseOutcome::Undecided => &mut phases.undecided,
+        } += 1;
+        for (name, &value) in numbers {
+            self.numbers.entry(name.clone()).or_default().push(value);
+        }
+        for (name, points) in curves {
+            let place = |index: usize, x: f64| match name.as_str() {
+                "angular_correlation" => index as i64,
+                name if name.ends_with("_by_radius") => (10.0 * x).round() as i64,
+                _ => x.floor() as i64,
+            };
+            self.curves.entry(name.clone()).or_default().add(points, place);
+        }
+        if let Some(points) = curves.get("power_spectrum") {
+            self.powers.push(points.iter().map(|point| point[1]).collect());
+        }
+        if let Some(profile) = curves.get("radial_profile")
+            && self.singles.len() < SINGLE_COUNT
+        {
+            self.singles.push(Single { seed: record.seed, profile: profile.clone(), numbers: numbers.clone() });
+        }
+    }
+
+    /// Statistics of every number.
+    pub fn statistics(&self) -> CellStatistics {
+        CellStatistics {
+            cell: self.cell,
+            done_count: self.done_count,
+            failures: self.failures.clone(),
+            phases: self.phases,
+            numbers: self.numbers.iter().map(|(name, values)| (name.clone(), NumberStatistics::of(values))).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn means_keep_their_digits() {
+        let mut curve = MeanCurve::default();
+        for offset in [0.0, 1.0, 2.0] {
+            curve.add(&[[1.2 + 0.1 * offset, 1e9 + offset], [2.5, offset]], |_, x| x.floor() as i64);
+        }
+        let points = curve.points();
+        assert_eq!(points.len(), 2);
+        // Values 0, 1, 2 above 10⁹: mean 1, standard error √(1/3).
+        assert_eq!((points[0].y, points[0].count), (1e9 + 1.0, 3));
+        assert!((points[0].standard_error.expect("three") - (1.0f64 / 3.0).sqrt()).abs() < 1e-15);
+        assert!((points[0].x - 1.3).abs() < 1e-15 && points[1].y == 1.0);
+    }
+}
