@@ -76,6 +76,7 @@
 //! | [`analysis`] | the same of states relaxed elsewhere | [`Analysis`](analysis::Analysis) |
 //! | [`run`] | scene to report, one line a stage | [`run::run`] |
 //! | [`study`] | an experiment over lists of parameters, resumable | [`study::execute`](study::execute()), [`study::merge`](study::merge()) |
+//! | `transition` (feature `fit`) | p_c, its scaling and lengths from a study, beside what is published | `transition::Transition` |
 //! | [`report`] | table, data files, figures, one page | [`report::write`] |
 //! | `precision` (feature `linear`) | error against cost of relaxers and other numerical choices | `precision::measure` |
 //!
@@ -128,6 +129,8 @@ pub mod scene;
 #[cfg(feature = "linear")]
 pub mod sparse;
 pub mod study;
+#[cfg(feature = "fit")]
+pub mod transition;
 pub mod vector;
 
 /// The README and the chapters of the book, so that `cargo test --doc` compiles and runs their snippets.

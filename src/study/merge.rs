@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::io::write_atomically;
 use crate::study::plan::Plan;
-use crate::study::settings::StudyError;
+use crate::study::settings::{Study, StudyError};
 use crate::study::samples::CellSamples;
 use crate::study::statistics::CellStatistics;
 use crate::study::store::{Problem, Store, StoreError, TaskState};
@@ -16,6 +16,8 @@ use crate::study::store::{Problem, Store, StoreError, TaskState};
 /// What a merge found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Merged {
+    /// The study.
+    pub study: Study,
     /// Samples of the plan.
     pub sample_count: usize,
     /// Those that have a record.
@@ -61,8 +63,10 @@ pub enum MergeError {
 /// A folder without a study, or that cannot be written.
 pub fn merge(folder: &Path) -> Result<Merged, MergeError> {
     let store = Store::there(folder);
-    let plan = Plan::of(&store.study()?)?;
+    let study = store.study()?;
+    let plan = Plan::of(&study)?;
     let mut merged = Merged {
+        study,
         sample_count: plan.sample_count(),
         record_count: 0,
         damaged: Vec::new(),

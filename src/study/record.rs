@@ -17,7 +17,7 @@ use crate::run::{RunError, SampleResult};
 use crate::scene::Scene;
 use crate::study::curves::curves;
 use crate::study::plan::Task;
-use crate::study::settings::{Target, reduction};
+use crate::study::settings::{Target, mobile_count, reduction};
 
 /// Samples that differ in nothing but the seed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -34,6 +34,18 @@ pub struct Cell {
     pub relaxer: RelaxerChoice,
     /// What is held.
     pub boundary: Boundary,
+}
+
+impl Cell {
+    /// Whether another cell has all but the target in common.
+    pub fn differs_in_target_alone(&self, other: &Cell) -> bool {
+        Cell { target: self.target, ..*other } == *self
+    }
+
+    /// N, the disks in the circle by area, or all of the periodic box.
+    pub fn mobile_count(&self) -> f64 {
+        mobile_count(self.disk_count, self.boundary)
+    }
 }
 
 /// What a study keeps of a sample.

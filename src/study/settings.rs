@@ -283,13 +283,18 @@ impl Study {
     }
 }
 
-/// p̂/p = N^(α−1), N the disks in the circle by area, or all of the periodic box.
-pub(super) fn reduction(scene: &Scene) -> f64 {
-    let share = match scene.inflation.boundary {
+/// N, the disks in the circle by area, or all of the periodic box.
+pub(super) fn mobile_count(disk_count: usize, boundary: Boundary) -> f64 {
+    let share = match boundary {
         Boundary::HeldRim { outer_radius_over_side: ratio } => std::f64::consts::PI * ratio * ratio,
         Boundary::Periodic => 1.0,
     };
-    libm::pow(share * scene.disk_count as f64, scene.law.exponent() - 1.0)
+    share * disk_count as f64
+}
+
+/// p̂/p = N^(α−1).
+pub(super) fn reduction(scene: &Scene) -> f64 {
+    libm::pow(mobile_count(scene.disk_count, scene.inflation.boundary), scene.law.exponent() - 1.0)
 }
 
 fn twice<T: PartialEq + std::fmt::Debug>(list: &'static str, values: &[T]) -> Result<(), StudyError> {

@@ -1,0 +1,75 @@
+//! The report of a study: figures of every cell and series, tables with intervals, what agrees with the literature.
+//!
+//! A figure is drawn where the study has what it shows; nothing is said of what it has not.
+
+mod angular;
+mod lengths;
+mod order;
+mod page;
+mod radial;
+mod scaling;
+
+pub use page::study_page;
+
+use crate::report::figures::plot::{PlotPoint, colour};
+use crate::report::number::significant;
+use crate::study::{Cell, CellSamples, Merged, NumberStatistics, Target};
+use crate::transition::{Series, SeriesPoint, Transition};
+
+/// What figures are drawn from.
+pub(super) struct Subject<'a> {
+    pub merged: &'a Merged,
+    pub transition: &'a Transition,
+}
+
+impl<'a> Subject<'a> {
+    pub fn samples(&self, point: &SeriesPoint) -> &'a CellSamples {
+        &self.merged.samples[point.cell]
+    }
+
+    /// Mean of a number in a cell, with its interval.
+    pub fn number(&self, cell: usize, name: &str) -> Option<NumberStatistics> {
+        self.merged.cells[cell].numbers.get(name).copied()
+    }
+
+    /// A number along a series, against p̂ or whatever `abscissa` makes of a point.
+    pub fn along(&self, series: &Series, name: &str, abscissa: impl Fn(&SeriesPoint) -> f64) -> Vec<PlotPoint> {
+        let point = |point: &SeriesPoint| {
+            let found = self.number(point.cell, name)?;
+            Some(PlotPoint { x: abscissa(point), y: found.mean, interval: found.mean_interval })
+        };
+        series.points.iter().filter_map(point).collect()
+    }
+}
+
+/// p̂ as SVG text.
+pub(super) fn reduced(value: f64) -> String {
+    format!("p̂ = {}", significant(value, 1))
+}
+
+/// Size and, where they differ among series, law and inflation.
+pub(super) fn short(series: &Series, all: &[Series]) -> String {
+    let Cell { law, disk_count, increase, .. } = series.cell;
+    let mut text = format!("{disk_count}");
+    if all.iter().any(|other| other.cell.law != law) {
+        text = format!("{} {text}", law.name());
+    }
+    if all.iter().any(|other| other.cell.increase != increase) {
+        text = format!("{text}, {increase}");
+    }
+    text
+}
+
+/// The colour of a series among all.
+pub(super) fn series_colour(index: usize, all: &[Series]) -> [u8; 3] {
+    colour(index, all.len())
+}
+
+/// What a cell was prepared to, as SVG text.
+pub(super) fn target(cell: &Cell) -> String {
+    match cell.target {
+        Target::Pressure(value) => format!("p = {}", significant(value, 2)),
+        Target::ReducedPressure(value) => reduced(value),
+        Target::PackingFraction(value) => format!("φ = {value}"),
+    }
+}

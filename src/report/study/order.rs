@@ -1,0 +1,216 @@
+//! κ, Δp, G*, θ*, θ† against the pressure.
+
+use std::f64::consts::PI;
+
+use crate::reference::lorentzian::{Lorentzian, USUAL_EXPONENT};
+use crate::report::figures::Figure;
+use crate::report::figures::plot::{Guide, Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare, colour};
+use crate::report::study::{Subject, series_colour, short};
+use crate::study::NumberStatistics;
+use crate::transition::{ANGLE, ANTICORRELATION, FIRST_ZERO, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION, Series};
+
+/// Samples of a cell drawn one by one, at most.
+const SINGLES: usize = 200;
+
+/// κ_2/κ_1, the zeros of J_1.
+const SECOND_OVER_FIRST: f64 = 7.015_586_669_815_618 / FIRST_ZERO;
+
+/// κ and Δp, every sample a point, the means joined.
+pub(super) fn by_sample(subject: &Subject<'_>) -> Vec<Figure> {
+    let scaled = |values: &[f64], radius: f64| values.iter().map(|kappa| kappa * radius / FIRST_ZERO).collect();
+    let kappa = figure(subject, "wavenumber", "κ of the best screened solution", "κ / κ<tspan dy=\"3\" font-size=\"10\">1</tspan>", &scaled);
+    let change = figure(
+        subject,
+        "scaled_pressure_change",
+        "pressure change",
+        "Δp / p<tspan dy=\"-5\" font-size=\"10\">(α−2)/(α−1)</tspan>",
+        &|values: &[f64], _| values.to_vec(),
+    );
+    let mut kappa = kappa;
+    if let Some(plot) = &mut kappa {
+        plot.guides = vec![
+            Guide::Horizontal(1.0, "κ₁".into()),
+            Guide::Horizontal(SECOND_OVER_FIRST, "κ₂".into()),
+            Guide::Horizontal(0.5, "counted as screened above".into()),
+        ];
+    }
+    [kappa, change].into_iter().flatten().filter_map(Plot::draw).collect()
+}
+
+fn figure(
+    subject: &Subject<'_>,
+    name: &str,
+    title: &str,
+    label: &str,
+    scaled: &dyn Fn(&[f64], f64) -> Vec<f64>,
+) -> Option<Plot> {
+    let all = &subject.transition.series;
+    let mut curves = Vec::new();
+    for (index, series) in all.iter().enumerate() {
+        let (mut points, mut means) = (Vec::new(), Vec::new());
+        for point in &series.points {
+            let samples = subject.samples(point);
+            let (Some(values), Some(radii)) = (samples.numbers.get(name), samples.numbers.get("outer_radius")) else {
+                continue;
+            };
+            let values = scaled(values, radii.iter().sum::<f64>() / radii.len() as f64);
+            points.extend(bare(values.iter().take(SINGLES).map(|&value| (point.reduced_pressure, value))));
+            let mean = NumberStatistics::of(&values);
+            means.push(PlotPoint { x: point.reduced_pressure, y: mean.mean, interval: mean.mean_interval });
+        }
+        let colour = series_colour(index, all);
+        let pale = colour.map(|part| 255 - (255 - part) / 3);
+        curves.push(Curve { label: String::new(), points, look: Look::Points, colour: pale });
+        curves.push(Curve { label: short(series, all), points: means, look: Look::Joined, colour });
+    }
+    curves.iter().any(|curve| !curve.points.is_empty()).then(|| Plot {
+        title: format!("{title} against p̂"),
+        description: format!("{title} of single samples and means over samples against the reduced pressure"),
+        x: PlotAxis::logarithmic("p̂ = p N<tspan dy=\"-5\" font-size=\"10\">α−1</tspan> (force / length)"),
+        y: PlotAxis::linear(label),
+        series: curves,
+        guides: Vec::new(),
+    })
+}
+
+/// Against what a number is drawn.
+#[derive(Clone, Copy)]
+pub(super) enum Abscissa {
+    /// p.
+    Pressure,
+    /// p N^(α−1).
+    Reduced,
+    /// p N^(3/2), whatever the law.
+    AsHertzian,
+}
+
+/// G* and θ* along all series.
+pub(super) fn against(subject: &Subject<'_>, abscissa: Abscissa) -> Vec<Figure> {
+    let one = |name, title: &str, label: &str, unit: f64, guide: f64| {
+        subject_plot(subject, name, title, label, unit, guide, abscissa).draw()
+    };
+    let depth = one(ANTICORRELATION, "G*", "G* = −G(π)", 1.0, SCALE_FREE_ANTICORRELATION);
+    let angle = one(ANGLE, "θ*", "θ* / π", PI, SCALE_FREE_ANGLE / PI);
+    [depth, angle].into_iter().flatten().collect()
+}
+
+/// θ* of another threshold of G along all series.
+pub(super) fn threshold(subject: &Subject<'_>, threshold: &str) -> Option<Figure> {
+    let name = format!("correlation_angle_at_{threshold}");
+    let title = format!("θ*, G = {threshold}");
+    subject_plot(subject, &name, &title, "θ* / π", PI, f64::NAN, Abscissa::Reduced).draw()
+}
+
+fn subject_plot(
+    subject: &Subject<'_>,
+    name: &str,
+    title: &str,
+    label: &str,
+    unit: f64,
+    guide: f64,
+    abscissa: Abscissa,
+) -> Plot {
+    let all = &subject.transition.series;
+    let (x_label, words) = match abscissa {
+        Abscissa::Pressure => ("p (force / length)", "p"),
+        Abscissa::Reduced => ("p̂ = p N<tspan dy=\"-5\" font-size=\"10\">α−1</tspan> (force / length)", "p̂"),
+        Abscissa::AsHertzian => ("p N<tspan dy=\"-5\" font-size=\"10\">3/2</tspan> (force / length)", "p N^(3/2)"),
+    };
+    let mut curves = Vec::new();
+    for (index, series) in all.iter().enumerate() {
+        let at = |point: &crate::transition::SeriesPoint| match abscissa {
+            Abscissa::Pressure => point.pressure,
+            Abscissa::Reduced => point.reduced_pressure,
+            Abscissa::AsHertzian => point.pressure * series.mobile_count().powf(1.5),
+        };
+        let mut points = subject.along(series, name, at);
+        scale(&mut points, unit);
+        curves.push(Curve { label: short(series, all), points, look: Look::Joined, colour: series_colour(index, all) });
+        if name == ANGLE && matches!(abscissa, Abscissa::Reduced) {
+            curves.push(crossover_angles(series, index, all));
+        }
+    }
+    Plot {
+        title: format!("{title} against {words}"),
+        description: format!("Mean {title} of {} series with bootstrap intervals against {words}", all.len()),
+        x: PlotAxis::logarithmic(x_label),
+        y: PlotAxis::linear(label),
+        series: curves,
+        guides: vec![Guide::Horizontal(guide, "S ∼ f<tspan dy=\"-4\" font-size=\"9\">−1.5</tspan>".into())],
+    }
+}
+
+fn scale(points: &mut [PlotPoint], unit: f64) {
+    for point in points {
+        point.y /= unit;
+        point.interval = point.interval.map(|ends| ends.map(|end| end / unit));
+    }
+}
+
+/// θ†, hollow, as far as a correlation angle can be.
+fn crossover_angles(series: &Series, index: usize, all: &[Series]) -> Curve {
+    let points = series.spectra.iter().filter_map(|spectrum| {
+        let (angle, error) = spectrum.angle()?;
+        let interval = Some([angle - error, angle + error].map(|end| end / PI));
+        Some(PlotPoint { x: spectrum.point.reduced_pressure, y: angle / PI, interval })
+    });
+    let points = points.filter(|point| point.y < 1.0).collect();
+    let label = if index == 0 { "θ† / π, hollow".into() } else { String::new() };
+    Curve { label, points, look: Look::Hollow, colour: series_colour(index, all) }
+}
+
+/// θ† against the distance from the transition, with the fit; θ* against f†, with the exact curve.
+pub(super) fn crossovers(subject: &Subject<'_>) -> Vec<Figure> {
+    let all = &subject.transition.series;
+    let (mut curves, mut angles) = (Vec::new(), Vec::new());
+    for (index, series) in all.iter().enumerate() {
+        let colour = series_colour(index, all);
+        if let Some(fit) = &series.divergence.at_transition {
+            let below = series.spectra.iter().filter_map(|spectrum| {
+                let (y, error) = spectrum.angle()?;
+                let x = (fit.critical - spectrum.point.reduced_pressure) / fit.critical;
+                (x > 0.0).then_some(PlotPoint { x, y: y / PI, interval: Some([(y - error) / PI, (y + error) / PI]) })
+            });
+            let points: Vec<PlotPoint> = below.collect();
+            let line = points.iter().map(|point| {
+                (point.x, fit.amplitude.value * (point.x * fit.critical).powf(-fit.exponent.value) / PI)
+            });
+            let line = bare(line);
+            let label = format!("{}, μ = {:.2} ± {:.2}", short(series, all), fit.exponent.value, fit.exponent.standard_error);
+            curves.push(Curve { label, points, look: Look::Points, colour });
+            curves.push(Curve { label: String::new(), points: line, look: Look::Line, colour });
+        }
+        let points = series.spectra.iter().filter_map(|spectrum| {
+            let found = spectrum.crossover?.found()?;
+            let angle = subject.number(spectrum.point.cell, ANGLE)?;
+            let interval = angle.mean_interval.map(|ends| ends.map(|end| end / PI));
+            Some(PlotPoint { x: found, y: angle.mean / PI, interval })
+        });
+        angles.push(Curve { label: short(series, all), points: points.collect(), look: Look::Points, colour });
+    }
+    let divergence = Plot {
+        title: "θ† below the transition".into(),
+        description: "Crossover angle against the relative distance from the transition, with power laws".into(),
+        x: PlotAxis::logarithmic("(p̂<tspan dy=\"3\" font-size=\"10\">c</tspan><tspan dy=\"-3\"> − p̂) / p̂</tspan><tspan dy=\"3\" font-size=\"10\">c</tspan>"),
+        y: PlotAxis::logarithmic("θ† / π"),
+        series: curves,
+        guides: Vec::new(),
+    };
+    let exact = (0..=80).filter_map(|step| {
+        let crossover = 0.1 * 10f64.powf(f64::from(step) * 3.0 / 80.0);
+        let angle = Lorentzian::new(crossover, USUAL_EXPONENT).ok()?.crossing(0.1).ok()?.angle()?;
+        Some((crossover, angle / PI))
+    });
+    let measured = angles.iter().any(|curve| !curve.points.is_empty());
+    let exact = Curve { label: "exact".into(), points: bare(exact), look: Look::Line, colour: colour(3, 4) };
+    angles.push(exact);
+    let relation = measured.then(|| Plot {
+        title: "θ* against f†".into(),
+        description: "Correlation angle against crossover frequency, measured and of a Lorentzian spectrum".into(),
+        x: PlotAxis::logarithmic("f†"),
+        y: PlotAxis::logarithmic("θ* / π"),
+        series: angles,
+        guides: Vec::new(),
+    });
+    [Some(divergence), relation].into_iter().flatten().filter_map(Plot::draw).collect()
+}

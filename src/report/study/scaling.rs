@@ -1,0 +1,122 @@
+//! G* and θ* with N and d_0 taken out; p_c in the plane of N^β p and N² d_0.
+
+use std::f64::consts::PI;
+
+use crate::contact::LawChoice;
+use crate::report::figures::Figure;
+use crate::report::figures::palette::{BLUE, VERMILLION};
+use crate::report::figures::plot::{Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare};
+use crate::report::study::{Subject, series_colour, short};
+use crate::transition::{ANGLE, ANTICORRELATION, Method, SCALE_FREE_ANTICORRELATION, beta};
+
+/// Laws in the order of the study.
+fn laws(subject: &Subject<'_>) -> Vec<LawChoice> {
+    let mut laws = Vec::new();
+    for series in &subject.transition.series {
+        if !laws.contains(&series.cell.law) {
+            laws.push(series.cell.law);
+        }
+    }
+    laws
+}
+
+/// Whether a study has several inflations.
+fn several(subject: &Subject<'_>) -> bool {
+    let all = &subject.transition.series;
+    all.iter().any(|series| series.cell.increase != all[0].cell.increase)
+}
+
+/// G* and θ* against p N^(β/2)/d_0^(β/4), a figure a law.
+pub(super) fn with_inflation(subject: &Subject<'_>) -> Vec<Figure> {
+    if !several(subject) {
+        return Vec::new();
+    }
+    let all = &subject.transition.series;
+    let mut figures = Vec::new();
+    for law in laws(subject) {
+        let beta = beta(&law);
+        for (name, title, label, unit) in
+            [(ANTICORRELATION, "G*", "G* = −G(π)", 1.0), (ANGLE, "θ*", "θ* / π", PI)]
+        {
+            let mut curves = Vec::new();
+            for (index, series) in all.iter().enumerate().filter(|(_, series)| series.cell.law == law) {
+                let scale = series.mobile_count().powf(0.5 * beta) / series.cell.increase.powf(0.25 * beta);
+                let points = subject.along(series, name, |point| point.pressure * scale);
+                let points = points.iter().map(|point| PlotPoint {
+                    y: point.y / unit,
+                    interval: point.interval.map(|ends| ends.map(|end| end / unit)),
+                    ..*point
+                });
+                let colour = series_colour(index, all);
+                curves.push(Curve { label: short(series, all), points: points.collect(), look: Look::Joined, colour });
+            }
+            let (a, b) = (0.5 * beta, 0.25 * beta);
+            let plot = Plot {
+                title: format!("{title} of all sizes and inflations, {}", law.name()),
+                description: format!("Mean {title} against p N^{a}/d_0^{b} of several sizes and inflations"),
+                x: PlotAxis::logarithmic(format!(
+                    "p N<tspan dy=\"-5\" font-size=\"10\">{a}</tspan><tspan dy=\"5\"> / d</tspan><tspan dy=\"3\" font-size=\"10\">0</tspan><tspan dy=\"-8\" font-size=\"10\">{b}</tspan>"
+                )),
+                y: PlotAxis::linear(label),
+                series: curves,
+                guides: Vec::new(),
+            };
+            figures.extend(plot.draw());
+        }
+    }
+    figures
+}
+
+/// Every cell by its G*, and p_c with its power law.
+pub(super) fn phase_diagram(subject: &Subject<'_>) -> Vec<Figure> {
+    if !several(subject) {
+        return Vec::new();
+    }
+    laws(subject).into_iter().filter_map(|law| diagram(subject, law)).collect()
+}
+
+fn diagram(subject: &Subject<'_>, law: LawChoice) -> Option<Figure> {
+    let beta = beta(&law);
+    let (mut plastic, mut elastic) = (Vec::new(), Vec::new());
+    for series in subject.transition.series.iter().filter(|series| series.cell.law == law) {
+        let mobile = series.mobile_count();
+        for point in &series.points {
+            let Some(found) = subject.number(point.cell, ANTICORRELATION) else { continue };
+            let side = if found.mean < SCALE_FREE_ANTICORRELATION { &mut plastic } else { &mut elastic };
+            side.push((mobile.powf(beta) * point.pressure, mobile * mobile * series.cell.increase));
+        }
+    }
+    let mut curves = vec![
+        Curve { label: "G* below 0.293".into(), points: bare(plastic.into_iter()), look: Look::Points, colour: VERMILLION },
+        Curve { label: "G* above 0.293".into(), points: bare(elastic.into_iter()), look: Look::Points, colour: BLUE },
+    ];
+    let law_of = |method| subject.transition.pressure_laws.iter().find(|it| it.law == law && it.method == method);
+    if let Some(found) = law_of(Method::Anticorrelation) {
+        let points = bare(found.points.iter().map(|point| (point.y, point.x)));
+        curves.push(Curve { label: "p<tspan dy=\"3\" font-size=\"10\">c</tspan><tspan dy=\"-3\"> by G*</tspan>".into(), points, look: Look::Hollow, colour: [0x22; 3] });
+        if let Some(fit) = &found.fit {
+            let points = found.points.iter().map(|point| (fit.amplitude.value * point.x.powf(fit.exponent.value), point.x));
+            let mut points: Vec<(f64, f64)> = points.collect();
+            points.sort_by(|a, b| a.1.total_cmp(&b.1));
+            let label = format!("exponent {:.2} ± {:.2}", fit.exponent.value, fit.exponent.standard_error);
+            curves.push(Curve { label, points: bare(points.into_iter()), look: Look::Line, colour: [0x22; 3] });
+            // The published exponent through the middle of the points.
+            let middle = found.points.len() / 2;
+            let mut sorted = found.points.clone();
+            sorted.sort_by(|a, b| a.x.total_cmp(&b.x));
+            let through = sorted[middle];
+            let line = sorted.iter().map(|point| (through.y * (point.x / through.x).powf(0.25 * beta), point.x));
+            let label = format!("exponent {}, published", 0.25 * beta);
+            curves.push(Curve { label, points: bare(line), look: Look::Dashed, colour: [0x77; 3] });
+        }
+    }
+    Plot {
+        title: format!("Phase diagram, {}", law.name()),
+        description: "Cells below and above the scale-free value of G* in the plane of rescaled pressure and inflation, with the transition".into(),
+        x: PlotAxis::logarithmic(format!("N<tspan dy=\"-5\" font-size=\"10\">{beta}</tspan><tspan dy=\"5\"> p (force / length)</tspan>")),
+        y: PlotAxis::logarithmic("N² d<tspan dy=\"3\" font-size=\"10\">0</tspan><tspan dy=\"-3\"> (length)</tspan>"),
+        series: curves,
+        guides: Vec::new(),
+    }
+    .draw()
+}

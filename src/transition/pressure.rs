@@ -1,0 +1,270 @@
+//! [`TransitionPressure`]: p̂_c of a series, by several methods.
+//!
+//! | method | p̂_c is where | evidence |
+//! |---|---|---|
+//! | κ | half of the samples have κ_fit ≥ κ_1/2 | logistic regression in ln p̂ |
+//! | Δp | half of the samples have Δp < 0 | the same |
+//! | G* | the mean passes 1 − 2^(−1/2) = 0.293, its value for S ∝ f^(−1.5) | linear in ln p̂ between cells |
+//! | θ* | the mean passes 0.303 π, likewise | the same |
+//! | S(f) | the slope of the mean spectrum passes 1.5 | the same |
+//!
+//! κ_1 R = 3.8317, the first zero of J_1: κ_fit of single samples is near 0 or from κ_1 on (the study, fig. 2).
+
+use serde::Serialize;
+
+use crate::fit::ensemble::{
+    BootstrapInterval, HalfCrossing, HitCount, Trend, bootstrap, half_crossing, half_crossing_interval,
+};
+use crate::study::CellSamples;
+use crate::transition::RESAMPLINGS;
+use crate::transition::series::{ANGLE, ANTICORRELATION, SeriesPoint};
+use crate::transition::spectra::slope_of;
+
+/// First zero of J_1.
+pub(crate) const FIRST_ZERO: f64 = 3.831_705_970_207_512;
+
+/// G* of S ∝ f^(−1.5). Source: design §5, 1 − 2^(−1/2).
+pub(crate) const SCALE_FREE_ANTICORRELATION: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
+
+/// θ* of the same, threshold 0.1 \[rad\]. Source: design §5.
+pub(crate) const SCALE_FREE_ANGLE: f64 = 0.303_004 * std::f64::consts::PI;
+
+/// Its slope.
+pub(crate) const SCALE_FREE_SLOPE: f64 = 1.5;
+
+/// How p̂_c is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// κ_fit.
+    Wavenumber,
+    /// The sign of Δp.
+    PressureChange,
+    /// G*.
+    Anticorrelation,
+    /// θ*.
+    Angle,
+    /// The slope of S(f).
+    Spectrum,
+}
+
+impl Method {
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::Wavenumber => "κ",
+            Method::PressureChange => "Δp",
+            Method::Anticorrelation => "G*",
+            Method::Angle => "θ*",
+            Method::Spectrum => "slope of S(f)",
+        }
+    }
+}
+
+/// One method's p̂_c.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MethodEstimate {
+    /// The method.
+    pub method: Method,
+    /// What it gives.
+    pub pressure: TransitionPressure,
+}
+
+impl MethodEstimate {
+    /// What the slope of the spectrum gives.
+    pub(super) fn by_spectrum(&self) -> Option<TransitionPressure> {
+        (self.method == Method::Spectrum).then_some(self.pressure)
+    }
+}
+
+/// Where the transition lies.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TransitionPressure {
+    /// At this p̂, with its interval.
+    Found(BootstrapInterval),
+    /// Between the p̂ of two cells: no sample of a cell differs from the others.
+    Between([f64; 2]),
+    /// Beyond the highest p̂ of the series: all its cells are plastic.
+    Above(f64),
+    /// Below the lowest p̂ of the series: all its cells are quasielastic.
+    Below(f64),
+    /// The observable does not change from one to the other along the series.
+    Unordered,
+}
+
+impl TransitionPressure {
+    /// The best value.
+    pub fn best(self) -> Option<f64> {
+        match self {
+            TransitionPressure::Found(found) => Some(found.best),
+            TransitionPressure::Between([low, high]) => Some((low * high).sqrt()),
+            _ => None,
+        }
+    }
+
+    /// The interval, as far as there is one.
+    pub fn interval(self) -> Option<[f64; 2]> {
+        match self {
+            TransitionPressure::Found(found) => found.interval,
+            TransitionPressure::Between(between) => Some(between),
+            _ => None,
+        }
+    }
+}
+
+/// All methods that have their observable.
+pub(super) fn estimates(points: &[SeriesPoint], samples: &[&CellSamples]) -> Vec<MethodEstimate> {
+    let plastic = |method, name: &str, is_plastic: &dyn Fn(&CellSamples, f64) -> bool| {
+        let groups: Vec<(f64, Vec<bool>)> = points
+            .iter()
+            .zip(samples)
+            .filter_map(|(point, samples)| {
+                let values = samples.numbers.get(name)?;
+                Some((point.reduced_pressure.ln(), values.iter().map(|&value| is_plastic(samples, value)).collect()))
+            })
+            .collect();
+        (groups.len() > 1).then(|| MethodEstimate { method, pressure: by_halves(&groups) })
+    };
+    let radius = |samples: &CellSamples| {
+        let radii = samples.numbers.get("outer_radius")?;
+        Some(radii.iter().sum::<f64>() / radii.len() as f64)
+    };
+    let screened = |samples: &CellSamples, wavenumber: f64| {
+        radius(samples).is_some_and(|radius| wavenumber * radius >= 0.5 * FIRST_ZERO)
+    };
+    let mean = |method, name: &str, level: f64| {
+        let usable: Vec<(f64, &Vec<f64>)> = points
+            .iter()
+            .zip(samples)
+            .filter_map(|(point, samples)| Some((point.reduced_pressure, samples.numbers.get(name)?)))
+            .collect();
+        let sizes: Vec<usize> = usable.iter().map(|(_, values)| values.len()).collect();
+        let at: Vec<f64> = usable.iter().map(|(at, _)| *at).collect();
+        let means = |groups: &[Vec<usize>]| -> Option<Vec<f64>> {
+            let mean = |(chosen, (_, values)): (&Vec<usize>, &(f64, &Vec<f64>))| {
+                chosen.iter().map(|&i| values[i]).sum::<f64>() / chosen.len() as f64
+            };
+            Some(groups.iter().zip(&usable).map(mean).collect())
+        };
+        (at.len() > 1).then(|| MethodEstimate { method, pressure: by_level(&at, &sizes, level, means) })
+    };
+    let with_powers: Vec<(f64, &[Vec<f64>])> = points
+        .iter()
+        .zip(samples)
+        .filter(|(_, samples)| !samples.powers.is_empty())
+        .map(|(point, samples)| (point.reduced_pressure, samples.powers.as_slice()))
+        .collect();
+    let spectrum = || {
+        let sizes: Vec<usize> = with_powers.iter().map(|(_, powers)| powers.len()).collect();
+        let at: Vec<f64> = with_powers.iter().map(|(at, _)| *at).collect();
+        let slopes = |groups: &[Vec<usize>]| -> Option<Vec<f64>> {
+            groups.iter().zip(&with_powers).map(|(chosen, (_, powers))| slope_of(powers, chosen)).collect()
+        };
+        let method = Method::Spectrum;
+        (at.len() > 1).then(|| MethodEstimate { method, pressure: by_level(&at, &sizes, SCALE_FREE_SLOPE, slopes) })
+    };
+    [
+        plastic(Method::Wavenumber, "wavenumber", &screened),
+        plastic(Method::PressureChange, "pressure_change", &|_, change| change < 0.0),
+        mean(Method::Anticorrelation, ANTICORRELATION, SCALE_FREE_ANTICORRELATION),
+        mean(Method::Angle, ANGLE, SCALE_FREE_ANGLE),
+        spectrum(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// Where half of the samples are plastic, (ln p̂, plastic or not) by cell.
+fn by_halves(groups: &[(f64, Vec<bool>)]) -> TransitionPressure {
+    let counts: Vec<HitCount> = groups
+        .iter()
+        .map(|(x, hits)| HitCount {
+            x: *x,
+            hits: hits.iter().filter(|&&hit| hit).count() as f64,
+            count: hits.len() as f64,
+        })
+        .collect();
+    let (lowest, highest) = (counts[0].x.exp(), counts[counts.len() - 1].x.exp());
+    let majority = |group: &HitCount| 2.0 * group.hits >= group.count;
+    // A crossing beyond the cells that were measured is a guess: it is told as a bound.
+    let bound = match (majority(&counts[0]), majority(&counts[counts.len() - 1])) {
+        (true, true) => TransitionPressure::Above(highest),
+        (false, false) => TransitionPressure::Below(lowest),
+        _ => TransitionPressure::Unordered,
+    };
+    match half_crossing(&counts, Trend::Falling) {
+        Ok(HalfCrossing::Separated { between, .. }) => TransitionPressure::Between(between.map(f64::exp)),
+        Ok(HalfCrossing::Found { extrapolated: false, .. }) => {
+            let found = half_crossing_interval(groups, Trend::Falling, RESAMPLINGS);
+            found.ok().flatten().map_or(bound, |found| TransitionPressure::Found(exponential(found)))
+        }
+        _ => bound,
+    }
+}
+
+/// Where what rises with p̂ passes a level for good.
+fn by_level(
+    at: &[f64],
+    sizes: &[usize],
+    level: f64,
+    values: impl Fn(&[Vec<usize>]) -> Option<Vec<f64>>,
+) -> TransitionPressure {
+    let all: Vec<Vec<usize>> = sizes.iter().map(|&size| (0..size).collect()).collect();
+    let Some(whole) = values(&all) else { return TransitionPressure::Unordered };
+    match crossing(at, &whole, level) {
+        Some(_) => {
+            let found = bootstrap(sizes, RESAMPLINGS, |groups| crossing(at, &values(groups)?, level));
+            found.map_or(TransitionPressure::Unordered, |found| TransitionPressure::Found(exponential(found)))
+        }
+        None if whole.iter().all(|&value| value < level) => TransitionPressure::Above(at[at.len() - 1]),
+        None if whole.iter().all(|&value| value >= level) => TransitionPressure::Below(at[0]),
+        None => TransitionPressure::Unordered,
+    }
+}
+
+/// ln p̂ where the values pass the level for the last time upwards, if they stay above it.
+fn crossing(at: &[f64], values: &[f64], level: f64) -> Option<f64> {
+    let below = values.iter().rposition(|&value| value < level)?;
+    let (low, high) = (values[below], *values.get(below + 1)?);
+    let share = (level - low) / (high - low);
+    Some((1.0 - share) * at[below].ln() + share * at[below + 1].ln())
+}
+
+/// The interval of e^x; the standard error to first order.
+fn exponential(of: BootstrapInterval) -> BootstrapInterval {
+    let best = of.best.exp();
+    BootstrapInterval {
+        best,
+        standard_error: of.standard_error.map(|error| best * error),
+        interval: of.interval.map(|ends| ends.map(f64::exp)),
+        ..of
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_level_is_passed_between_two_cells_in_the_logarithm() {
+        let at = [1e6, 1e7, 1e8, 1e9];
+        let passed = crossing(&at, &[0.1, 0.2, 0.4, 0.5], 0.3).expect("between the second and the third");
+        assert!((passed.exp() / 10f64.powf(7.5) - 1.0).abs() < 1e-12);
+        assert_eq!(crossing(&at, &[0.1, 0.2, 0.25, 0.29], 0.3), None);
+        assert_eq!(crossing(&at, &[0.4, 0.5, 0.6, 0.7], 0.3), None);
+        // The last time counts.
+        let last = crossing(&at, &[0.1, 0.4, 0.2, 0.4], 0.3).expect("between the last two");
+        assert!((last.exp() / 10f64.powf(8.5) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn all_plastic_or_all_elastic_is_a_bound() {
+        let groups = |hits: [bool; 2]| hits.map(|hit| (1.0, vec![hit; 5])).to_vec();
+        assert_eq!(by_halves(&groups([true, true])), TransitionPressure::Above(1f64.exp()));
+        assert_eq!(by_halves(&groups([false, false])), TransitionPressure::Below(1f64.exp()));
+        let changing = [(0.0, vec![true; 5]), (2.0, vec![false; 5])];
+        assert_eq!(by_halves(&changing), TransitionPressure::Between([1.0, 2f64.exp()]));
+    }
+}

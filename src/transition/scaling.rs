@@ -1,0 +1,222 @@
+//! [`Scaling`]: with which powers of N and d_0 the curves of a law lie on one; [`PressureLaw`]: how p_c depends on both.
+//!
+//! ```text
+//! G*, θ* = F(p N^a d_0^(−b))        a = β/2, b = β/4, β = 2(α − 1): 3/2 and 3/4 of Hertzian disks, 1 and 1/2 of Hookean ones
+//! N^β p_c = C (N² d_0)^c            c = β/4
+//! ```
+//!
+//! Source: the study, appendix D.
+
+use serde::Serialize;
+
+use crate::contact::LawChoice;
+use crate::fit::ensemble::{
+    BootstrapInterval, CollapseOutcome, CollapseQuality, CollapseSettings, Curve, MeasuredPoint, PowerLaw, bootstrap_all,
+    collapse, collapse_quality, fit_power_law,
+};
+use crate::study::Merged;
+use crate::transition::pressure::{Method, TransitionPressure};
+use crate::transition::series::{ANTICORRELATION, Series};
+
+/// Resamplings of a collapse, which is a search of its own each time.
+const RESAMPLINGS: usize = 100;
+
+/// Samples a point of a curve needs: the error of its mean is one of few otherwise.
+const LEAST_SAMPLES: usize = 4;
+
+/// What is collapsed: G*, and θ* of every threshold of the study.
+const OBSERVABLES: [&str; 5] = [
+    ANTICORRELATION,
+    "correlation_angle_at_0.1",
+    "correlation_angle_at_0.02",
+    "correlation_angle_at_0.05",
+    "correlation_angle_at_0.2",
+];
+
+/// How the curves of one observable of one law collapse.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Scaling {
+    /// The law.
+    pub law: LawChoice,
+    /// The observable, by its name in records.
+    pub observable: &'static str,
+    /// Curves: series of several pressures.
+    pub curve_count: usize,
+    /// a of N^a; absent where all sizes are one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub size_exponent: Option<ExponentOutcome>,
+    /// b of d_0^(−b); absent where all inflations are one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inflation_exponent: Option<ExponentOutcome>,
+    /// S at the best exponents: 1 where curves agree within their errors.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quality: Option<CollapseQuality>,
+    /// S at the published ones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub published_quality: Option<CollapseQuality>,
+}
+
+/// What the curves say of an exponent.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ExponentOutcome {
+    /// It, with its interval.
+    Found(BootstrapInterval),
+    /// The collapse is best at the end of the range searched, −1 to 4.
+    AtEdge(f64),
+    /// The curves do not overlap at any exponent.
+    NoOverlap,
+}
+
+/// N^β p_c as a power law of N² d_0.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PressureLaw {
+    /// The law.
+    pub law: LawChoice,
+    /// How p_c is found.
+    pub method: Method,
+    /// (N² d_0, N^β p_c, its standard error).
+    pub points: Vec<MeasuredPoint>,
+    /// The fit; absent with fewer than three points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fit: Option<PowerLaw>,
+}
+
+/// β = 2(α − 1).
+pub(crate) fn beta(law: &LawChoice) -> f64 {
+    2.0 * (law.exponent() - 1.0)
+}
+
+/// One cell of a curve: p, and the values of its samples.
+type Values<'a> = Vec<(f64, &'a [f64])>;
+
+impl Scaling {
+    pub(super) fn all(merged: &Merged, series: &[Series]) -> Vec<Scaling> {
+        let mut laws: Vec<LawChoice> = Vec::new();
+        for one in series {
+            if !laws.contains(&one.cell.law) {
+                laws.push(one.cell.law);
+            }
+        }
+        let of_law = |law: LawChoice| {
+            let own: Vec<&Series> =
+                series.iter().filter(|it| it.cell.law == law && it.points.len() > 1).collect();
+            OBSERVABLES.iter().filter_map(move |observable| Self::of(merged, law, &own, observable)).collect::<Vec<_>>()
+        };
+        laws.into_iter().flat_map(of_law).collect()
+    }
+
+    fn of(merged: &Merged, law: LawChoice, series: &[&Series], observable: &'static str) -> Option<Scaling> {
+        let curves: Vec<([f64; 2], Values<'_>)> = series
+            .iter()
+            .map(|one| {
+                let values = one.points.iter().filter_map(|point| {
+                    let values = merged.samples[point.cell].numbers.get(observable)?;
+                    (values.len() >= LEAST_SAMPLES).then_some((point.pressure, values.as_slice()))
+                });
+                ([one.mobile_count().ln(), -one.cell.increase.ln()], values.collect())
+            })
+            .filter(|(_, values): &(_, Values<'_>)| values.len() > 1)
+            .collect();
+        let varies = |k: usize| curves.iter().any(|(scales, _)| scales[k] != curves[0].0[k]);
+        let published = [0.5 * beta(&law), 0.25 * beta(&law)];
+        let found = match curves.len() {
+            0 | 1 => return None,
+            _ => match (varies(0), varies(1)) {
+                (true, true) => exponents(&curves, [0, 1], published),
+                (true, false) => exponents(&curves, [0], [published[0]]),
+                (false, true) => exponents(&curves, [1], [published[1]]),
+                (false, false) => return None,
+            },
+        };
+        let mut outcomes = found.outcomes.into_iter();
+        Some(Scaling {
+            law,
+            observable,
+            curve_count: curves.len(),
+            size_exponent: if varies(0) { outcomes.next() } else { None },
+            inflation_exponent: if varies(1) { outcomes.next() } else { None },
+            quality: found.quality,
+            published_quality: found.published,
+        })
+    }
+}
+
+struct Exponents {
+    outcomes: Vec<ExponentOutcome>,
+    quality: Option<CollapseQuality>,
+    published: Option<CollapseQuality>,
+}
+
+/// The best exponents of the scale factors `which`, with intervals.
+fn exponents<const K: usize>(curves: &[([f64; 2], Values<'_>)], which: [usize; K], published: [f64; K]) -> Exponents {
+    let settings = CollapseSettings { ranges: [[-1.0, 4.0]; K], ..CollapseSettings::default() };
+    let sizes: Vec<usize> = curves.iter().flat_map(|(_, values)| values.iter().map(|(_, all)| all.len())).collect();
+    let drawn = |groups: &[Vec<usize>]| -> Option<Vec<Curve<K>>> {
+        let mut groups = groups.iter();
+        let curve = |(scales, values): &([f64; 2], Values<'_>)| {
+            let points: Option<Vec<MeasuredPoint>> = values.iter().map(|(x, all)| measured(*x, all, groups.next()?)).collect();
+            Some(Curve { scales: which.map(|k| scales[k]), points: points? })
+        };
+        curves.iter().map(curve).collect()
+    };
+    let whole: Vec<Vec<usize>> = sizes.iter().map(|&size| (0..size).collect()).collect();
+    let Some(all) = drawn(&whole) else {
+        return Exponents { outcomes: vec![ExponentOutcome::NoOverlap; K], quality: None, published: None };
+    };
+    let published = collapse_quality(&all, published).ok().flatten();
+    let (outcomes, quality) = match collapse(&all, &settings) {
+        Ok(CollapseOutcome::Found(found)) => {
+            let intervals = bootstrap_all(&sizes, RESAMPLINGS, |groups| {
+                Some(collapse(&drawn(groups)?, &settings).ok()?.exponents()?.to_vec())
+            });
+            let outcome = |k: usize| {
+                let interval = intervals.as_ref().and_then(|all| all.get(k)).copied();
+                interval.map_or(ExponentOutcome::AtEdge(found.exponents[k]), ExponentOutcome::Found)
+            };
+            ((0..K).map(outcome).collect(), Some(found.quality))
+        }
+        Ok(CollapseOutcome::AtEdge { exponents, quality, .. }) => {
+            (exponents.map(ExponentOutcome::AtEdge).to_vec(), Some(quality))
+        }
+        _ => (vec![ExponentOutcome::NoOverlap; K], None),
+    };
+    Exponents { outcomes, quality, published }
+}
+
+/// Mean and standard error of the samples drawn; none where all are one sample.
+fn measured(x: f64, values: &[f64], chosen: &[usize]) -> Option<MeasuredPoint> {
+    let count = chosen.len() as f64;
+    let y = chosen.iter().map(|&i| values[i]).sum::<f64>() / count;
+    let square: f64 = chosen.iter().map(|&i| (values[i] - y).powi(2)).sum();
+    let error = (square / (count - 1.0) / count).sqrt();
+    (error > 0.0).then_some(MeasuredPoint { x, y, error })
+}
+
+impl PressureLaw {
+    pub(super) fn all(series: &[Series]) -> Vec<PressureLaw> {
+        let mut all: Vec<PressureLaw> = Vec::new();
+        for one in series {
+            let (law, mobile) = (one.cell.law, one.mobile_count());
+            for estimate in &one.estimates {
+                let TransitionPressure::Found(found) = estimate.pressure else { continue };
+                let Some(error) = found.standard_error.filter(|error| *error > 0.0) else { continue };
+                // N^β p = p̂ N^(β/2).
+                let scale = mobile.powf(0.5 * beta(&law));
+                let point = MeasuredPoint {
+                    x: mobile * mobile * one.cell.increase,
+                    y: scale * found.best,
+                    error: scale * error,
+                };
+                match all.iter_mut().find(|it| it.law == law && it.method == estimate.method) {
+                    Some(own) => own.points.push(point),
+                    None => all.push(PressureLaw { law, method: estimate.method, points: vec![point], fit: None }),
+                }
+            }
+        }
+        for one in &mut all {
+            one.fit = (one.points.len() > 2).then(|| fit_power_law(&one.points).ok()).flatten();
+        }
+        all
+    }
+}

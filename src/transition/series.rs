@@ -1,0 +1,159 @@
+//! [`Series`]: the cells of a study that differ in the pressure alone.
+
+use serde::Serialize;
+
+use crate::fit::ensemble::{BootstrapInterval, bootstrap_all};
+use crate::study::{Cell, CellSamples, Merged, NumberStatistics, Target};
+use crate::transition::RESAMPLINGS;
+use crate::transition::lengths::Lengths;
+use crate::transition::pressure::{MethodEstimate, TransitionPressure, estimates};
+use crate::transition::spectra::{AngleDivergence, CellSpectrum};
+
+/// Cells that differ in the pressure alone, ascending in it.
+#[derive(Debug, Clone, Serialize)]
+pub struct Series {
+    /// The cell of the lowest pressure; its target says nothing of the others.
+    pub cell: Cell,
+    /// The cells.
+    pub points: Vec<SeriesPoint>,
+    /// S(f) of every cell that has one.
+    pub spectra: Vec<CellSpectrum>,
+    /// θ†(p̂) below the transition.
+    pub divergence: AngleDivergence,
+    /// p̂_c by every method that has its observable.
+    pub estimates: Vec<MethodEstimate>,
+    /// G* and θ* at p̂_c by the slope of the spectrum, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub at_transition: Option<AtPressure>,
+    /// The same, with the slope, at the p̂_c that is published for Hertzian disks, 10⁸, where the series spans it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub at_published: Option<AtPressure>,
+    /// ℓ_s and ℓ_iso of every cell.
+    pub lengths: Vec<Lengths>,
+}
+
+/// One cell of a series.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SeriesPoint {
+    /// Its place among the cells of the study.
+    pub cell: usize,
+    /// p, mean over samples \[force / length\].
+    pub pressure: f64,
+    /// p̂, likewise \[force / length\].
+    pub reduced_pressure: f64,
+    /// Samples measured.
+    pub sample_count: usize,
+}
+
+/// What there is at one p̂, between two cells linear in ln p̂.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct AtPressure {
+    /// p̂.
+    pub reduced_pressure: f64,
+    /// G*.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub anticorrelation: Option<BootstrapInterval>,
+    /// θ* \[rad\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angle: Option<BootstrapInterval>,
+    /// s of S ∝ f^(−s).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slope: Option<BootstrapInterval>,
+}
+
+/// G*.
+pub(crate) const ANTICORRELATION: &str = "anticorrelation";
+
+/// θ* of the threshold 0.1.
+pub(crate) const ANGLE: &str = "correlation_angle_at_0.1";
+
+/// p̂_c of Hertzian disks by the spectrum. Source: the study.
+const PUBLISHED: f64 = 1e8;
+
+impl Series {
+    /// All of a study.
+    pub(super) fn all(merged: &Merged) -> Vec<Series> {
+        let mut grouped: Vec<(Cell, Vec<SeriesPoint>)> = Vec::new();
+        for (index, samples) in merged.samples.iter().enumerate() {
+            let jammed = !matches!(samples.cell.target, Target::PackingFraction(_));
+            let mean = |name: &str| samples.numbers.get(name).filter(|_| jammed).map(|values| NumberStatistics::of(values).mean);
+            let (Some(pressure), Some(reduced_pressure)) = (mean("pressure"), mean("reduced_pressure")) else { continue };
+            let point = SeriesPoint { cell: index, pressure, reduced_pressure, sample_count: samples.done_count };
+            let place = grouped.iter_mut().find(|(cell, _)| cell.differs_in_target_alone(&samples.cell));
+            match place {
+                Some((_, points)) => points.push(point),
+                None => grouped.push((samples.cell, vec![point])),
+            }
+        }
+        let series = grouped.into_iter().map(|(_, mut points)| {
+            points.sort_by(|a, b| a.reduced_pressure.total_cmp(&b.reduced_pressure));
+            Series::of(merged, points)
+        });
+        series.collect()
+    }
+
+    fn of(merged: &Merged, points: Vec<SeriesPoint>) -> Series {
+        let samples: Vec<&CellSamples> = points.iter().map(|point| &merged.samples[point.cell]).collect();
+        let spectra: Vec<CellSpectrum> =
+            points.iter().zip(&samples).filter_map(|(point, samples)| CellSpectrum::of(point, samples)).collect();
+        let estimates = estimates(&points, &samples);
+        let critical = estimates.iter().find_map(MethodEstimate::by_spectrum).and_then(TransitionPressure::best);
+        Series {
+            cell: samples[0].cell,
+            divergence: AngleDivergence::of(&spectra, critical),
+            at_transition: critical.and_then(|at| AtPressure::of(&points, &samples, at)),
+            at_published: AtPressure::of(&points, &samples, PUBLISHED),
+            lengths: points.iter().zip(&samples).map(|(point, samples)| Lengths::of(point, samples)).collect(),
+            points,
+            spectra,
+            estimates,
+        }
+    }
+
+    /// N, the disks in the circle by area.
+    pub fn mobile_count(&self) -> f64 {
+        self.cell.mobile_count()
+    }
+
+    /// Its law, size and inflation in words.
+    pub fn name(&self) -> String {
+        let Cell { law, disk_count, increase, .. } = self.cell;
+        format!("{} {disk_count} disks, d_0 = {increase}", law.name())
+    }
+}
+
+impl AtPressure {
+    fn of(points: &[SeriesPoint], samples: &[&CellSamples], reduced_pressure: f64) -> Option<Self> {
+        let above = points.iter().position(|point| point.reduced_pressure >= reduced_pressure)?;
+        // The published value may be the lowest target, met within the tolerance of the preparation.
+        let below = match above {
+            0 if points[0].reduced_pressure <= 1.02 * reduced_pressure => 0,
+            0 => return None,
+            above => above - 1,
+        };
+        let (low, high) = (points[below].reduced_pressure.ln(), points[above].reduced_pressure.ln());
+        let share = if above == below { 0.0 } else { (reduced_pressure.ln() - low) / (high - low) };
+        let between = |values: [f64; 2]| (1.0 - share) * values[0] + share * values[1];
+        let pair = [samples[below], samples[above]];
+        let of_number = |name: &str| {
+            let values = [pair[0].numbers.get(name)?, pair[1].numbers.get(name)?];
+            let mean = |side: usize, chosen: &[usize]| {
+                chosen.iter().map(|&i| values[side][i]).sum::<f64>() / chosen.len() as f64
+            };
+            let found = bootstrap_all(&[values[0].len(), values[1].len()], RESAMPLINGS, |groups| {
+                Some(vec![between([mean(0, &groups[0]), mean(1, &groups[1])])])
+            });
+            found?.pop()
+        };
+        let slope = bootstrap_all(&[pair[0].powers.len(), pair[1].powers.len()], RESAMPLINGS, |groups| {
+            let slope = |side: usize| super::spectra::slope_of(&pair[side].powers, &groups[side]);
+            Some(vec![between([slope(0)?, slope(1)?])])
+        });
+        Some(AtPressure {
+            reduced_pressure,
+            anticorrelation: of_number(ANTICORRELATION),
+            angle: of_number(ANGLE),
+            slope: slope.and_then(|mut it| it.pop()),
+        })
+    }
+}
