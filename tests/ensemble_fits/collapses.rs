@@ -170,9 +170,15 @@ fn every_outcome_has_its_data() {
     let outside = CollapseSettings { ranges: [[1.6, 3.0], [0.0, 2.0]], ..settings() };
     let edge = collapse(&all, &outside).expect("usable");
     assert!(matches!(edge, CollapseOutcome::AtEdge { exponent: 0, exponents, .. } if exponents[0] == 1.6), "{edge:?}");
-    let far = CollapseSettings { ranges: [[-20.0, -10.0], [0.0, 0.1]], ..settings() };
-    let torn = collapse(&all, &far).expect("usable");
-    assert!(matches!(torn, CollapseOutcome::NoOverlap { largest_share } if largest_share < 0.5), "{torn:?}");
+    // Sizes alone, torn apart by factors of 2^20 and more.
+    let sizes: Vec<Curve<1>> =
+        [0, 2, 4].map(|i| Curve { scales: [all[i].scales[0]], points: all[i].points.clone() }).into();
+    let far = CollapseSettings { ranges: [[20.0, 30.0]], ..CollapseSettings::default() };
+    assert_eq!(collapse(&sizes, &far), Ok(CollapseOutcome::NoOverlap { largest_share: 0.0 }));
+    // The outermost points have nothing beyond them.
+    let strict = CollapseSettings { least_share: 1.0, ..settings() };
+    let torn = collapse(&all, &strict).expect("usable");
+    assert!(matches!(torn, CollapseOutcome::NoOverlap { largest_share } if largest_share > 0.9), "{torn:?}");
 }
 
 #[test]

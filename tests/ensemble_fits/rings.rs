@@ -79,12 +79,12 @@ fn leakage_removed_no_further_than_the_window_leaves_a_bias() {
     // What lies above the highest frequency of the spectrum, by default n/8, is taken as white; it falls as f^(−1.5), and is strongest
     // just above. Fitted up to there, s comes out by 0.07 to 0.1 too large and f† = 10 by 1 to 2 too small; up to n/16, half that.
     let settings = MeanCrossoverSettings::default();
-    let slope_bias = |window| {
+    let sloped = ensembles(20, FrequencyLimit::PerDisk(0.125), 21, scale_free);
+    let slope = |window| {
         let of = |ensemble: &Vec<PowerSpectrum>| slope_of_mean(&powers(ensemble), window).expect("usable").likelihood;
-        let all = ensembles(20, FrequencyLimit::PerDisk(0.125), 21, scale_free);
-        mean_and_error(&all.iter().map(|ensemble| of(ensemble).exponent().expect("a slope")).collect::<Vec<_>>())
+        mean_and_error(&sloped.iter().map(|ensemble| of(ensemble).exponent().expect("a slope")).collect::<Vec<_>>())
     };
-    let [whole, half] = [slope_bias([1, DISKS / 8]), slope_bias(WINDOW)];
+    let [whole, half] = [slope([1, DISKS / 8]), slope(WINDOW)];
     println!("s = {whole:.4?} up to n/8, {half:.4?} up to n/16");
     assert!((whole[0] - 1.585).abs() < 0.015 + 3.0 * whole[1] && (half[0] - 1.538).abs() < 0.015 + 3.0 * half[1]);
     assert!(whole[0] - 1.5 > 3.0 * whole[1]);
@@ -101,7 +101,8 @@ fn leakage_removed_no_further_than_the_window_leaves_a_bias() {
 #[test]
 fn powers_over_the_variance_of_their_sample_are_too_flat() {
     // P_1 carries 38 % of the variance of f^(−1.5): where it is large, so is the variance it is divided by, and s is too small.
-    let bias = |over: bool| {
+    let all = ensembles(20, FrequencyLimit::Fixed(100), 33, scale_free);
+    let slope = |over: bool| {
         let of = |ensemble: &Vec<PowerSpectrum>| {
             let scaled = |spectrum: &PowerSpectrum| {
                 let unit = if over { spectrum.variance } else { 1.0 };
@@ -111,9 +112,9 @@ fn powers_over_the_variance_of_their_sample_are_too_flat() {
             let views: Vec<&[f64]> = samples.iter().map(Vec::as_slice).collect();
             slope_of_mean(&views, WINDOW).expect("usable").likelihood.exponent().expect("a slope")
         };
-        mean_and_error(&ensembles(20, FrequencyLimit::Fixed(100), 33, scale_free).iter().map(of).collect::<Vec<_>>())
+        mean_and_error(&all.iter().map(of).collect::<Vec<_>>())
     };
-    let [plain, over] = [bias(false), bias(true)];
+    let [plain, over] = [slope(false), slope(true)];
     println!("s = {plain:.4?} of powers, {over:.4?} of powers over variances");
     assert!((plain[0] - 1.51).abs() < 0.01 + 3.0 * plain[1] && (over[0] - 1.42).abs() < 0.01 + 3.0 * over[1]);
     assert!(1.5 - over[0] > 3.0 * over[1], "the difference shows");

@@ -57,7 +57,7 @@ impl BootstrapInterval {
 ///
 /// # Accuracy
 /// In groups of n the standard error of a mean is too small by a factor √((n − 1)/n); a group of one sample does not scatter
-/// at all. The ends of the interval themselves scatter by about 0.1 standard errors at 1000 resamplings.
+/// at all. Of normal numbers the ends themselves scatter by √(0.025·0.975/1000)/0.058 = 0.085 standard errors at 1000 resamplings.
 ///
 /// # Cost
 /// `estimate` is called once and once a resampling.
@@ -112,7 +112,7 @@ pub fn bootstrap_all(
     Some(best.into_iter().zip(found).map(|(best, found)| BootstrapInterval::of(best, found, resamplings)).collect())
 }
 
-/// A seed of the sizes and their order: the hash FNV-1a (Fowler, Noll, Vo; RFC 9923), a size a byte.
+/// A seed of the sizes and their order: the hash FNV-1a of Fowler, Noll and Vo, with sizes for its bytes.
 fn seed(group_sizes: &[usize]) -> u64 {
     group_sizes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &size| (hash ^ size as u64).wrapping_mul(0x0100_0000_01b3))
 }

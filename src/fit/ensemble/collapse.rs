@@ -88,7 +88,7 @@ impl<const K: usize> CollapseOutcome<K> {
 /// grid or more than 10⁶ in all, a share not in (0, 1], K = 0.
 ///
 /// # Cost
-/// So many S: the grid, about 25 (3^K − 1) for the search and 120 K for the rough bounds.
+/// So many S: the grid, 3^K − 1 a round of the search, and a one-dimensional search a rough bound.
 ///
 /// # Source
 /// The pattern search: Hooke, Jeeves (1961), J. ACM 8, 212, without its moves along a pattern.

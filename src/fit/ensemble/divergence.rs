@@ -95,7 +95,7 @@ pub fn fit_divergence_at(points: &[MeasuredPoint], critical: f64) -> Result<Dive
 /// Fewer than four different x; an x that is not finite, a y or error that is not positive and finite.
 ///
 /// # Cost
-/// Points × about 150.
+/// Points × evaluations of a one-dimensional search.
 ///
 /// # Example
 /// ```

@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 use crate::fit::Estimate;
 use crate::fit::ensemble::{BootstrapInterval, EnsembleFitError, bootstrap};
 
-/// Newton needs 4 to 10 steps.
+/// ln L is concave, and a few Newton steps are enough: more than these are a defect.
 const STEP_LIMIT: usize = 100;
 
-/// A Newton step that gains less than this share of ln L is the last; ln L is quadratic there.
+/// A Newton step that gains less than this share of ln L is the last, and the next would gain nothing: ln L is quadratic there.
 const GAIN_LIMIT: f64 = 1e-15;
 
 /// Rise of −2 ln L within two standard errors of one parameter.
@@ -95,7 +95,7 @@ pub enum HalfCrossing {
 /// Cox (1958), J. R. Stat. Soc. B 20, 215; existence: Albert, Anderson (1984), Biometrika 71, 1.
 ///
 /// # Cost
-/// Groups × 4 to 10 steps.
+/// Groups × Newton steps.
 ///
 /// # Example
 /// ```
@@ -182,6 +182,7 @@ fn maximum(groups: &[HitCount], [low, high]: [f64; 2], trend: Trend) -> HalfCros
             break;
         }
         if gain <= GAIN_LIMIT * best.abs() {
+            (alpha, beta) = (alpha + step[0], beta + step[1]);
             let flat_rise = 2.0 * (best - flat);
             let falls = beta < 0.0;
             return match trend {

@@ -81,7 +81,7 @@ impl MeanCrossover {
 /// As [`slope_of_mean`](crate::fit::ensemble::slope_of_mean); s or k not in (0, 100].
 ///
 /// # Cost
-/// Samples × powers, and powers × about 100 for the search.
+/// Samples × powers, then powers × evaluations of a one-dimensional search.
 ///
 /// # Example
 /// ```

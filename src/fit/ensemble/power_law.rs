@@ -25,7 +25,7 @@ pub struct PowerLaw {
 /// ```
 ///
 /// The errors of A and b are those of the dy as given, whatever χ² is; χ² far above the freedom says that they or the law are wrong.
-/// ln y has the error dy/y to first order: at dy/y = 0.3 it is 5 % off.
+/// ln y has the error dy/y to first order in it.
 ///
 /// # Errors
 /// Fewer than two different x; an x, y or error that is not positive and finite.
