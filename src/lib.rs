@@ -69,7 +69,7 @@
 //! | `plastic` (feature `linear`) | what of a response is not in the linear one, and from where on | `plastic::PlasticPart` |
 //! | [`observe`] | radial and angular profile, angular modes, spectrum and correlation, contact forces and changes, penetration and isostatic length | [`RadialProfile`](observe::RadialProfile), [`AngularCorrelation`](observe::angular::AngularCorrelation) |
 //! | [`reference`](mod@reference) | exact solutions, elastic and screened | [`Annulus`](reference::Annulus) |
-//! | `fit` (feature `fit`) | a profile against both solutions, with errors and a decision; slope and crossover of an angular spectrum | `fit::profile::fit_radial_profile`, `fit::angular::fit_slope` |
+//! | `fit` (feature `fit`) | a profile against both solutions, with errors and a decision; slope and crossover of an angular spectrum; crossings, powers and collapses of ensembles | `fit::profile::fit_radial_profile`, `fit::angular::fit_slope`, `fit::ensemble` |
 //! | `protocol` (feature `linear`) | whether relaxers end in the same minimum | `protocol::ProtocolSensitivity` |
 //! | [`scene`] | everything a run needs, as plain data | [`Scene`](scene::Scene) |
 //! | [`response`] | all observables of one inflation, and its phase | [`Response`](response::Response) |
@@ -87,7 +87,7 @@
 //!
 //! | feature | adds | with |
 //! |---|---|---|
-//! | `fit` | fits of a measured profile, of a measured spectrum | argmin, statrs |
+//! | `fit` | fits of a measured profile, of a measured spectrum, of ensembles | argmin, statrs |
 //! | `linear` | Hessian, factorisations, Newton, linear response, plastic part, moduli, modes, protocol sensitivity | faer |
 //! | `parallel` | the samples of a scene side by side; never changes a bit of a result | rayon |
 //! | `plot` | figures and the HTML page of a report | plotters |
@@ -227,6 +227,9 @@ mod book {
     #[cfg(feature = "fit")]
     #[doc = include_str!("../book/src/fit.md")]
     mod fit {}
+    #[cfg(feature = "fit")]
+    #[doc = include_str!("../book/src/fit/ensemble.md")]
+    mod fit_ensemble {}
     #[cfg(feature = "linear")]
     #[doc = include_str!("../book/src/protocol.md")]
     mod protocol {}

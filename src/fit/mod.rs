@@ -2,9 +2,10 @@
 //!
 //! Start from [`profile::fit_radial_profile`]: one radial profile against the elastic and the screened solution; or from
 //! [`angular::fit_slope`] and [`angular::fit_crossover`]: angular power spectra; or from [`modes::fit_elastic_modes`]: angular
-//! modes against the elastic ones.
+//! modes against the elastic ones. Over ensembles: [`ensemble`].
 
 pub mod angular;
+pub mod ensemble;
 pub mod modes;
 pub mod profile;
 mod rings;

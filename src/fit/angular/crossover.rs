@@ -147,12 +147,12 @@ impl CrossoverOutcome {
 /// ```
 pub fn fit_crossover(rings: &[RingSample], settings: &CrossoverSettings) -> Result<CrossoverFit, SpectrumFitError> {
     settings.check()?;
-    let factor = settings.angle_factor;
     let powers = Powers::of(rings, &settings.window)?;
     let [_, highest] = powers.window();
     let deviance = |shape: Shape| powers.best(|logarithm| shape.at(logarithm)).deviance;
     // The best exponent beside a crossover, and −2 ln L there.
     let profile = |crossover: Crossover| match settings.exponent {
+        _ if crossover == Crossover::Infinite => (1.0, deviance(Shape { crossover, exponent: 1.0 })),
         ExponentChoice::Fixed(exponent) => (exponent, deviance(Shape { crossover, exponent })),
         ExponentChoice::Free => {
             let at = |exponent: f64| deviance(Shape { crossover, exponent });
@@ -160,18 +160,44 @@ pub fn fit_crossover(rings: &[RingSample], settings: &CrossoverSettings) -> Resu
             (best, at(best))
         }
     };
+    let Located { outcome, crossover, scale_free_rise, white_rise } =
+        locate(highest, powers.rise(), settings.angle_factor, |crossover| profile(crossover).1);
+    let (exponent, _) = profile(crossover);
+    let best = powers.best(|logarithm| Shape { crossover, exponent }.at(logarithm));
+    let parameter_count = if settings.exponent == ExponentChoice::Free { 2 } else { 1 };
+    Ok(CrossoverFit {
+        outcome,
+        exponent,
+        window: powers.window(),
+        power_count: powers.count(),
+        scale_free_rise,
+        white_rise,
+        rise: powers.rise(),
+        noise: best.noise,
+        dispersion: powers.dispersion(best, parameter_count),
+    })
+}
+
+/// f† of the least −2 ln L, and what its rises say.
+pub(in crate::fit) struct Located {
+    pub outcome: CrossoverOutcome,
+    pub crossover: Crossover,
+    pub scale_free_rise: f64,
+    pub white_rise: f64,
+}
+
+/// Where −2 ln L is least from f† = 0 to infinity, and within which f† it rises by no more than `rise`; θ† = `factor`/f†.
+pub(in crate::fit) fn locate(highest: usize, rise: f64, factor: f64, deviance: impl Fn(Crossover) -> f64) -> Located {
     let octaves = (highest as f64).log2() + 2.0 * OCTAVES_BEYOND;
     let steps = (octaves * STEPS_PER_OCTAVE).ceil() as usize;
     let grid: Vec<f64> = (0..=steps).map(|i| i as f64 / STEPS_PER_OCTAVE - OCTAVES_BEYOND).collect();
-    let rise = powers.rise();
-    let inside = minimum(&grid, rise, |octave| profile(Crossover::Octave(octave)).1);
-    let (scale_free, white) =
-        (profile(Crossover::Zero), deviance(Shape { crossover: Crossover::Infinite, exponent: 1.0 }));
-    let lowest = inside.value.min(scale_free.1).min(white);
-    let (scale_free_rise, white_rise) = (scale_free.1 - lowest, white - lowest);
+    let inside = minimum(&grid, rise, |octave| deviance(Crossover::Octave(octave)));
+    let (scale_free, white) = (deviance(Crossover::Zero), deviance(Crossover::Infinite));
+    let lowest = inside.value.min(scale_free).min(white);
+    let (scale_free_rise, white_rise) = (scale_free - lowest, white - lowest);
     // The interval anew, if one of the limits fits better than any crossover between.
     let interval = if lowest < inside.value {
-        minimum(&grid, rise + lowest - inside.value, |octave| profile(Crossover::Octave(octave)).1)
+        minimum(&grid, rise + lowest - inside.value, |octave| deviance(Crossover::Octave(octave)))
     } else {
         inside
     };
@@ -196,25 +222,12 @@ pub fn fit_crossover(rings: &[RingSample], settings: &CrossoverSettings) -> Resu
         CrossoverOutcome::White { .. } if white_rise == 0.0 => Crossover::Infinite,
         _ => Crossover::Octave(interval.at),
     };
-    let (exponent, _) = profile(crossover);
-    let best = powers.best(|logarithm| Shape { crossover, exponent }.at(logarithm));
-    let parameter_count = if settings.exponent == ExponentChoice::Free { 2 } else { 1 };
-    Ok(CrossoverFit {
-        outcome,
-        exponent,
-        window: powers.window(),
-        power_count: powers.count(),
-        scale_free_rise,
-        white_rise,
-        rise,
-        noise: best.noise,
-        dispersion: powers.dispersion(best, parameter_count),
-    })
+    Located { outcome, crossover, scale_free_rise, white_rise }
 }
 
 /// f†, limits included.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Crossover {
+pub(in crate::fit) enum Crossover {
     Zero,
     /// Of this logarithm to base 2.
     Octave(f64),
@@ -223,14 +236,14 @@ enum Crossover {
 
 /// A spectrum of any amplitude.
 #[derive(Debug, Clone, Copy)]
-struct Shape {
-    crossover: Crossover,
-    exponent: f64,
+pub(in crate::fit) struct Shape {
+    pub crossover: Crossover,
+    pub exponent: f64,
 }
 
 impl Shape {
     /// S at a frequency whose logarithm this is.
-    fn at(self, logarithm: f64) -> f64 {
+    pub fn at(self, logarithm: f64) -> f64 {
         match self.crossover {
             Crossover::Zero => libm::exp(-self.exponent * logarithm),
             Crossover::Octave(octave) => {

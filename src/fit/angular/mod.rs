@@ -31,6 +31,7 @@ use serde::{Deserialize, Serialize};
 use crate::fit::Estimate;
 use crate::observe::angular::AngularError;
 
+pub(in crate::fit) use crossover::{Crossover, Located, Shape, locate};
 pub use crossover::{CrossoverFit, CrossoverOutcome, CrossoverSettings, ExponentChoice, fit_crossover};
 pub use slope::{SlopeFit, SlopeOutcome, fit_slope};
 
