@@ -7,8 +7,11 @@ use std::sync::Mutex;
 use std::time::Duration;
 
 use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
-use jamscope::study::{self, FailureKind, Plan, Problem, Record, RecordOutcome, Shard, Study, StudyProgress, Task};
+use jamscope::study::{
+    self, FailureKind, Merged, Plan, Problem, Recipe, Record, RecordOutcome, Scale, Shard, Study, StudyProgress, Task,
+};
 
 use crate::{Failure, print, set_threads};
 
@@ -16,7 +19,17 @@ use crate::{Failure, print, set_threads};
 #[derive(Args)]
 pub struct StudyArguments {
     /// Study file (TOML).
-    study: PathBuf,
+    #[arg(required_unless_present = "recipe", conflicts_with = "recipe")]
+    study: Option<PathBuf>,
+    /// Run the study behind a figure of the published study instead of a file.
+    #[arg(long, value_name = "NAME", value_parser = recipes())]
+    recipe: Option<Recipe>,
+    /// How much of a recipe: minutes on two cores, a night on two cores, or the published sizes and 400 samples.
+    #[arg(long, value_parser = scales(), default_value = "small", requires = "recipe")]
+    scale: Scale,
+    /// Print the study, to be run from a file or changed, and run nothing.
+    #[arg(long)]
+    print: bool,
     /// Folder of its samples; those that are there already are not run again.
     #[arg(long, value_name = "DIR", default_value = "jamscope-study")]
     out: PathBuf,
@@ -39,6 +52,18 @@ pub struct StudyArguments {
 pub struct MergeArguments {
     /// Folder of a study.
     folder: PathBuf,
+}
+
+/// The recipes by their names.
+fn recipes() -> impl TypedValueParser<Value = Recipe> {
+    let names = PossibleValuesParser::new(Recipe::ALL.map(|it| PossibleValue::new(it.name()).help(it.title())));
+    names.try_map(|name| Recipe::ALL.into_iter().find(|it| it.name() == name).ok_or("no recipe of this name"))
+}
+
+/// The scales by their names.
+fn scales() -> impl TypedValueParser<Value = Scale> {
+    let names = PossibleValuesParser::new(Scale::ALL.map(Scale::name));
+    names.try_map(|name| Scale::ALL.into_iter().find(|it| it.name() == name).ok_or("no scale of this name"))
 }
 
 fn parse_shard(text: &str) -> Result<Shard, String> {
@@ -82,8 +107,17 @@ fn read_study(path: &Path) -> Result<Study, Failure> {
 }
 
 /// Runs the study, or prints its plan.
+///
+/// Where every sample is there at the end, as after a run of all parts, the study is merged too.
 pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
-    let study = read_study(&arguments.study)?;
+    let study = match (&arguments.study, arguments.recipe) {
+        (Some(path), _) => read_study(path)?,
+        (None, Some(recipe)) => recipe.study(arguments.scale),
+        (None, None) => return Err("a study file or a recipe is needed".into()),
+    };
+    if arguments.print {
+        return print(&toml::to_string(&study).map_err(|error| error.to_string())?);
+    }
     let shard = match arguments.shard {
         Some(shard) => shard,
         None => shard_of_environment()?,
@@ -93,6 +127,9 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
         return print(&cost::text(&plan, &arguments.out, shard));
     }
     set_threads(arguments.threads)?;
+    if let Some(recipe) = arguments.recipe {
+        print(&format!("{}: {}\n{}", recipe.name(), recipe.title(), cost::summary(&plan, &arguments.out, shard)))?;
+    }
     let bar = Bar::new(plan.tasks.iter().filter(|task| shard.has(task.index)).count());
     let executed = study::execute(&study, &arguments.out, shard, arguments.replace, &bar);
     bar.bar.finish_and_clear();
@@ -107,17 +144,25 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
     text += &failures(&done.failures);
     text += &problems("left alone, of no sample of this study", &done.foreign);
     print(&text)?;
-    if done.damaged.is_empty() {
-        return Ok(ExitCode::SUCCESS);
+    if !done.damaged.is_empty() {
+        return Err(problems("damaged, move them away to have their samples run again", &done.damaged).trim_end().into());
     }
-    Err(problems("damaged, move them away to have their samples run again", &done.damaged).trim_end().into())
+    if shard == Shard::default() {
+        let merged = study::merge(&arguments.out).map_err(|error| error.to_string())?;
+        return print(&results(&merged, &arguments.out)?);
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Merges the folder and prints what is in it.
 pub fn merge(arguments: &MergeArguments) -> Result<ExitCode, Failure> {
     let merged = study::merge(&arguments.folder).map_err(|error| error.to_string())?;
-    let mut text =
-        format!("{} of {} samples in {}\n", merged.record_count, merged.sample_count, arguments.folder.display());
+    print(&results(&merged, &arguments.folder)?)
+}
+
+/// Writes the report of a merged study; what is in it, and the files, in words.
+fn results(merged: &Merged, folder: &Path) -> Result<String, Failure> {
+    let mut text = format!("{} of {} samples in {}\n", merged.record_count, merged.sample_count, folder.display());
     for statistics in &merged.cells {
         let cell = &statistics.cell;
         let (target, value) = cell.target.name_and_value();
@@ -140,10 +185,55 @@ pub fn merge(arguments: &MergeArguments) -> Result<ExitCode, Failure> {
     }
     text += &problems("left out, damaged", &merged.damaged);
     text += &problems("left out, of no sample of this study", &merged.foreign);
-    for file in &merged.files {
+    let mut files = merged.files.clone();
+    #[cfg(feature = "fit")]
+    {
+        let transition = jamscope::transition::Transition::of(merged);
+        text += &transition::text(&transition);
+        files.extend(jamscope::report::write_study(merged, &transition, folder).map_err(|error| error.to_string())?);
+    }
+    #[cfg(not(feature = "fit"))]
+    let _ = &mut files;
+    for file in &files {
         text += &format!("{}\n", file.display());
     }
-    print(&text)
+    Ok(text)
+}
+
+/// What a study says of the transition.
+#[cfg(feature = "fit")]
+mod transition {
+    use jamscope::transition::{Comparison, Transition, TransitionPressure};
+
+    /// p̂_c of every series, and every number beside the published one.
+    pub fn text(transition: &Transition) -> String {
+        let mut text = String::new();
+        for series in &transition.series {
+            for estimate in &series.estimates {
+                text += &format!("{}: p̂_c by {} {}\n", series.name(), estimate.method.name(), pressure(estimate.pressure));
+            }
+        }
+        transition.comparisons.iter().for_each(|one| text += &line(one));
+        text
+    }
+
+    fn pressure(found: TransitionPressure) -> String {
+        match found {
+            TransitionPressure::Above(highest) => format!("above {highest:.2e}"),
+            TransitionPressure::Below(lowest) => format!("below {lowest:.2e}"),
+            TransitionPressure::Unordered => "not in one place".into(),
+            found => {
+                let ends = found.interval().map_or(String::new(), |[low, high]| format!(" ({low:.2e} to {high:.2e})"));
+                found.best().map_or("none".into(), |best| format!("{best:.2e}{ends}"))
+            }
+        }
+    }
+
+    fn line(one: &Comparison) -> String {
+        let value = one.value.map_or("a bound".into(), |value| format!("{value:.4}"));
+        let ends = one.interval.map_or(String::new(), |[low, high]| format!(" ({low:.4} to {high:.4})"));
+        format!("{}, {}: {value}{ends}, published {}: {}\n", one.quantity, one.of, one.published, one.verdict.name())
+    }
 }
 
 fn failures(by_kind: &BTreeMap<FailureKind, usize>) -> String {
@@ -204,55 +294,84 @@ impl StudyProgress for Bar {
 
 /// What a plan costs.
 mod cost {
-    use super::{Path, Plan, Shard};
+    use super::{Path, Plan, Shard, Task};
     use jamscope::study::measured_seconds;
 
-    /// The plan, cell by cell, with the seconds its finished packings took.
+    /// The plan, cell by cell, with the seconds its finished packings took, or else those expected.
     pub fn text(plan: &Plan, folder: &Path, shard: Shard) -> String {
         let mut text = String::new();
-        let (mut left, mut unknown) = (0.0, 0);
-        let mut place = 0;
-        while place < plan.tasks.len() {
-            // Tasks that differ in the seed alone stand together.
-            let first = &plan.tasks[place];
-            let alike = |other: &&jamscope::study::Task| {
-                (other.target, other.scenes[0].law, other.scenes[0].disk_count)
-                    == (first.target, first.scenes[0].law, first.scenes[0].disk_count)
-            };
-            let tasks: Vec<_> = plan.tasks[place..].iter().take_while(alike).collect();
-            place += tasks.len();
-            let of_shard: Vec<_> = tasks.iter().filter(|task| shard.has(task.index)).collect();
-            let seconds: Vec<f64> = of_shard.iter().filter_map(|task| measured_seconds(folder, task)).collect();
+        for cell in cells(plan, folder, shard) {
+            let first = cell.first;
             let (target, value) = first.target.name_and_value();
             text += &format!(
-                "{} disks, {} {value}: {} packings, {} inflations each",
+                "{} {} disks, {} {value}: {} packings, {} inflations each, {} done, {:.1} s each {}, {:.0} s left on one core\n",
+                first.scenes[0].law.name(),
                 first.scenes[0].disk_count,
                 target.replace('_', " "),
-                of_shard.len(),
-                first.scenes.len()
+                cell.count,
+                first.scenes.len(),
+                cell.done,
+                cell.each,
+                if cell.done > 0 { "measured" } else { "expected" },
+                cell.left(),
             );
-            let missing = of_shard.len() - seconds.len();
-            if seconds.is_empty() {
-                unknown += missing;
-                text += ", none done yet\n";
-            } else {
-                let mean = seconds.iter().sum::<f64>() / seconds.len() as f64;
-                left += mean * missing as f64;
-                text += &format!(
-                    ", {} done, {mean:.1} s each, {:.0} s left on one thread\n",
-                    seconds.len(),
-                    mean * missing as f64
-                );
-            }
         }
-        text += &format!(
-            "{} packings, {} samples; {left:.0} s on one thread for what is left of cells with a sample",
+        text + &summary(plan, folder, shard)
+    }
+
+    /// What is left of it, in a line.
+    pub fn summary(plan: &Plan, folder: &Path, shard: Shard) -> String {
+        let cells = cells(plan, folder, shard);
+        let left: f64 = cells.iter().map(Cell::left).sum();
+        let done: usize = cells.iter().map(|cell| cell.done).sum();
+        let count: usize = cells.iter().map(|cell| cell.count).sum();
+        format!(
+            "{} packings, {} samples in the plan; {done} of {count} packings done; about {} left on one core\n",
             plan.tasks.len(),
-            plan.sample_count()
-        );
-        if unknown > 0 {
-            text += &format!(", {unknown} packings of other cells: run a few of each to know");
+            plan.sample_count(),
+            words(left)
+        )
+    }
+
+    /// Packings that differ in the seed alone.
+    struct Cell<'a> {
+        first: &'a Task,
+        /// Those of the part asked for.
+        count: usize,
+        done: usize,
+        /// Seconds of one.
+        each: f64,
+    }
+
+    impl Cell<'_> {
+        fn left(&self) -> f64 {
+            self.each * (self.count - self.done) as f64
         }
-        text + "\n"
+    }
+
+    fn cells<'a>(plan: &'a Plan, folder: &Path, shard: Shard) -> Vec<Cell<'a>> {
+        let alike = |a: &Task, b: &Task| {
+            let of = |task: &Task| (task.scenes[0].law, task.scenes[0].disk_count, task.scenes[0].inflation.boundary);
+            a.target == b.target && of(a) == of(b)
+        };
+        let cell = |tasks: &'a [Task]| {
+            let own: Vec<&Task> = tasks.iter().filter(|task| shard.has(task.index)).collect();
+            let seconds: Vec<f64> = own.iter().filter_map(|task| measured_seconds(folder, task)).collect();
+            let each = match seconds.len() {
+                0 => tasks[0].expected_seconds(),
+                done => seconds.iter().sum::<f64>() / done as f64,
+            };
+            Cell { first: &tasks[0], count: own.len(), done: seconds.len(), each }
+        };
+        plan.tasks.chunk_by(alike).map(cell).collect()
+    }
+
+    /// A time in the unit it is read in.
+    fn words(seconds: f64) -> String {
+        match seconds {
+            s if s < 120.0 => format!("{s:.0} s"),
+            s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+            s => format!("{:.1} h", s / 3600.0),
+        }
     }
 }

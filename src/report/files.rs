@@ -60,6 +60,27 @@ pub fn write_analyses(analyses: &[Analysis], folder: &Path) -> Result<Vec<PathBu
     Ok(files.written)
 }
 
+/// Writes what a merged study says of the transition beside its records: `transition.json`, `transition.csv`, and with the
+/// feature `plot` `report.html`.
+///
+/// # Errors
+/// [`ReportError`] names the file and what is wrong.
+#[cfg(feature = "fit")]
+pub fn write_study(
+    merged: &crate::study::Merged,
+    transition: &crate::transition::Transition,
+    folder: &Path,
+) -> Result<Vec<PathBuf>, ReportError> {
+    let mut files = Files { folder, written: Vec::new() };
+    files.json("transition.json", transition)?;
+    files.text("transition.csv", &csv::transition::table(&transition.comparisons))?;
+    #[cfg(feature = "plot")]
+    files.text("report.html", &crate::report::study::study_page(merged, transition))?;
+    #[cfg(not(feature = "plot"))]
+    let _ = merged;
+    Ok(files.written)
+}
+
 /// What `analysis.json` holds.
 #[derive(Serialize)]
 struct Analyses<'a> {

@@ -40,10 +40,14 @@ mod protocol;
 #[cfg(feature = "plot")]
 mod response_page;
 mod rows;
+#[cfg(all(feature = "fit", feature = "plot"))]
+pub mod study;
 pub mod table;
 
 use std::path::PathBuf;
 
+#[cfg(feature = "fit")]
+pub use files::write_study;
 pub use files::{write, write_analyses};
 
 use crate::io::WriteError;

@@ -16,12 +16,16 @@ use crate::scene::Source;
 
 pub(crate) const STYLE: &str = include_str!("page.css");
 
+/// Title and heading of reports of samples.
+const TITLE: &str = "jamscope: response to an inflation";
+const HEADING: &str = "Response of a packing to the inflation of one disk";
+
 /// The page of a report. Two runs of one scene give the same bytes: wall times are left out.
 ///
 /// # Errors
 /// A figure whose numbers are not finite.
 pub fn page(report: &Report) -> Result<String, FigureError> {
-    let mut html = head(&introduction(report));
+    let mut html = head(TITLE, HEADING, &introduction(report));
     for sample in &report.samples {
         html.push_str(&section(report, sample)?);
     }
@@ -43,10 +47,11 @@ pub fn page(report: &Report) -> Result<String, FigureError> {
 /// A figure whose numbers are not finite.
 pub fn analysis_page(analyses: &[Analysis]) -> Result<String, FigureError> {
     let responses: Vec<_> = analyses.iter().map(|analysis| &analysis.response).collect();
-    let mut html = head(&format!(
+    let introduction = format!(
         "Two states of each packing, before and after one disk grew, as they were read. {}",
         response_page::legend(&responses, true).trim_end()
-    ));
+    );
+    let mut html = head(TITLE, HEADING, &introduction);
     for analysis in analyses {
         let name = escaped(&analysis.name);
         let facts = [
@@ -85,18 +90,18 @@ pub fn analysis_page(analyses: &[Analysis]) -> Result<String, FigureError> {
     Ok(html)
 }
 
-/// All before the first sample.
-fn head(introduction: &str) -> String {
+/// All before the first section.
+pub(crate) fn head(title: &str, heading: &str, introduction: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>jamscope: response to an inflation</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-         <header>\n<h1>Response of a packing to the inflation of one disk</h1>\n<p>{introduction}</p>\n</header>\n<main>\n"
+         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+         <header>\n<h1>{heading}</h1>\n<p>{introduction}</p>\n</header>\n<main>\n"
     )
 }
 
 /// Figures side by side.
-fn pictures(figures: Vec<Figure>) -> String {
+pub(crate) fn pictures(figures: Vec<Figure>) -> String {
     if figures.is_empty() {
         return String::new();
     }

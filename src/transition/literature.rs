@@ -48,6 +48,19 @@ pub enum Verdict {
     Unknown,
 }
 
+impl Verdict {
+    /// In one word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::Agrees => "agrees",
+            Verdict::Differs => "differs",
+            Verdict::Beyond => "beyond",
+            Verdict::Excluded => "excluded",
+            Verdict::Unknown => "unknown",
+        }
+    }
+}
+
 impl Comparison {
     fn interval(quantity: &str, of: &str, value: f64, interval: Option<[f64; 2]>, published: f64) -> Self {
         let verdict = match interval {

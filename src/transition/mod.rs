@@ -32,7 +32,7 @@ pub(crate) use lengths::{ISOSTATIC_THRESHOLD, JAMMING};
 pub(crate) use literature::words;
 pub(crate) use pressure::{FIRST_ZERO, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION};
 pub(crate) use scaling::beta;
-pub(crate) use series::{ANGLE, ANTICORRELATION};
+pub(crate) use series::{ANGLE, ANTICORRELATION, PUBLISHED};
 
 use crate::study::Merged;
 

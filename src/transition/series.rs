@@ -68,7 +68,7 @@ pub(crate) const ANTICORRELATION: &str = "anticorrelation";
 pub(crate) const ANGLE: &str = "correlation_angle_at_0.1";
 
 /// p̂_c of Hertzian disks by the spectrum. Source: the study.
-const PUBLISHED: f64 = 1e8;
+pub(crate) const PUBLISHED: f64 = 1e8;
 
 impl Series {
     /// All of a study.

@@ -3,6 +3,8 @@
 //! Numbers are the shortest decimals that give the same `f64` again.
 
 pub(crate) mod response;
+#[cfg(feature = "fit")]
+pub(crate) mod transition;
 
 use std::fmt::Write as _;
 

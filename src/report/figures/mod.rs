@@ -19,7 +19,7 @@ mod layer;
 pub(crate) mod log_axes;
 pub mod map;
 pub mod multipoles;
-mod palette;
+pub(crate) mod palette;
 pub(crate) mod plot;
 pub mod radial;
 pub mod radial_dependence;

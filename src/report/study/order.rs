@@ -7,7 +7,9 @@ use crate::report::figures::Figure;
 use crate::report::figures::plot::{Guide, Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare, colour};
 use crate::report::study::{Subject, series_colour, short};
 use crate::study::NumberStatistics;
-use crate::transition::{ANGLE, ANTICORRELATION, FIRST_ZERO, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION, Series};
+use crate::transition::{
+    ANGLE, ANTICORRELATION, FIRST_ZERO, PUBLISHED, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION, Series, beta,
+};
 
 /// Samples of a cell drawn one by one, at most.
 const SINGLES: usize = 200;
@@ -130,13 +132,17 @@ fn subject_plot(
             curves.push(crossover_angles(series, index, all));
         }
     }
+    let mut guides = vec![Guide::Horizontal(guide, "S ∼ f<tspan dy=\"-4\" font-size=\"9\">−1.5</tspan>".into())];
+    if matches!(abscissa, Abscissa::Reduced) && all.iter().all(|series| beta(&series.cell.law) == 3.0) {
+        guides.push(Guide::Vertical(PUBLISHED, "published".into()));
+    }
     Plot {
         title: format!("{title} against {words}"),
         description: format!("Mean {title} of {} series with bootstrap intervals against {words}", all.len()),
         x: PlotAxis::logarithmic(x_label),
         y: PlotAxis::linear(label),
         series: curves,
-        guides: vec![Guide::Horizontal(guide, "S ∼ f<tspan dy=\"-4\" font-size=\"9\">−1.5</tspan>".into())],
+        guides,
     }
 }
 

@@ -5,7 +5,6 @@ use crate::reference::screened::Screened;
 use crate::reference::{Annulus, RadialSolution};
 use crate::report::figures::plot::{Guide, Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare, colour};
 use crate::report::figures::{Figure, RESCALED};
-use crate::report::number::significant;
 use crate::report::study::{Subject, series_colour, short, target};
 use crate::study::{CellSamples, Single};
 use crate::transition::{FIRST_ZERO, Series};
@@ -188,9 +187,4 @@ pub(super) fn contacts(subject: &Subject<'_>) -> Vec<Figure> {
         plot("Share of changed contacts that return on deflation", "share", returns, false),
     ];
     both.into_iter().filter_map(Plot::draw).collect()
-}
-
-/// A number as text for labels.
-pub(super) fn text(value: f64) -> String {
-    significant(value, 2)
 }

@@ -1,0 +1,260 @@
+//! [`study_page`]: the report of a study on one page that needs nothing else.
+
+use std::fmt::Write as _;
+
+use crate::fit::ensemble::BootstrapInterval;
+use crate::report::figures::{Figure, escaped};
+use crate::report::number::{count, significant};
+use crate::report::page::{head, pictures};
+use crate::report::study::order::Abscissa;
+use crate::report::study::{Subject, angular, lengths, order, radial, scaling};
+use crate::study::{CellStatistics, Merged, NumberStatistics};
+use crate::transition::{Comparison, ExponentOutcome, Transition, TransitionPressure, Verdict, words};
+
+/// The page of a study. Two merges of the same samples give the same bytes.
+pub fn study_page(merged: &Merged, transition: &Transition) -> String {
+    let subject = Subject { merged, transition };
+    let mut html = head("jamscope: study", "Response to an inflation, sample after sample", &introduction(merged));
+    for (title, text, figures) in views(&subject) {
+        if !figures.is_empty() {
+            let _ = write!(
+                html,
+                "<section aria-label=\"{title}\">\n<h2>{title}</h2>\n<p class=\"facts\">{text}</p>\n{}</section>\n",
+                pictures(figures)
+            );
+        }
+    }
+    html.push_str(&estimates(transition));
+    html.push_str(&exponents(transition));
+    html.push_str(&comparisons(transition));
+    html.push_str(&cells(merged));
+    let _ = write!(
+        html,
+        "</main>\n<footer>\n<p>jamscope {}. Lengths in diameters of a small disk. Intervals are of 95 %, by drawing the samples of every cell \
+         anew. Data: <a href=\"summary.csv\">summary.csv</a>, <a href=\"summary.json\">summary.json</a>, \
+         <a href=\"transition.csv\">transition.csv</a>, <a href=\"transition.json\">transition.json</a>, \
+         <a href=\"records.jsonl\">records.jsonl</a>.</p>\n</footer>\n</body>\n</html>\n",
+        env!("CARGO_PKG_VERSION")
+    );
+    html
+}
+
+/// Everything that may be drawn: heading, what is to be seen, figures.
+fn views(subject: &Subject<'_>) -> Vec<(&'static str, &'static str, Vec<Figure>)> {
+    let mut order = order::against(subject, Abscissa::Reduced);
+    order.extend(order::against(subject, Abscissa::Pressure));
+    let hertzian = subject.transition.series.iter().all(|series| crate::transition::beta(&series.cell.law) == 3.0);
+    let as_hertzian = if hertzian { Vec::new() } else { order::against(subject, Abscissa::AsHertzian) };
+    let mut profiles = radial::singles(subject);
+    profiles.extend(radial::means(subject));
+    let thresholds = ["0.02", "0.05", "0.2"].into_iter().filter_map(|it| order::threshold(subject, it)).collect();
+    let mut scaled = scaling::with_inflation(subject);
+    scaled.extend(scaling::phase_diagram(subject));
+    vec![
+        (
+            "Radial profiles",
+            "Single samples with the solution that describes them better, elastic or screened; means over samples are described by neither.",
+            profiles,
+        ),
+        (
+            "Screening and pressure change",
+            "κ of the best screened solution over κ₁, its first pole, and the change of pressure. Every pale point is a sample.",
+            order::by_sample(subject),
+        ),
+        (
+            "Angular correlation and spectrum",
+            "Means over samples. A spectrum ∼ f^(−1.5) has no scale; below the transition Lorentzians are fitted.",
+            angular::functions(subject),
+        ),
+        (
+            "Order parameter and correlation angle",
+            "G* = −G(π), θ* where G = 0.1, and hollow θ† = k/f†. Series by their number of disks, and by law and d₀ where they differ.",
+            order,
+        ),
+        ("Crossover", "θ† = k/f† of the fitted Lorentzians, and θ* beside its exact value for a Lorentzian spectrum.", order::crossovers(subject)),
+        ("Against p N^(3/2)", "The scaling of Hertzian disks, which Hookean ones do not follow.", as_hertzian),
+        ("Thresholds", "The correlation angle θ* with other thresholds of G.", thresholds),
+        (
+            "Spectrum by distance",
+            "In the cell of every series whose slope is nearest to 1.5.",
+            angular::by_radius(subject),
+        ),
+        ("Screening and isostatic length", "ℓ_s = 1/κ of the screened samples; ℓ_iso where the fluctuation of bonds turns continuous.", lengths::matching(subject)),
+        ("Fluctuations around rings", "Of the stretching of bonds and of the displacement of disks, over their value next to the inflated disk.", lengths::fluctuations(subject)),
+        ("Inflations", "Published exponents take N and d₀ out.", scaled),
+        ("Contact changes", "Contacts made and broken by the inflation, and the share of them that return on deflation.", radial::contacts(subject)),
+        ("Periodic box", "No rim is held; the centre of mass stays.", radial::modes(subject)),
+        ("Below jamming", "How far the inflation is felt.", lengths::jamming(subject)),
+    ]
+}
+
+fn introduction(merged: &Merged) -> String {
+    let failed: usize = merged.cells.iter().flat_map(|cell| cell.failures.values()).sum();
+    let left_out = match failed {
+        0 => String::new(),
+        failed => format!(" {failed} of them failed and are left out of the statistics; the table of cells says why."),
+    };
+    let missing = merged.sample_count - merged.record_count;
+    let missing = match missing {
+        0 => String::new(),
+        missing => format!(" {} samples of the plan are missing.", count(missing)),
+    };
+    format!("{} samples in {} cells.{left_out}{missing}", count(merged.record_count), merged.cells.len())
+}
+
+/// A table with a head, the first column to the left.
+fn table(title: &str, text: &str, heads: &[&str], rows: &[Vec<String>]) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let mut html = format!("<section aria-label=\"{title}\">\n<h2>{title}</h2>\n<p class=\"facts\">{text}</p>\n<div class=\"table\">\n<table>\n<thead>\n<tr>");
+    for head in heads {
+        let _ = write!(html, "<th scope=\"col\">{head}</th>");
+    }
+    html.push_str("</tr>\n</thead>\n<tbody>\n");
+    for row in rows {
+        let cells: String = row
+            .iter()
+            .enumerate()
+            .map(|(place, text)| match place {
+                0 => format!("<th scope=\"row\">{}</th>", escaped(text)),
+                _ => format!("<td>{}</td>", escaped(text)),
+            })
+            .collect();
+        let _ = writeln!(html, "<tr>{cells}</tr>");
+    }
+    html + "</tbody>\n</table>\n</div>\n</section>\n"
+}
+
+fn ends([low, high]: [f64; 2]) -> String {
+    format!("{} to {}", significant(low, 3), significant(high, 3))
+}
+
+fn interval(found: &BootstrapInterval) -> String {
+    let ends = found.interval.map_or("no interval".into(), ends);
+    format!("{} ({ends})", significant(found.best, 3))
+}
+
+/// A transition pressure in words.
+pub(super) fn pressure(found: TransitionPressure) -> String {
+    match found {
+        TransitionPressure::Found(found) => interval(&found),
+        TransitionPressure::Between(between) => format!("between {}", ends(between).replace(" to ", " and ")),
+        TransitionPressure::Above(highest) => format!("above {}", significant(highest, 2)),
+        TransitionPressure::Below(lowest) => format!("below {}", significant(lowest, 2)),
+        TransitionPressure::Unordered => "not in one place".into(),
+    }
+}
+
+/// p̂_c of every series by every method.
+fn estimates(transition: &Transition) -> String {
+    let mut rows = Vec::new();
+    for series in &transition.series {
+        for estimate in &series.estimates {
+            rows.push(vec![series.name(), estimate.method.name().into(), pressure(estimate.pressure)]);
+        }
+        if let Some(at) = &series.at_transition {
+            let mut row = |name: &str, found: Option<BootstrapInterval>| {
+                rows.extend(found.map(|found| vec![series.name(), name.into(), interval(&found)]));
+            };
+            row("G* at p̂_c by the slope", at.anticorrelation);
+            row("θ* at p̂_c by the slope (rad)", at.angle);
+        }
+    }
+    let text = "κ and Δp: where half of the samples have κ above κ₁/2, or Δp below zero. G*, θ*, slope: where the mean passes its value for S ∼ f^(−1.5).";
+    table("Transition pressure p̂_c", text, &["Series", "By", "p̂_c or value (interval)"], &rows)
+}
+
+fn exponents(transition: &Transition) -> String {
+    let outcome = |outcome: Option<ExponentOutcome>| match outcome {
+        None => String::new(),
+        Some(ExponentOutcome::Found(found)) => interval(&found),
+        Some(ExponentOutcome::AtEdge(edge)) => format!("none up to {}", significant(edge, 2)),
+        Some(ExponentOutcome::NoOverlap) => "no overlap".into(),
+    };
+    let quality = |found: Option<crate::fit::ensemble::CollapseQuality>| {
+        found.map_or(String::new(), |it| format!("{} ({} of {})", significant(it.quality, 2), it.point_count, it.of_count))
+    };
+    let rows: Vec<Vec<String>> = transition
+        .scaling
+        .iter()
+        .map(|one| {
+            vec![
+                format!("{}, {} curves", one.law.name(), one.curve_count),
+                words(one.observable),
+                outcome(one.size_exponent),
+                outcome(one.inflation_exponent),
+                quality(one.quality),
+                quality(one.published_quality),
+            ]
+        })
+        .collect();
+    let text = "a and b with which the curves against p N^a d₀^(−b) lie on one. S is 1 where curves agree within their errors; in brackets the points it is made of.";
+    let heads = ["Law", "Of", "a", "b", "S at the best", "S at the published"];
+    table("Collapse", text, &heads, &rows)
+}
+
+fn comparisons(transition: &Transition) -> String {
+    let row = |one: &Comparison| {
+        let value = one.value.map_or("a bound only".into(), |value| significant(value, 3));
+        vec![
+            one.quantity.clone(),
+            one.of.clone(),
+            value,
+            one.interval.map_or(String::new(), ends),
+            significant(one.published, 3),
+            verdict(one),
+        ]
+    };
+    let rows: Vec<Vec<String>> = transition.comparisons.iter().map(row).collect();
+    let heads = ["Quantity", "Of", "Found", "Interval", "Published", ""];
+    table("Beside the literature", "A published value agrees where the interval holds it; else its distance is told in half widths of the interval.", &heads, &rows)
+}
+
+fn verdict(one: &Comparison) -> String {
+    match one.verdict {
+        Verdict::Agrees => "agrees".into(),
+        Verdict::Differs => match (one.value, one.interval) {
+            (Some(value), Some([low, high])) if high > low => {
+                format!("differs by {} half widths", significant((one.published - value).abs() / (0.5 * (high - low)), 2))
+            }
+            _ => "differs".into(),
+        },
+        Verdict::Beyond => "beyond the range measured".into(),
+        Verdict::Excluded => "excluded by the range measured".into(),
+        Verdict::Unknown => "no interval".into(),
+    }
+}
+
+/// Samples of every cell, with what failed, and a few numbers.
+fn cells(merged: &Merged) -> String {
+    let row = |statistics: &CellStatistics| {
+        let cell = &statistics.cell;
+        let (name, value) = cell.target.name_and_value();
+        let number = |name: &str| statistics.numbers.get(name).map_or(String::new(), mean);
+        let failures: Vec<String> =
+            statistics.failures.iter().map(|(kind, count)| format!("{count} {}", kind.name())).collect();
+        let phases = &statistics.phases;
+        vec![
+            format!("{} {} disks, d_0 = {}", cell.law.name(), cell.disk_count, cell.increase),
+            format!("{} {}", name.replace('_', " "), significant(value, 3)),
+            statistics.done_count.to_string(),
+            failures.join(", "),
+            format!("{}, {}, {}, {}", phases.unjammed, phases.plastic, phases.quasielastic, phases.undecided),
+            number("pressure"),
+            number("scaled_pressure_change"),
+            number("anticorrelation"),
+            number("correlation_angle_at_0.1"),
+        ]
+    };
+    let rows: Vec<Vec<String>> = merged.cells.iter().map(row).collect();
+    let heads = ["Cell", "Target", "Samples", "Failed", "Unjammed, plastic, quasielastic, undecided", "p", "Δp scaled", "G*", "θ* (rad)"];
+    table("Cells", "Means over the samples that came to a result, with standard errors.", &heads, &rows)
+}
+
+fn mean(found: &NumberStatistics) -> String {
+    match found.standard_error {
+        Some(error) => crate::report::number::with_error(found.mean, error),
+        None => significant(found.mean, 3),
+    }
+}
