@@ -137,7 +137,7 @@ fn a_dry_run_prints_the_plan_and_runs_nothing() {
         String::from_utf8(output.expect("the program starts").stdout).expect("Unicode")
     };
     let text = dry();
-    assert!(text.contains("120 disks, pressure 500: 12 packings, 2 inflations each, none done yet"), "{text}");
+    assert!(text.contains("120 disks, pressure 500: 12 packings, 2 inflations each, 0 done"), "{text}");
     assert!(text.contains("24 packings, 48 samples") && !out.exists());
     let part = program().args(["study", "--shard", "1/4"]).arg(&study).arg("--out").arg(&out).output();
     assert!(part.expect("the program starts").status.success());

@@ -145,7 +145,9 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
     text += &problems("left alone, of no sample of this study", &done.foreign);
     print(&text)?;
     if !done.damaged.is_empty() {
-        return Err(problems("damaged, move them away to have their samples run again", &done.damaged).trim_end().into());
+        return Err(problems("damaged, move them away to have their samples run again", &done.damaged)
+            .trim_end()
+            .into());
     }
     if shard == Shard::default() {
         let merged = study::merge(&arguments.out).map_err(|error| error.to_string())?;
@@ -210,7 +212,8 @@ mod transition {
         let mut text = String::new();
         for series in &transition.series {
             for estimate in &series.estimates {
-                text += &format!("{}: p̂_c by {} {}\n", series.name(), estimate.method.name(), pressure(estimate.pressure));
+                text +=
+                    &format!("{}: p̂_c by {} {}\n", series.name(), estimate.method.name(), pressure(estimate.pressure));
             }
         }
         transition.comparisons.iter().for_each(|one| text += &line(one));
@@ -230,9 +233,16 @@ mod transition {
     }
 
     fn line(one: &Comparison) -> String {
-        let value = one.value.map_or("a bound".into(), |value| format!("{value:.4}"));
-        let ends = one.interval.map_or(String::new(), |[low, high]| format!(" ({low:.4} to {high:.4})"));
-        format!("{}, {}: {value}{ends}, published {}: {}\n", one.quantity, one.of, one.published, one.verdict.name())
+        let value = one.value.map_or("a bound".into(), number);
+        let ends =
+            one.interval.map_or(String::new(), |[low, high]| format!(" ({} to {})", number(low), number(high)));
+        let published = number(one.published);
+        format!("{}, {}: {value}{ends}, published {published}: {}\n", one.quantity, one.of, one.verdict.name())
+    }
+
+    /// Four digits.
+    fn number(value: f64) -> String {
+        if (1e-3..1e5).contains(&value.abs()) { format!("{value:.4}") } else { format!("{value:.3e}") }
     }
 }
 

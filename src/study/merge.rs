@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use crate::io::write_atomically;
 use crate::study::plan::Plan;
-use crate::study::settings::{Study, StudyError};
 use crate::study::samples::CellSamples;
+use crate::study::settings::{Study, StudyError};
 use crate::study::statistics::CellStatistics;
 use crate::study::store::{Problem, Store, StoreError, TaskState};
 

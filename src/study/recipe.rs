@@ -130,10 +130,9 @@ impl Recipe {
             | Recipe::Threshold
             | Recipe::Isostatic => transition(scale),
             Recipe::InflationScaling => inflations(scale, &[LawChoice::Hertzian(Hertzian::default())]),
-            Recipe::PhaseDiagram => inflations(
-                scale,
-                &[LawChoice::Hertzian(Hertzian::default()), LawChoice::Hookean(Hookean::default())],
-            ),
+            Recipe::PhaseDiagram => {
+                inflations(scale, &[LawChoice::Hertzian(Hertzian::default()), LawChoice::Hookean(Hookean::default())])
+            }
             Recipe::Periodic => periodic(scale),
             Recipe::Jamming => jamming(scale),
             Recipe::Hookean => hookean(scale),
@@ -234,10 +233,7 @@ fn radial(scale: Scale) -> Study {
         relaxers: vec![RelaxerChoice::Fire(Fire::default())],
         ..part(size, vec![Target::PackingFraction(0.82)], count)
     };
-    let jammed = Part {
-        increases: vec![0.1, 0.03, 0.01, 0.003],
-        ..part(size, reduced(&[1e6, 1e7, 1e8, 1e9]), count)
-    };
+    let jammed = Part { increases: vec![0.1, 0.03, 0.01, 0.003], ..part(size, reduced(&[1e6, 1e7, 1e8, 1e9]), count) };
     Study { parts: vec![unjammed, jammed], ..common() }
 }
 
@@ -248,7 +244,9 @@ fn inflations(scale: Scale, laws: &[LawChoice]) -> Study {
     for &law in laws {
         // Hookean pressures at about the same packing fractions, by φ(p) of both laws.
         let targets = |values: &[f64]| match law {
-            LawChoice::Hookean(_) => reduced(&values.iter().map(|p| 1.6e7 * (p / 1e8).powf(2.0 / 3.0)).collect::<Vec<_>>()),
+            LawChoice::Hookean(_) => {
+                reduced(&values.iter().map(|p| 1.6e7 * (p / 1e8).powf(2.0 / 3.0)).collect::<Vec<_>>())
+            }
             _ => reduced(values),
         };
         let sizes: &[(usize, usize, &[f64])] = match scale {
@@ -282,10 +280,8 @@ fn radius(scale: Scale) -> Study {
         Scale::Full => (3, 400),
     };
     let law = |law: LawChoice, p| Part { laws: vec![law], ..part(size, reduced(&[p]), count) };
-    let parts = vec![
-        law(LawChoice::Hertzian(Hertzian::default()), 1e8),
-        law(LawChoice::Hookean(Hookean::default()), 1.6e7),
-    ];
+    let parts =
+        vec![law(LawChoice::Hertzian(Hertzian::default()), 1e8), law(LawChoice::Hookean(Hookean::default()), 1.6e7)];
     Study { parts, ..common() }
 }
 

@@ -130,7 +130,8 @@ impl Record {
         let sample = &scene.sample[0];
         let (disk_count, increase) = (scene.disk_count, scene.inflation.increase);
         let boundary = scene.inflation.boundary;
-        let cell = Cell { law: scene.law, disk_count, target: task.target, increase, relaxer: sample.relaxer, boundary };
+        let cell =
+            Cell { law: scene.law, disk_count, target: task.target, increase, relaxer: sample.relaxer, boundary };
         let outcome = match result {
             Ok(result) => RecordOutcome::Done {
                 phase: result.response.phase,
@@ -294,4 +295,3 @@ impl Numbers {
         }
     }
 }
-

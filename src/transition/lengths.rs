@@ -144,7 +144,8 @@ impl JammingSeries {
             let threshold: f64 = threshold.parse().unwrap_or(f64::NAN);
             for samples in &merged.samples {
                 let Target::PackingFraction(packing_fraction) = samples.cell.target else { continue };
-                let (Some(found), Some(radii)) = (samples.numbers.get(&name), samples.numbers.get("outer_radius")) else {
+                let (Some(found), Some(radii)) = (samples.numbers.get(&name), samples.numbers.get("outer_radius"))
+                else {
                     continue;
                 };
                 let found = NumberStatistics::of(found);

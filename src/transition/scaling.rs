@@ -11,8 +11,8 @@ use serde::Serialize;
 
 use crate::contact::LawChoice;
 use crate::fit::ensemble::{
-    BootstrapInterval, CollapseOutcome, CollapseQuality, CollapseSettings, Curve, MeasuredPoint, PowerLaw, bootstrap_all,
-    collapse, collapse_quality, fit_power_law,
+    BootstrapInterval, CollapseOutcome, CollapseQuality, CollapseSettings, Curve, MeasuredPoint, PowerLaw,
+    bootstrap_all, collapse, collapse_quality, fit_power_law,
 };
 use crate::study::Merged;
 use crate::transition::pressure::{Method, TransitionPressure};
@@ -99,8 +99,7 @@ impl Scaling {
             }
         }
         let of_law = |law: LawChoice| {
-            let own: Vec<&Series> =
-                series.iter().filter(|it| it.cell.law == law && it.points.len() > 1).collect();
+            let own: Vec<&Series> = series.iter().filter(|it| it.cell.law == law && it.points.len() > 1).collect();
             OBSERVABLES.iter().filter_map(move |observable| Self::of(merged, law, &own, observable)).collect::<Vec<_>>()
         };
         laws.into_iter().flat_map(of_law).collect()
@@ -155,7 +154,8 @@ fn exponents<const K: usize>(curves: &[([f64; 2], Values<'_>)], which: [usize; K
     let drawn = |groups: &[Vec<usize>]| -> Option<Vec<Curve<K>>> {
         let mut groups = groups.iter();
         let curve = |(scales, values): &([f64; 2], Values<'_>)| {
-            let points: Option<Vec<MeasuredPoint>> = values.iter().map(|(x, all)| measured(*x, all, groups.next()?)).collect();
+            let points: Option<Vec<MeasuredPoint>> =
+                values.iter().map(|(x, all)| measured(*x, all, groups.next()?)).collect();
             Some(Curve { scales: which.map(|k| scales[k]), points: points? })
         };
         curves.iter().map(curve).collect()

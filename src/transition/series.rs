@@ -76,8 +76,12 @@ impl Series {
         let mut grouped: Vec<(Cell, Vec<SeriesPoint>)> = Vec::new();
         for (index, samples) in merged.samples.iter().enumerate() {
             let jammed = !matches!(samples.cell.target, Target::PackingFraction(_));
-            let mean = |name: &str| samples.numbers.get(name).filter(|_| jammed).map(|values| NumberStatistics::of(values).mean);
-            let (Some(pressure), Some(reduced_pressure)) = (mean("pressure"), mean("reduced_pressure")) else { continue };
+            let mean = |name: &str| {
+                samples.numbers.get(name).filter(|_| jammed).map(|values| NumberStatistics::of(values).mean)
+            };
+            let (Some(pressure), Some(reduced_pressure)) = (mean("pressure"), mean("reduced_pressure")) else {
+                continue;
+            };
             let point = SeriesPoint { cell: index, pressure, reduced_pressure, sample_count: samples.done_count };
             let place = grouped.iter_mut().find(|(cell, _)| cell.differs_in_target_alone(&samples.cell));
             match place {

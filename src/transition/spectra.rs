@@ -92,7 +92,8 @@ impl CellSpectrum {
 
     /// θ† with its standard error, where there is a crossover \[rad\].
     pub fn angle(&self) -> Option<(f64, f64)> {
-        let Some(MeanCrossover::Fitted { outcome: CrossoverOutcome::Found { crossover, angle }, .. }) = self.crossover else {
+        let Some(MeanCrossover::Fitted { outcome: CrossoverOutcome::Found { crossover, angle }, .. }) = self.crossover
+        else {
             return None;
         };
         let error = self.crossover_interval?.standard_error.filter(|error| error.is_finite())?;
@@ -122,7 +123,8 @@ impl AngleDivergence {
 impl RingSlope {
     /// Of every ring whose spectrum a cell keeps, from the inside out.
     pub fn of(samples: &CellSamples) -> Vec<RingSlope> {
-        let mut all: Vec<RingSlope> = samples.curves.iter().filter_map(|(name, curve)| Self::ring(name, curve)).collect();
+        let mut all: Vec<RingSlope> =
+            samples.curves.iter().filter_map(|(name, curve)| Self::ring(name, curve)).collect();
         all.sort_by(|a, b| a.relative_radius.total_cmp(&b.relative_radius));
         all
     }

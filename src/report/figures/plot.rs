@@ -206,8 +206,7 @@ impl Series {
                 let [low, high] = interval.map(|end| if end.is_finite() { y_axis.place(end) } else { y });
                 let _ = write!(svg, "<path d=\"M{x:.1} {low:.1}V{high:.1}\" stroke=\"{colour}\"/>");
             }
-            let _ =
-                write!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.6\" fill=\"{fill}\" stroke=\"{colour}\"/>");
+            let _ = write!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.6\" fill=\"{fill}\" stroke=\"{colour}\"/>");
         }
         svg.push('\n');
     }
@@ -227,8 +226,7 @@ impl Series {
         }
         if !matches!(self.look, Look::Line | Look::Dashed) {
             let middle = x + 12.0;
-            let _ =
-                write!(svg, "<circle cx=\"{middle}\" cy=\"{y}\" r=\"2.8\" fill=\"{fill}\" stroke=\"{colour}\"/>");
+            let _ = write!(svg, "<circle cx=\"{middle}\" cy=\"{y}\" r=\"2.8\" fill=\"{fill}\" stroke=\"{colour}\"/>");
         }
     }
 }

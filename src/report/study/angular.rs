@@ -39,16 +39,17 @@ fn correlation(subject: &Subject<'_>, series: &Series) -> Option<Figure> {
     }
     let scale_free = Lorentzian::scale_free(USUAL_EXPONENT).ok()?;
     let exact = (0..=100).map(|step| f64::from(step) / 100.0).map(|share| (share, scale_free.correlation(PI * share)));
-    curves.push(dashed("S ∼ f<tspan dy=\"-4\" font-size=\"9\">−1.5</tspan>", exact));
-    (curves.len() > 1).then(|| Plot {
-        title: format!("G(θ), {}", short(series, &subject.transition.series)),
-        description: "Mean angular correlation at several reduced pressures, and of a scale-free spectrum".into(),
-        x: PlotAxis::linear("θ / π").within(0.0, 1.0),
-        y: PlotAxis::linear("G(θ)").within(-0.6, 1.0),
-        series: curves,
-        guides: vec![Guide::Horizontal(0.0, String::new()), Guide::Horizontal(0.1, "G = 0.1".into())],
-    })?
-    .draw()
+    curves.push(dashed("S ∼ f^−1.5", exact));
+    (curves.len() > 1)
+        .then(|| Plot {
+            title: format!("G(θ), {}", short(series, &subject.transition.series)),
+            description: "Mean angular correlation at several reduced pressures, and of a scale-free spectrum".into(),
+            x: PlotAxis::linear("θ / π").within(0.0, 1.0),
+            y: PlotAxis::linear("G(θ)").within(-0.6, 1.0),
+            series: curves,
+            guides: vec![Guide::Horizontal(0.0, String::new()), Guide::Horizontal(0.1, "G = 0.1".into())],
+        })?
+        .draw()
 }
 
 fn dashed(label: &str, points: impl Iterator<Item = (f64, f64)>) -> Curve {
@@ -64,7 +65,7 @@ fn normalised(curve: &MeanCurve) -> Vec<PlotPoint> {
 
 fn power_law() -> Curve {
     let points = (0..=40).map(|step| 10f64.powf(f64::from(step) / 20.0)).map(|f| (f, f.powf(-USUAL_EXPONENT)));
-    dashed("f<tspan dy=\"-4\" font-size=\"9\">−1.5</tspan>", points)
+    dashed("f^−1.5", points)
 }
 
 fn spectrum(subject: &Subject<'_>, series: &Series) -> Option<Figure> {
@@ -114,7 +115,9 @@ pub(super) fn by_radius(subject: &Subject<'_>) -> Vec<Figure> {
         }
         let mut curves = Vec::new();
         for (place, ring) in found.iter().enumerate() {
-            let Some(curve) = samples.curves.get(&format!("power_spectrum_at_{}", ring.relative_radius)) else { continue };
+            let Some(curve) = samples.curves.get(&format!("power_spectrum_at_{}", ring.relative_radius)) else {
+                continue;
+            };
             let label = format!("r̂ = {}", ring.relative_radius);
             let points = normalised(curve).iter().map(|point| PlotPoint { interval: None, ..*point }).collect();
             curves.push(Curve { label, points, look: Look::Points, colour: colour(place, found.len().max(5)) });
@@ -145,7 +148,7 @@ pub(super) fn by_radius(subject: &Subject<'_>) -> Vec<Figure> {
         title: "Slope of S(f) by distance".into(),
         description: "Slope of the mean angular power spectrum against the distance of the ring".into(),
         x: PlotAxis::linear("r̂ = r/R").within(0.0, 1.0),
-        y: PlotAxis::linear("s, S ∼ f<tspan dy=\"-4\" font-size=\"9\">−s</tspan>"),
+        y: PlotAxis::linear("s of S ∼ f^−s"),
         series: slopes,
         guides: vec![Guide::Horizontal(1.5, "1.5".into())],
     };

@@ -22,9 +22,14 @@ pub(super) fn matching(subject: &Subject<'_>) -> Vec<Figure> {
         let radius = series.points.iter().find_map(|point| subject.number(point.cell, "outer_radius"))?.mean;
         let some = !isostatic.is_empty();
         let curves = vec![
-            Curve { label: "ℓ<tspan dy=\"3\" font-size=\"10\">s</tspan><tspan dy=\"-3\"> = 1/κ</tspan>".into(), points: screening.collect(), look: Look::Points, colour },
-            Curve { label: "ℓ<tspan dy=\"3\" font-size=\"10\">iso</tspan>".into(), points: isostatic, look: Look::Joined, colour: [0x22; 3] },
-            Curve { label: "75 p<tspan dy=\"-4\" font-size=\"9\">−1/3</tspan><tspan dy=\"4\">, published</tspan>".into(), points: bare(published), look: Look::Dashed, colour: [0x77; 3] },
+            Curve { label: "ℓₛ = 1/κ".into(), points: screening.collect(), look: Look::Points, colour },
+            Curve { label: "ℓ_iso".into(), points: isostatic, look: Look::Joined, colour: [0x22; 3] },
+            Curve {
+                label: "75 p^(−1/3), published".into(),
+                points: bare(published),
+                look: Look::Dashed,
+                colour: [0x77; 3],
+            },
         ];
         some.then(|| Plot {
             title: format!("Screening and isostatic length, {}", short(series, all)),
@@ -44,20 +49,21 @@ pub(super) fn fluctuations(subject: &Subject<'_>) -> Vec<Figure> {
     let all = &subject.transition.series;
     let mut figures = Vec::new();
     for series in all {
-        for (place, symbol, word) in [(2, "∥", "bonds"), (3, "r", "disks")] {
-            let curves = series.lengths.iter().enumerate().filter(|(_, it)| !it.curve.is_empty()).map(|(index, it)| Curve {
-                label: reduced(it.point.reduced_pressure),
-                points: bare(it.curve.iter().map(|row| (row[1], row[place]))),
-                look: Look::Joined,
-                colour: colour(index, series.lengths.len().max(5)),
-            });
+        for (place, symbol, word) in [(2, "∥", "bonds"), (3, "ᵣ", "disks")] {
+            let curves =
+                series.lengths.iter().enumerate().filter(|(_, it)| !it.curve.is_empty()).map(|(index, it)| Curve {
+                    label: reduced(it.point.reduced_pressure),
+                    points: bare(it.curve.iter().map(|row| (row[1], row[place]))),
+                    look: Look::Joined,
+                    colour: colour(index, series.lengths.len().max(5)),
+                });
             let plot = Plot {
                 title: format!("Fluctuations of {word}, {}", short(series, all)),
-                description: format!("Rescaled fluctuation of the displacement of {word} around rings against rescaled distance, means over samples"),
+                description: format!(
+                    "Rescaled fluctuation of the displacement of {word} around rings against rescaled distance, means over samples"
+                ),
                 x: PlotAxis::logarithmic("r ΔZ"),
-                y: PlotAxis::logarithmic(format!(
-                    "h<tspan dy=\"3\" font-size=\"10\">{symbol}</tspan><tspan dy=\"-3\">(r) r ΔZ / h</tspan><tspan dy=\"3\" font-size=\"10\">{symbol}</tspan><tspan dy=\"-3\">(1.5)</tspan>"
-                )),
+                y: PlotAxis::logarithmic(format!("h{symbol}(r) r ΔZ / h{symbol}(1.5)")),
                 series: curves.collect(),
                 guides: vec![Guide::Horizontal(ISOSTATIC_THRESHOLD, "1.3".into())],
             };
@@ -72,12 +78,14 @@ pub(super) fn jamming(subject: &Subject<'_>) -> Vec<Figure> {
     let all = &subject.transition.jamming;
     let mut thresholds: Vec<f64> = all.iter().map(|it| it.threshold).collect();
     thresholds.dedup();
-    thresholds.into_iter().flat_map(|threshold| {
-        let own: Vec<&JammingSeries> = all.iter().filter(|it| it.threshold == threshold).collect();
-        [penetration(&own, threshold, false), penetration(&own, threshold, true)]
-    })
-    .flatten()
-    .collect()
+    thresholds
+        .into_iter()
+        .flat_map(|threshold| {
+            let own: Vec<&JammingSeries> = all.iter().filter(|it| it.threshold == threshold).collect();
+            [penetration(&own, threshold, false), penetration(&own, threshold, true)]
+        })
+        .flatten()
+        .collect()
 }
 
 fn penetration(all: &[&JammingSeries], threshold: f64, from_jamming: bool) -> Option<Figure> {
@@ -92,19 +100,25 @@ fn penetration(all: &[&JammingSeries], threshold: f64, from_jamming: bool) -> Op
         let points: Vec<PlotPoint> = points.collect();
         let mut label = format!("{} disks", series.cell.disk_count);
         if let Some(fit) = series.at_jamming.filter(|_| from_jamming) {
-            label = format!("{}, ν = {}", series.cell.disk_count, with_error(fit.exponent.value, fit.exponent.standard_error));
+            label = format!(
+                "{}, ν = {}",
+                series.cell.disk_count,
+                with_error(fit.exponent.value, fit.exponent.standard_error)
+            );
             let line = points.iter().map(|point| (point.x, fit.amplitude.value * point.x.powf(-fit.exponent.value)));
             curves.push(Curve { label: String::new(), points: bare(line), look: Look::Line, colour });
         }
         curves.push(Curve { label, points, look: Look::Points, colour });
     }
     let (x, title) = match from_jamming {
-        true => (PlotAxis::logarithmic("φ<tspan dy=\"3\" font-size=\"10\">J</tspan><tspan dy=\"-3\"> − φ, φ</tspan><tspan dy=\"3\" font-size=\"10\">J</tspan><tspan dy=\"-3\"> = 0.842</tspan>"), "distance from jamming"),
+        true => (PlotAxis::logarithmic("φ_J − φ, φ_J = 0.842"), "distance from jamming"),
         false => (PlotAxis::linear("φ"), "packing fraction"),
     };
     Plot {
         title: format!("Penetration length against {title}, threshold {threshold}"),
-        description: format!("How far from the inflated disk the mean displacement stays above {threshold}, against the {title}"),
+        description: format!(
+            "How far from the inflated disk the mean displacement stays above {threshold}, against the {title}"
+        ),
         x,
         y: PlotAxis::logarithmic("ξ (length)"),
         series: curves,

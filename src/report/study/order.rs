@@ -20,12 +20,12 @@ const SECOND_OVER_FIRST: f64 = 7.015_586_669_815_618 / FIRST_ZERO;
 /// κ and Δp, every sample a point, the means joined.
 pub(super) fn by_sample(subject: &Subject<'_>) -> Vec<Figure> {
     let scaled = |values: &[f64], radius: f64| values.iter().map(|kappa| kappa * radius / FIRST_ZERO).collect();
-    let kappa = figure(subject, "wavenumber", "κ of the best screened solution", "κ / κ<tspan dy=\"3\" font-size=\"10\">1</tspan>", &scaled);
+    let kappa = figure(subject, "wavenumber", "κ of the best screened solution", "κ / κ₁", &scaled);
     let change = figure(
         subject,
         "scaled_pressure_change",
         "pressure change",
-        "Δp / p<tspan dy=\"-5\" font-size=\"10\">(α−2)/(α−1)</tspan>",
+        "Δp / p^((α−2)/(α−1))",
         &|values: &[f64], _| values.to_vec(),
     );
     let mut kappa = kappa;
@@ -68,7 +68,7 @@ fn figure(
     curves.iter().any(|curve| !curve.points.is_empty()).then(|| Plot {
         title: format!("{title} against p̂"),
         description: format!("{title} of single samples and means over samples against the reduced pressure"),
-        x: PlotAxis::logarithmic("p̂ = p N<tspan dy=\"-5\" font-size=\"10\">α−1</tspan> (force / length)"),
+        x: PlotAxis::logarithmic("p̂ = p Nᵅ⁻¹ (force / length)"),
         y: PlotAxis::linear(label),
         series: curves,
         guides: Vec::new(),
@@ -115,8 +115,8 @@ fn subject_plot(
     let all = &subject.transition.series;
     let (x_label, words) = match abscissa {
         Abscissa::Pressure => ("p (force / length)", "p"),
-        Abscissa::Reduced => ("p̂ = p N<tspan dy=\"-5\" font-size=\"10\">α−1</tspan> (force / length)", "p̂"),
-        Abscissa::AsHertzian => ("p N<tspan dy=\"-5\" font-size=\"10\">3/2</tspan> (force / length)", "p N^(3/2)"),
+        Abscissa::Reduced => ("p̂ = p Nᵅ⁻¹ (force / length)", "p̂"),
+        Abscissa::AsHertzian => ("p N^(3/2) (force / length)", "p N^(3/2)"),
     };
     let mut curves = Vec::new();
     for (index, series) in all.iter().enumerate() {
@@ -132,7 +132,7 @@ fn subject_plot(
             curves.push(crossover_angles(series, index, all));
         }
     }
-    let mut guides = vec![Guide::Horizontal(guide, "S ∼ f<tspan dy=\"-4\" font-size=\"9\">−1.5</tspan>".into())];
+    let mut guides = vec![Guide::Horizontal(guide, "S ∼ f^−1.5".into())];
     if matches!(abscissa, Abscissa::Reduced) && all.iter().all(|series| beta(&series.cell.law) == 3.0) {
         guides.push(Guide::Vertical(PUBLISHED, "published".into()));
     }
@@ -178,11 +178,12 @@ pub(super) fn crossovers(subject: &Subject<'_>) -> Vec<Figure> {
                 (x > 0.0).then_some(PlotPoint { x, y: y / PI, interval: Some([(y - error) / PI, (y + error) / PI]) })
             });
             let points: Vec<PlotPoint> = below.collect();
-            let line = points.iter().map(|point| {
-                (point.x, fit.amplitude.value * (point.x * fit.critical).powf(-fit.exponent.value) / PI)
-            });
+            let line = points
+                .iter()
+                .map(|point| (point.x, fit.amplitude.value * (point.x * fit.critical).powf(-fit.exponent.value) / PI));
             let line = bare(line);
-            let label = format!("{}, μ = {:.2} ± {:.2}", short(series, all), fit.exponent.value, fit.exponent.standard_error);
+            let label =
+                format!("{}, μ = {:.2} ± {:.2}", short(series, all), fit.exponent.value, fit.exponent.standard_error);
             curves.push(Curve { label, points, look: Look::Points, colour });
             curves.push(Curve { label: String::new(), points: line, look: Look::Line, colour });
         }
@@ -197,7 +198,7 @@ pub(super) fn crossovers(subject: &Subject<'_>) -> Vec<Figure> {
     let divergence = Plot {
         title: "θ† below the transition".into(),
         description: "Crossover angle against the relative distance from the transition, with power laws".into(),
-        x: PlotAxis::logarithmic("(p̂<tspan dy=\"3\" font-size=\"10\">c</tspan><tspan dy=\"-3\"> − p̂) / p̂</tspan><tspan dy=\"3\" font-size=\"10\">c</tspan>"),
+        x: PlotAxis::logarithmic("(p̂_c − p̂) / p̂_c"),
         y: PlotAxis::logarithmic("θ† / π"),
         series: curves,
         guides: Vec::new(),

@@ -71,7 +71,11 @@ fn views(subject: &Subject<'_>) -> Vec<(&'static str, &'static str, Vec<Figure>)
             "G* = −G(π), θ* where G = 0.1, and hollow θ† = k/f†. Series by their number of disks, and by law and d₀ where they differ.",
             order,
         ),
-        ("Crossover", "θ† = k/f† of the fitted Lorentzians, and θ* beside its exact value for a Lorentzian spectrum.", order::crossovers(subject)),
+        (
+            "Crossover",
+            "θ† = k/f† of the fitted Lorentzians, and θ* beside its exact value for a Lorentzian spectrum.",
+            order::crossovers(subject),
+        ),
         ("Against p N^(3/2)", "The scaling of Hertzian disks, which Hookean ones do not follow.", as_hertzian),
         ("Thresholds", "The correlation angle θ* with other thresholds of G.", thresholds),
         (
@@ -79,10 +83,22 @@ fn views(subject: &Subject<'_>) -> Vec<(&'static str, &'static str, Vec<Figure>)
             "In the cell of every series whose slope is nearest to 1.5.",
             angular::by_radius(subject),
         ),
-        ("Screening and isostatic length", "ℓ_s = 1/κ of the screened samples; ℓ_iso where the fluctuation of bonds turns continuous.", lengths::matching(subject)),
-        ("Fluctuations around rings", "Of the stretching of bonds and of the displacement of disks, over their value next to the inflated disk.", lengths::fluctuations(subject)),
+        (
+            "Screening and isostatic length",
+            "ℓ_s = 1/κ of the screened samples; ℓ_iso where the fluctuation of bonds turns continuous.",
+            lengths::matching(subject),
+        ),
+        (
+            "Fluctuations around rings",
+            "Of the stretching of bonds and of the displacement of disks, over their value next to the inflated disk.",
+            lengths::fluctuations(subject),
+        ),
         ("Inflations", "Published exponents take N and d₀ out.", scaled),
-        ("Contact changes", "Contacts made and broken by the inflation, and the share of them that return on deflation.", radial::contacts(subject)),
+        (
+            "Contact changes",
+            "Contacts made and broken by the inflation, and the share of them that return on deflation.",
+            radial::contacts(subject),
+        ),
         ("Periodic box", "No rim is held; the centre of mass stays.", radial::modes(subject)),
         ("Below jamming", "How far the inflation is felt.", lengths::jamming(subject)),
     ]
@@ -107,7 +123,9 @@ fn table(title: &str, text: &str, heads: &[&str], rows: &[Vec<String>]) -> Strin
     if rows.is_empty() {
         return String::new();
     }
-    let mut html = format!("<section aria-label=\"{title}\">\n<h2>{title}</h2>\n<p class=\"facts\">{text}</p>\n<div class=\"table\">\n<table>\n<thead>\n<tr>");
+    let mut html = format!(
+        "<section aria-label=\"{title}\">\n<h2>{title}</h2>\n<p class=\"facts\">{text}</p>\n<div class=\"table\">\n<table>\n<thead>\n<tr>"
+    );
     for head in heads {
         let _ = write!(html, "<th scope=\"col\">{head}</th>");
     }
@@ -173,7 +191,9 @@ fn exponents(transition: &Transition) -> String {
         Some(ExponentOutcome::NoOverlap) => "no overlap".into(),
     };
     let quality = |found: Option<crate::fit::ensemble::CollapseQuality>| {
-        found.map_or(String::new(), |it| format!("{} ({} of {})", significant(it.quality, 2), it.point_count, it.of_count))
+        found.map_or(String::new(), |it| {
+            format!("{} ({} of {})", significant(it.quality, 2), it.point_count, it.of_count)
+        })
     };
     let rows: Vec<Vec<String>> = transition
         .scaling
@@ -208,7 +228,12 @@ fn comparisons(transition: &Transition) -> String {
     };
     let rows: Vec<Vec<String>> = transition.comparisons.iter().map(row).collect();
     let heads = ["Quantity", "Of", "Found", "Interval", "Published", ""];
-    table("Beside the literature", "A published value agrees where the interval holds it; else its distance is told in half widths of the interval.", &heads, &rows)
+    table(
+        "Beside the literature",
+        "A published value agrees where the interval holds it; else its distance is told in half widths of the interval.",
+        &heads,
+        &rows,
+    )
 }
 
 fn verdict(one: &Comparison) -> String {
@@ -216,7 +241,10 @@ fn verdict(one: &Comparison) -> String {
         Verdict::Agrees => "agrees".into(),
         Verdict::Differs => match (one.value, one.interval) {
             (Some(value), Some([low, high])) if high > low => {
-                format!("differs by {} half widths", significant((one.published - value).abs() / (0.5 * (high - low)), 2))
+                format!(
+                    "differs by {} half widths",
+                    significant((one.published - value).abs() / (0.5 * (high - low)), 2)
+                )
             }
             _ => "differs".into(),
         },
@@ -248,7 +276,17 @@ fn cells(merged: &Merged) -> String {
         ]
     };
     let rows: Vec<Vec<String>> = merged.cells.iter().map(row).collect();
-    let heads = ["Cell", "Target", "Samples", "Failed", "Unjammed, plastic, quasielastic, undecided", "p", "Δp scaled", "G*", "θ* (rad)"];
+    let heads = [
+        "Cell",
+        "Target",
+        "Samples",
+        "Failed",
+        "Unjammed, plastic, quasielastic, undecided",
+        "p",
+        "Δp scaled",
+        "G*",
+        "θ* (rad)",
+    ];
     table("Cells", "Means over the samples that came to a result, with standard errors.", &heads, &rows)
 }
 

@@ -3,8 +3,8 @@
 use crate::reference::elastic::Elastic;
 use crate::reference::screened::Screened;
 use crate::reference::{Annulus, RadialSolution};
+use crate::report::figures::Figure;
 use crate::report::figures::plot::{Guide, Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare, colour};
-use crate::report::figures::{Figure, RESCALED};
 use crate::report::study::{Subject, series_colour, short, target};
 use crate::study::{CellSamples, Single};
 use crate::transition::{FIRST_ZERO, Series};
@@ -18,7 +18,8 @@ const MOST_CELLS: usize = 6;
 /// One sample of every cell, each with the solution that describes it better, r·d_r over its largest value.
 pub(super) fn singles(subject: &Subject<'_>) -> Vec<Figure> {
     let (size, increase) = base(subject);
-    let cells: Vec<&CellSamples> = cells(subject).filter(|it| it.cell.disk_count == size && it.cell.increase == increase).collect();
+    let cells: Vec<&CellSamples> =
+        cells(subject).filter(|it| it.cell.disk_count == size && it.cell.increase == increase).collect();
     let mut curves = Vec::new();
     for (index, samples) in spread(&cells).into_iter().enumerate() {
         let Some(single) = samples.singles.first() else { continue };
@@ -29,15 +30,18 @@ pub(super) fn singles(subject: &Subject<'_>) -> Vec<Figure> {
         curves.push(Curve { label: target(&samples.cell), points, look: Look::Points, colour });
         if let Some(solution) = solution(subject, single, radius) {
             let at = |step: u32| 0.05 + 0.95 * f64::from(step) / f64::from(CURVE_POINTS);
-            let points = (0..=CURVE_POINTS).map(at).map(|share| (share, share * radius * solution(share * radius) / unit));
+            let points =
+                (0..=CURVE_POINTS).map(at).map(|share| (share, share * radius * solution(share * radius) / unit));
             curves.push(Curve { label: String::new(), points: bare(points), look: Look::Line, colour });
         }
     }
     let plot = Plot {
         title: format!("Radial profiles of single samples, {size} disks, d_0 = {increase}"),
-        description: "Rescaled radial displacement of one sample of every cell over its largest value, with the better solution".into(),
+        description:
+            "Rescaled radial displacement of one sample of every cell over its largest value, with the better solution"
+                .into(),
         x: PlotAxis::linear("r / R").within(0.0, 1.0),
-        y: PlotAxis::linear(format!("{RESCALED} / max")).within(-1.1, 1.1),
+        y: PlotAxis::linear("r·dᵣ / max").within(-1.1, 1.1),
         series: curves,
         guides: vec![Guide::Horizontal(0.0, String::new())],
     };
@@ -66,7 +70,8 @@ fn cells<'a>(subject: &Subject<'a>) -> impl Iterator<Item = &'a CellSamples> {
 /// The largest size, and its inflation nearest to that of the study.
 fn base(subject: &Subject<'_>) -> (usize, f64) {
     let size = cells(subject).map(|samples| samples.cell.disk_count).max().unwrap_or(0);
-    let increases = cells(subject).filter(|samples| samples.cell.disk_count == size).map(|samples| samples.cell.increase);
+    let increases =
+        cells(subject).filter(|samples| samples.cell.disk_count == size).map(|samples| samples.cell.increase);
     (size, increases.min_by(|a, b| (a - 0.1).abs().total_cmp(&(b - 0.1).abs())).unwrap_or(0.1))
 }
 
@@ -81,10 +86,14 @@ pub(super) fn means(subject: &Subject<'_>) -> Vec<Figure> {
     let (size, increase) = base(subject);
     let all: Vec<&CellSamples> = cells(subject).filter(|it| it.cell.disk_count == size).collect();
     let at_base: Vec<&CellSamples> = all.iter().copied().filter(|it| it.cell.increase == increase).collect();
-    let mut figures: Vec<Figure> =
-        mean_figure(subject, format!("Mean radial profiles, {size} disks, d_0 = {increase}"), &spread(&at_base), |it| target(&it.cell))
-            .into_iter()
-            .collect();
+    let mut figures: Vec<Figure> = mean_figure(
+        subject,
+        format!("Mean radial profiles, {size} disks, d_0 = {increase}"),
+        &spread(&at_base),
+        |it| target(&it.cell),
+    )
+    .into_iter()
+    .collect();
     let mut targets: Vec<_> = all.iter().map(|it| it.cell.target).collect();
     targets.dedup();
     for of in targets {
@@ -126,9 +135,11 @@ fn mean_figure(
     curves.push(Curve { label: "elastic".into(), points: exact, look: Look::Dashed, colour: [0x22; 3] });
     Plot {
         title,
-        description: "Mean rescaled radial displacement over the inflation, with standard errors, and the elastic solution".into(),
+        description:
+            "Mean rescaled radial displacement over the inflation, with standard errors, and the elastic solution"
+                .into(),
         x: PlotAxis::linear("r / R").within(0.0, 1.0),
-        y: PlotAxis::linear(format!("{RESCALED} / d<tspan dy=\"3\" font-size=\"10\">0</tspan><tspan dy=\"-3\"> (length)</tspan>")),
+        y: PlotAxis::linear("r·dᵣ / d₀ (length)"),
         series: curves,
         guides: vec![Guide::Horizontal(0.0, String::new())],
     }
@@ -148,9 +159,11 @@ pub(super) fn modes(subject: &Subject<'_>) -> Vec<Figure> {
         let series: Vec<Curve> = names.iter().enumerate().filter_map(curve).collect();
         Plot {
             title: format!("Angular modes, periodic box, {} disks, {}", samples.cell.disk_count, target(&samples.cell)),
-            description: "Shares of the angular modes of the radial displacement at half of the outer radius, sample by sample".into(),
+            description:
+                "Shares of the angular modes of the radial displacement at half of the outer radius, sample by sample"
+                    .into(),
             x: PlotAxis::linear("sample"),
-            y: PlotAxis::linear("share of ⟨d<tspan dy=\"3\" font-size=\"10\">r</tspan><tspan dy=\"-3\">²⟩</tspan>").within(0.0, 1.0),
+            y: PlotAxis::linear("share of ⟨dᵣ²⟩").within(0.0, 1.0),
             series,
             guides: Vec::new(),
         }
@@ -165,14 +178,18 @@ pub(super) fn contacts(subject: &Subject<'_>) -> Vec<Figure> {
     let along = |series: &Series, name: &str| subject.along(series, name, |point| point.reduced_pressure);
     let (mut changes, mut returns) = (Vec::new(), Vec::new());
     for (index, series) in all.iter().enumerate() {
-        for (name, word, look) in
-            [("contacts_made", "made", Look::Joined), ("contacts_broken", "broken", Look::Hollow)]
+        for (name, word, look) in [("contacts_made", "made", Look::Joined), ("contacts_broken", "broken", Look::Hollow)]
         {
             let label = format!("{word}, {}", short(series, all));
             changes.push(Curve { label, points: along(series, name), look, colour: series_colour(index, all) });
         }
         let points = along(series, "contacts_returned_share");
-        returns.push(Curve { label: short(series, all), points, look: Look::Joined, colour: series_colour(index, all) });
+        returns.push(Curve {
+            label: short(series, all),
+            points,
+            look: Look::Joined,
+            colour: series_colour(index, all),
+        });
     }
     let plot = |title: &str, label: &str, series, logarithmic| Plot {
         title: title.into(),

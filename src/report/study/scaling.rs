@@ -35,8 +35,7 @@ pub(super) fn with_inflation(subject: &Subject<'_>) -> Vec<Figure> {
     let mut figures = Vec::new();
     for law in laws(subject) {
         let beta = beta(&law);
-        for (name, title, label, unit) in
-            [(ANTICORRELATION, "G*", "G* = −G(π)", 1.0), (ANGLE, "θ*", "θ* / π", PI)]
+        for (name, title, label, unit) in [(ANTICORRELATION, "G*", "G* = −G(π)", 1.0), (ANGLE, "θ*", "θ* / π", PI)]
         {
             let mut curves = Vec::new();
             for (index, series) in all.iter().enumerate().filter(|(_, series)| series.cell.law == law) {
@@ -54,9 +53,7 @@ pub(super) fn with_inflation(subject: &Subject<'_>) -> Vec<Figure> {
             let plot = Plot {
                 title: format!("{title} of all sizes and inflations, {}", law.name()),
                 description: format!("Mean {title} against p N^{a}/d_0^{b} of several sizes and inflations"),
-                x: PlotAxis::logarithmic(format!(
-                    "p N<tspan dy=\"-5\" font-size=\"10\">{a}</tspan><tspan dy=\"5\"> / d</tspan><tspan dy=\"3\" font-size=\"10\">0</tspan><tspan dy=\"-8\" font-size=\"10\">{b}</tspan>"
-                )),
+                x: PlotAxis::logarithmic(format!("p N^{a} / d₀^{b}")),
                 y: PlotAxis::linear(label),
                 series: curves,
                 guides: Vec::new(),
@@ -87,15 +84,21 @@ fn diagram(subject: &Subject<'_>, law: LawChoice) -> Option<Figure> {
         }
     }
     let mut curves = vec![
-        Curve { label: "G* below 0.293".into(), points: bare(plastic.into_iter()), look: Look::Points, colour: VERMILLION },
+        Curve {
+            label: "G* below 0.293".into(),
+            points: bare(plastic.into_iter()),
+            look: Look::Points,
+            colour: VERMILLION,
+        },
         Curve { label: "G* above 0.293".into(), points: bare(elastic.into_iter()), look: Look::Points, colour: BLUE },
     ];
     let law_of = |method| subject.transition.pressure_laws.iter().find(|it| it.law == law && it.method == method);
     if let Some(found) = law_of(Method::Anticorrelation) {
         let points = bare(found.points.iter().map(|point| (point.y, point.x)));
-        curves.push(Curve { label: "p<tspan dy=\"3\" font-size=\"10\">c</tspan><tspan dy=\"-3\"> by G*</tspan>".into(), points, look: Look::Hollow, colour: [0x22; 3] });
+        curves.push(Curve { label: "p_c by G*".into(), points, look: Look::Hollow, colour: [0x22; 3] });
         if let Some(fit) = &found.fit {
-            let points = found.points.iter().map(|point| (fit.amplitude.value * point.x.powf(fit.exponent.value), point.x));
+            let points =
+                found.points.iter().map(|point| (fit.amplitude.value * point.x.powf(fit.exponent.value), point.x));
             let mut points: Vec<(f64, f64)> = points.collect();
             points.sort_by(|a, b| a.1.total_cmp(&b.1));
             let label = format!("exponent {:.2} ± {:.2}", fit.exponent.value, fit.exponent.standard_error);
@@ -113,8 +116,8 @@ fn diagram(subject: &Subject<'_>, law: LawChoice) -> Option<Figure> {
     Plot {
         title: format!("Phase diagram, {}", law.name()),
         description: "Cells below and above the scale-free value of G* in the plane of rescaled pressure and inflation, with the transition".into(),
-        x: PlotAxis::logarithmic(format!("N<tspan dy=\"-5\" font-size=\"10\">{beta}</tspan><tspan dy=\"5\"> p (force / length)</tspan>")),
-        y: PlotAxis::logarithmic("N² d<tspan dy=\"3\" font-size=\"10\">0</tspan><tspan dy=\"-3\"> (length)</tspan>"),
+        x: PlotAxis::logarithmic(format!("N^{beta} p (force / length)")),
+        y: PlotAxis::logarithmic("N² d₀ (length)"),
         series: curves,
         guides: Vec::new(),
     }

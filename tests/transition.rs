@@ -1,0 +1,231 @@
+//! What a study says of the transition, on studies made up with a known answer.
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+use jamscope::contact::{Hertzian, LawChoice};
+use jamscope::fit::ensemble::DivergenceOutcome;
+use jamscope::inflation::Boundary;
+use jamscope::relax::RelaxerChoice;
+use jamscope::study::{Cell, CellSamples, Merged, PhaseCounts, Study, Target};
+use jamscope::transition::{ExponentOutcome, Method, Transition, TransitionPressure, Verdict};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+/// Of every cell.
+const SAMPLES: usize = 60;
+
+/// R/L.
+const RATIO: f64 = 0.48;
+
+fn cell(disk_count: usize, target: Target, increase: f64) -> Cell {
+    Cell {
+        law: LawChoice::Hertzian(Hertzian::default()),
+        disk_count,
+        target,
+        increase,
+        relaxer: RelaxerChoice::default(),
+        boundary: Boundary::HeldRim { outer_radius_over_side: RATIO },
+    }
+}
+
+/// A cell with these numbers and powers, one a sample.
+fn samples(cell: Cell, numbers: &[(&str, Vec<f64>)], powers: Vec<Vec<f64>>) -> CellSamples {
+    CellSamples {
+        cell,
+        done_count: SAMPLES,
+        failures: BTreeMap::new(),
+        phases: PhaseCounts::default(),
+        numbers: numbers.iter().map(|(name, values)| ((*name).into(), values.clone())).collect(),
+        powers,
+        curves: BTreeMap::new(),
+        singles: Vec::new(),
+    }
+}
+
+fn merged(samples: Vec<CellSamples>) -> Merged {
+    Merged {
+        study: Study::default(),
+        sample_count: samples.len() * SAMPLES,
+        record_count: samples.len() * SAMPLES,
+        damaged: Vec::new(),
+        foreign: Vec::new(),
+        cells: samples.iter().map(CellSamples::statistics).collect(),
+        samples,
+        files: Vec::new(),
+    }
+}
+
+/// p̂ = p N^(3/2), N disks in the circle by area.
+fn mobile(disk_count: usize) -> f64 {
+    PI * RATIO * RATIO * disk_count as f64
+}
+
+/// A standard normal number, by Box and Muller.
+fn normal(generator: &mut Pcg64) -> f64 {
+    let (u, v): (f64, f64) = (generator.random(), generator.random());
+    (-2.0 * (1.0 - u).ln()).sqrt() * (2.0 * PI * v).cos()
+}
+
+/// What rises from 0 to 0.6 with x, 0.3 at x = 1.
+fn rising(x: f64) -> f64 {
+    0.6 * x.sqrt() / (1.0 + x.sqrt())
+}
+
+/// Every method's truth: p̂_c = 3·10⁷.
+const CRITICAL: f64 = 3e7;
+
+/// One series of 4016 disks in the circle, whose transition every method sees at [`CRITICAL`].
+fn one_series(seed: u64) -> Vec<CellSamples> {
+    let mut generator = Pcg64::seed_from_u64(seed);
+    let disks = 5548;
+    let reduced = [1e6, 3e6, 1e7, 2e7, 5e7, 1e8, 3e8, 1e9];
+    let cells = reduced.map(|reduced: f64| {
+        let pressure = reduced / mobile(disks).powf(1.5);
+        let ratio = reduced / CRITICAL;
+        let mut draw = |of: &mut dyn FnMut(&mut Pcg64) -> f64| (0..SAMPLES).map(|_| of(&mut generator)).collect::<Vec<f64>>();
+        let scale = 0.292_893 / 0.3;
+        let depth = draw(&mut |g| scale * rising(ratio) + 0.1 * normal(g));
+        let angle = draw(&mut |g| 0.303_004 * PI / 0.3 * rising(ratio) + 0.1 * normal(g));
+        // Plastic with probability 1/(1 + p̂/p̂_c).
+        let kappa = draw(&mut |g| if g.random::<f64>() < 1.0 / (1.0 + ratio) { 5.0 / 40.0 } else { 0.0 });
+        let change = draw(&mut |g| if g.random::<f64>() < 1.0 / (1.0 + ratio) { -1.0 } else { 0.1 });
+        // Exponential powers about f^(−s), s = 1.5 at the transition and 0.25 more a factor of ten.
+        let slope = 1.5 + 0.25 * ratio.log10();
+        let powers = (0..SAMPLES)
+            .map(|_| (1..=30).map(|f| -(1.0 - generator.random::<f64>()).ln() * f64::from(f).powf(-slope)).collect())
+            .collect();
+        let numbers = [
+            ("pressure", vec![pressure; SAMPLES]),
+            ("reduced_pressure", vec![reduced; SAMPLES]),
+            ("outer_radius", vec![40.0; SAMPLES]),
+            ("anticorrelation", depth),
+            ("correlation_angle_at_0.1", angle),
+            ("wavenumber", kappa),
+            ("pressure_change", change),
+        ];
+        samples(cell(disks, Target::ReducedPressure(reduced), 0.1), &numbers, powers)
+    });
+    cells.to_vec()
+}
+
+#[test]
+fn every_method_finds_the_transition_it_was_given() {
+    let transition = Transition::of(&merged(one_series(1)));
+    assert_eq!(transition.series.len(), 1);
+    let series = &transition.series[0];
+    assert_eq!(series.points.len(), 8);
+    let methods: Vec<Method> = series.estimates.iter().map(|it| it.method).collect();
+    assert_eq!(methods.len(), 5);
+    for estimate in &series.estimates {
+        let TransitionPressure::Found(found) = estimate.pressure else { panic!("{estimate:?}") };
+        let error = found.standard_error.expect("an interval") / found.best;
+        // Linear in ln p̂ between cells a factor of two apart, what is crossed errs by the curvature of the truth: below 0.02
+        // in ln p̂ for all of these. Then four standard errors, which five methods exceed once in 3000 seeds.
+        let away = (found.best / CRITICAL).ln().abs();
+        assert!(away < 4.0 * error + 0.02, "{:?}: {:.3e}, {away} of {error}", estimate.method, found.best);
+        assert!(error < 0.5, "{:?}: {error}", estimate.method);
+        let [low, high] = found.interval.expect("an interval");
+        assert!(low < found.best && found.best < high);
+    }
+    let at = series.at_transition.expect("the slope passes 1.5");
+    let depth = at.anticorrelation.expect("every cell has G*");
+    assert!((depth.best - 0.293).abs() < 0.06, "{}", depth.best);
+    let slope = series.at_published.expect("10⁸ is within the series").slope.expect("spectra");
+    // s = 1.5 + 0.25 log₁₀(10/3) = 1.631 at p̂ = 10⁸.
+    assert!((slope.best - 1.631).abs() < 4.0 * slope.standard_error.expect("samples"), "{}", slope.best);
+}
+
+#[test]
+fn the_order_of_cells_and_samples_changes_nothing_but_the_draws() {
+    let mut cells = one_series(2);
+    let best = |cells: &[CellSamples]| -> Vec<f64> {
+        let transition = Transition::of(&merged(cells.to_vec()));
+        transition.series[0].estimates.iter().filter_map(|it| it.pressure.best()).collect()
+    };
+    let before = best(&cells);
+    cells.reverse();
+    for cell in &mut cells {
+        cell.powers.reverse();
+        cell.numbers.values_mut().for_each(|values| values.reverse());
+    }
+    for (a, b) in before.iter().zip(best(&cells)) {
+        // Sums of 60 values in another order.
+        assert!((a / b - 1.0).abs() < 1e-10, "{a} {b}");
+    }
+}
+
+#[test]
+fn series_that_do_not_reach_the_transition_bound_it() {
+    let cells = one_series(3);
+    let of = |range: std::ops::Range<usize>| Transition::of(&merged(cells[range].to_vec())).series[0].estimates.clone();
+    let depth = |estimates: &[jamscope::transition::MethodEstimate]| {
+        estimates.iter().find(|it| it.method == Method::Anticorrelation).expect("G*").pressure
+    };
+    assert_eq!(depth(&of(0..3)), TransitionPressure::Above(1e7));
+    assert_eq!(depth(&of(5..8)), TransitionPressure::Below(1e8));
+    let transition = Transition::of(&merged(cells[0..3].to_vec()));
+    let found = transition.comparisons.iter().find(|it| it.quantity == "p̂_c by G*").expect("Hertzian, d_0 = 0.1");
+    assert_eq!((found.value, found.verdict), (None, Verdict::Beyond));
+}
+
+#[test]
+fn curves_of_several_sizes_and_inflations_give_their_exponents() {
+    let mut generator = Pcg64::seed_from_u64(4);
+    let (a, b) = (1.5, 0.75);
+    let mut cells = Vec::new();
+    for disks in [1387, 5548, 22184] {
+        for increase in [0.02, 0.1, 0.5] {
+            for step in 0..7 {
+                // The scaled pressure, a tenth to ten times that of the transition.
+                let x = 10f64.powf(f64::from(step) / 3.0 - 1.0);
+                let pressure = 1e8 * x * mobile(disks).powf(-a) * f64::powf(increase, b);
+                let depth: Vec<f64> = (0..SAMPLES).map(|_| rising(x) + 0.05 * normal(&mut generator)).collect();
+                let numbers = [
+                    ("pressure", vec![pressure; SAMPLES]),
+                    ("reduced_pressure", vec![pressure * mobile(disks).powf(1.5); SAMPLES]),
+                    ("anticorrelation", depth),
+                ];
+                cells.push(samples(cell(disks, Target::Pressure(pressure), increase), &numbers, Vec::new()));
+            }
+        }
+    }
+    let transition = Transition::of(&merged(cells));
+    assert_eq!(transition.series.len(), 9);
+    let scaling = &transition.scaling[0];
+    assert_eq!((scaling.observable, scaling.curve_count), ("anticorrelation", 9));
+    for (outcome, truth) in [(scaling.size_exponent, a), (scaling.inflation_exponent, b)] {
+        let Some(ExponentOutcome::Found(found)) = outcome else { panic!("{outcome:?}") };
+        let error = found.standard_error.expect("an interval");
+        assert!((found.best - truth).abs() < 4.0 * error && error < 0.05, "{} ± {error}, not {truth}", found.best);
+    }
+    // Curves agree: S is a mean over 63 points of a ratio whose mean is near 1, with a scatter of √(2/63) = 0.18.
+    let quality = scaling.published_quality.expect("overlap").quality;
+    assert!((0.4..1.8).contains(&quality), "{quality}");
+    // p_c = 10⁸ N^(−3/2) d_0^(3/4), so N³ p_c = 10⁸ (N² d_0)^(3/4).
+    let law = transition.pressure_laws.iter().find(|it| it.method == Method::Anticorrelation).expect("G*");
+    assert_eq!(law.points.len(), 9);
+    let exponent = law.fit.expect("nine points").exponent;
+    assert!((exponent.value - 0.75).abs() < 4.0 * exponent.standard_error + 0.01, "{exponent:?}");
+}
+
+#[test]
+fn penetration_lengths_give_their_divergence() {
+    let mut generator = Pcg64::seed_from_u64(5);
+    let cells = [0.74, 0.77, 0.79, 0.80, 0.81, 0.82, 0.83].map(|fraction: f64| {
+        let truth = 0.5 * (0.842 - fraction).powf(-0.8);
+        let lengths = (0..SAMPLES).map(|_| truth * (1.0 + 0.1 * normal(&mut generator))).collect();
+        let numbers = [("penetration_length_at_0.001", lengths), ("outer_radius", vec![60.0; SAMPLES])];
+        samples(cell(5548, Target::PackingFraction(fraction), 0.1), &numbers, Vec::new())
+    });
+    let transition = Transition::of(&merged(cells.to_vec()));
+    // No pressure, so no series of the transition.
+    assert!(transition.series.is_empty());
+    assert_eq!(transition.jamming.len(), 1);
+    let jamming = &transition.jamming[0];
+    let fit = jamming.at_jamming.expect("seven points");
+    assert!((fit.exponent.value - 0.8).abs() < 4.0 * fit.exponent.standard_error, "{:?}", fit.exponent);
+    assert!(fit.exponent.standard_error < 0.05);
+    let Some(DivergenceOutcome::Found(free)) = jamming.free else { panic!("{:?}", jamming.free) };
+    assert!(free.critical.holds(0.842), "{:?}", free.critical);
+}
