@@ -125,6 +125,23 @@ fn exponents_of_noisy_curves_are_within_bootstrap_errors() {
 }
 
 #[test]
+fn curves_torn_apart_are_no_collapse() {
+    // Humps: where only their tails are held against each other, S is less than at the truth, where lines err at the top.
+    let humps = [1.0, 2.0, 3.0].map(|scale: f64| {
+        let point = |i: i32| {
+            let u = 0.1 * (f64::from(i) + 0.3 * scale);
+            MeasuredPoint { x: (u - 0.5 * scale).exp(), y: u.cosh().recip(), error: 0.05 }
+        };
+        Curve { scales: [scale], points: (-60..=60).map(point).collect() }
+    });
+    let wide = CollapseSettings { ranges: [[-15.0, 16.5]], grid_points: 201, ..CollapseSettings::default() };
+    let found = collapse(&humps, &wide).expect("usable").exponents();
+    assert!(found.is_some_and(|[a]| (a - 0.5).abs() < 1e-3), "{found:?}");
+    let torn = collapse(&humps, &CollapseSettings { least_share: 0.01, ..wide }).expect("usable").exponents();
+    assert!(torn.is_some_and(|[a]| (a - 0.5).abs() > 5.0), "{torn:?}");
+}
+
+#[test]
 fn order_and_units_do_not_matter() {
     let plain = noisy(curves(20, 0.05), &mut Pcg64::seed_from_u64(4));
     let best = exponents(&plain);
