@@ -130,6 +130,11 @@ fn every_outcome_has_its_data() {
     assert!(fit.likelihood.exponent().is_some_and(|s| (s - 1.5).abs() < 0.2), "{fit:?}");
     let [by_squares, by_likelihood] = slope_interval(&vec![dipped.as_slice(); 100], [1, 20], 20).expect("usable");
     assert!(by_squares.is_none() && by_likelihood.is_some_and(|found| found.standard_error < Some(1e-9)));
+    // One of 0.04·17^1.5 = 2.8 beside 19 of 1, 13 % of all, is refused.
+    dipped[16] = -0.04;
+    let fit = slope_of_mean(&[&dipped], [1, 20]).expect("usable");
+    assert_eq!(fit.likelihood, LikelihoodSlope::NegativePowers);
+    assert_eq!(crossover(&[&dipped], [1, 20]), MeanCrossover::NegativePowers);
     // Too many that are.
     let mut broken = powers(20, |f| f.powf(-1.5));
     broken.iter_mut().skip(8).for_each(|power| *power = -*power);

@@ -152,7 +152,6 @@ pub fn fit_crossover(rings: &[RingSample], settings: &CrossoverSettings) -> Resu
     let deviance = |shape: Shape| powers.best(|logarithm| shape.at(logarithm)).deviance;
     // The best exponent beside a crossover, and −2 ln L there.
     let profile = |crossover: Crossover| match settings.exponent {
-        _ if crossover == Crossover::Infinite => (1.0, deviance(Shape { crossover, exponent: 1.0 })),
         ExponentChoice::Fixed(exponent) => (exponent, deviance(Shape { crossover, exponent })),
         ExponentChoice::Free => {
             let at = |exponent: f64| deviance(Shape { crossover, exponent });
