@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use jamscope::contact::{Hertzian, Hookean, LawChoice};
+use jamscope::inflation::Boundary;
 use jamscope::relax::{Fire, RelaxerChoice};
 use jamscope::run::{SampleOutcome, run};
 use jamscope::scene::{Observables, Sample, Scene, Source};
 use jamscope::study::{
-    ExecuteError, FailureKind, MergeError, Plan, Record, RecordOutcome, Seeds, Shard, StoreError, Study, StudyError,
-    Target, execute, merge,
+    ExecuteError, FailureKind, MergeError, Part, Plan, Record, RecordOutcome, Seeds, Shard, StoreError, Study,
+    StudyError, Target, execute, merge,
 };
 
 /// Two pressures, two increases, five seeds of 80 disks: ten packings, twenty samples.
@@ -225,6 +226,48 @@ fn folders_that_cannot_be_used_are_named() {
     assert!(matches!(merge(folder.path()), Err(MergeError::Store(StoreError::NoStudy { .. }))));
     std::fs::write(folder.path().join("study.json"), "{").expect("written");
     assert!(matches!(merge(folder.path()), Err(MergeError::Store(StoreError::Unreadable { .. }))));
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_named() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let held = folder.path().join("held");
+    std::fs::create_dir(&held).expect("made");
+    let mut permissions = std::fs::metadata(&held).expect("there").permissions();
+    permissions.set_readonly(true);
+    std::fs::set_permissions(&held, permissions).expect("set");
+    // Who may write everywhere may not write to the system's own tree.
+    let writable = std::fs::write(held.join("probe"), "").is_ok();
+    let out = if writable { std::path::PathBuf::from("/sys/jamscope-study") } else { held.join("study") };
+    let refused = execute(&study(), &out, Shard::default(), false, &()).expect_err("nobody writes there");
+    assert!(matches!(refused, ExecuteError::Store(_)), "{refused}");
+    assert!(refused.to_string().contains("study"), "{refused}");
+}
+
+#[test]
+fn parts_have_lists_of_their_own_and_share_the_rest() {
+    let boundary = Boundary::HeldRim { outer_radius_over_side: 0.45 };
+    let part = |disk_counts: Vec<usize>, seeds, boundary| Part { disk_counts, seeds, boundary, ..Part::default() };
+    let two = Seeds { first: 5, count: 2 };
+    let parts = vec![part(vec![60], Some(two), None), part(vec![70, 90], None, Some(boundary))];
+    let parted = Study { parts, ..study() };
+    let plan = Plan::of(&parted).expect("it makes sense");
+    // Two targets of two seeds, and two sizes of two targets of five seeds.
+    assert_eq!(plan.tasks.len(), 4 + 20);
+    let scene = |index: usize| &plan.tasks[index].scenes[0];
+    assert_eq!((scene(0).disk_count, scene(0).sample[0].seed, scene(4).disk_count), (60, 5, 70));
+    assert_eq!((scene(3).inflation.boundary, scene(4).inflation.boundary), (Boundary::default(), boundary));
+    assert!(plan.tasks.iter().enumerate().all(|(index, task)| task.index == index && task.scenes.len() == 2));
+    // A part that says all there is is the study itself, sample for sample.
+    let whole = Study { parts: vec![Part::default()], ..study() };
+    assert_eq!(Plan::of(&whole), Plan::of(&study()));
+    let twice = Study { parts: vec![part(vec![60], None, None), part(vec![60], Some(two), None)], ..study() };
+    let Err(StudyError::PartsOverlap { part, disk_count, seed, .. }) = Plan::of(&twice) else {
+        panic!("the same packing twice")
+    };
+    assert_eq!((part, disk_count, seed), (2, 60, 5));
+    let message = Plan::of(&Study { parts: vec![Part { disk_counts: vec![0], ..Part::default() }], ..study() });
+    assert!(message.expect_err("no disks").to_string().contains("disk_count"));
 }
 
 #[test]

@@ -159,3 +159,47 @@ fn a_bad_study_is_refused_by_file_and_field() {
     assert!(complaint("increases = [0.1, 0.1]").contains("increases: 0.1 stands twice"));
     assert!(complaint("[[scene.sample]]\nname = \"a\"\nsource = { pressure = 1.0 }").contains("it names none itself"));
 }
+
+#[test]
+fn a_recipe_is_a_study_that_can_be_printed_changed_and_run() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let run = |arguments: &[&str]| {
+        let output = program().args(arguments).current_dir(folder.path()).output().expect("the program starts");
+        (
+            output.status.success(),
+            String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr),
+        )
+    };
+    let (done, text) = run(&["study", "--recipe", "periodic", "--print"]);
+    assert!(done, "{text}");
+    // What is printed is read back as the same study: its plan is the recipe's.
+    std::fs::write(folder.path().join("periodic.toml"), &text).expect("written");
+    let plan = |arguments: &[&str]| run(arguments).1;
+    let expected = plan(&["study", "--recipe", "periodic", "--dry-run"]);
+    assert!(expected.contains("2774 disks, pressure 3500: 10 packings, 1 inflations each, 0 done"), "{expected}");
+    assert_eq!(plan(&["study", "periodic.toml", "--dry-run"]), expected);
+    // Smaller, it is run, merged and reported in one go.
+    let smaller = text.replace("2774", "150").replace("count = 10", "count = 4");
+    std::fs::write(folder.path().join("smaller.toml"), smaller).expect("written");
+    let (done, text) = run(&["study", "smaller.toml", "--out", "out"]);
+    assert!(done && text.contains("4 samples: 4 run") && text.contains("4 of 4 samples"), "{text}");
+    assert!(folder.path().join("out").join("summary.csv").exists());
+    #[cfg(feature = "fit")]
+    {
+        let read = |name: &str| std::fs::read_to_string(folder.path().join("out").join(name)).expect("written");
+        assert!(read("transition.csv").starts_with("quantity,of,value,low,high,published,verdict"));
+        let parsed: serde_json::Value = serde_json::from_str(&read("transition.json")).expect("JSON");
+        assert_eq!(parsed["series"].as_array().map(Vec::len), Some(1));
+        #[cfg(feature = "plot")]
+        {
+            let page = read("report.html");
+            assert!(page.contains("Angular modes, periodic box, 150 disks") && !page.contains("NaN"), "no modes");
+            // Another merge gives the same bytes.
+            assert!(run(&["merge", "out"]).0 && read("report.html") == page);
+        }
+    }
+    let (done, text) = run(&["study", "--recipe", "nonsense"]);
+    assert!(!done && text.contains("order-parameters"), "{text}");
+    let (done, text) = run(&["study"]);
+    assert!(!done && text.contains("--recipe"), "{text}");
+}

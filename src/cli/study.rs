@@ -19,7 +19,7 @@ use crate::{Failure, print, set_threads};
 #[derive(Args)]
 pub struct StudyArguments {
     /// Study file (TOML).
-    #[arg(required_unless_present = "recipe", conflicts_with = "recipe")]
+    #[arg(conflicts_with = "recipe")]
     study: Option<PathBuf>,
     /// Run the study behind a figure of the published study instead of a file.
     #[arg(long, value_name = "NAME", value_parser = recipes())]
@@ -113,7 +113,10 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
     let study = match (&arguments.study, arguments.recipe) {
         (Some(path), _) => read_study(path)?,
         (None, Some(recipe)) => recipe.study(arguments.scale),
-        (None, None) => return Err("a study file or a recipe is needed".into()),
+        (None, None) => {
+            let names = Recipe::ALL.map(Recipe::name).join(", ");
+            return Err(format!("a study file is needed, or --recipe with one of {names}").into());
+        }
     };
     if arguments.print {
         return print(&toml::to_string(&study).map_err(|error| error.to_string())?);
@@ -234,8 +237,7 @@ mod transition {
 
     fn line(one: &Comparison) -> String {
         let value = one.value.map_or("a bound".into(), number);
-        let ends =
-            one.interval.map_or(String::new(), |[low, high]| format!(" ({} to {})", number(low), number(high)));
+        let ends = one.interval.map_or(String::new(), |[low, high]| format!(" ({} to {})", number(low), number(high)));
         let published = number(one.published);
         format!("{}, {}: {value}{ends}, published {published}: {}\n", one.quantity, one.of, one.verdict.name())
     }

@@ -205,13 +205,13 @@ fn part(size: usize, targets: Vec<Target>, count: usize) -> Part {
 fn transition(scale: Scale) -> Study {
     let parts = match scale {
         Scale::Small => vec![
-            part(0, reduced(&[1e6, 3e6, 1e7, 3e7, 1e8]), 40),
-            part(1, reduced(&[1e6, 1e7, 3e7, 1e8, 2e8, 4e8, 1e9]), 20),
+            part(0, reduced(&[1e6, 3e6, 1e7, 3e7, 1e8]), 60),
+            part(1, reduced(&[1e6, 1e7, 3e7, 1e8, 2e8, 4e8, 1e9]), 40),
         ],
         Scale::Medium => vec![
             part(1, reduced(&[1e6, 3e6, 1e7, 3e7, 6e7, 1e8, 2e8, 4e8, 1e9]), 100),
             part(0, reduced(&[1e6, 3e6, 1e7, 3e7, 1e8, 2e8]), 80),
-            part(2, reduced(&[1e6, 1e7, 3e7, 6e7, 1e8, 2e8, 4e8, 1e9, 4e9]), 24),
+            part(2, reduced(&[1e7, 3e7, 1e8, 2e8, 4e8, 1e9, 4e9]), 16),
         ],
         Scale::Full => {
             let all = [1e5, 3e5, 1e6, 3e6, 1e7, 2e7, 4e7, 6e7, 8e7, 1e8, 2e8, 3e8, 4e8, 6e8, 1e9];
@@ -225,7 +225,7 @@ fn transition(scale: Scale) -> Study {
 
 fn radial(scale: Scale) -> Study {
     let (size, count) = match scale {
-        Scale::Small => (1, 12),
+        Scale::Small => (1, 20),
         Scale::Medium => (2, 40),
         Scale::Full => (3, 400),
     };
@@ -250,7 +250,7 @@ fn inflations(scale: Scale, laws: &[LawChoice]) -> Study {
             _ => reduced(values),
         };
         let sizes: &[(usize, usize, &[f64])] = match scale {
-            Scale::Small => &[(0, 24, &[1e6, 3e6, 1e7, 3e7, 1e8]), (1, 8, &[1e6, 1e7, 3e7, 1e8, 2e8, 4e8, 1e9])],
+            Scale::Small => &[(0, 48, &[1e6, 3e6, 1e7, 3e7, 1e8]), (1, 20, hertzian)],
             Scale::Medium => &[(0, 100, &[1e6, 3e6, 1e7, 3e7, 1e8]), (1, 100, hertzian), (2, 24, hertzian)],
             Scale::Full => &[(1, 400, hertzian), (2, 400, hertzian), (3, 400, hertzian)],
         };
@@ -266,7 +266,7 @@ fn hookean(scale: Scale) -> Study {
     let near = reduced(&[3e5, 1e6, 3e6, 1e7, 2e7]);
     let wide = reduced(&[1e6, 3e6, 1e7, 2e7, 4e7]);
     let parts = match scale {
-        Scale::Small => vec![part(0, near, 40), part(1, wide, 16)],
+        Scale::Small => vec![part(0, near, 80), part(1, wide, 40)],
         Scale::Medium => vec![part(0, near, 200), part(1, wide.clone(), 100), part(2, wide, 24)],
         Scale::Full => vec![part(1, wide.clone(), 400), part(2, wide.clone(), 400), part(3, wide, 400)],
     };
@@ -275,8 +275,8 @@ fn hookean(scale: Scale) -> Study {
 
 fn radius(scale: Scale) -> Study {
     let (size, count) = match scale {
-        Scale::Small => (1, 40),
-        Scale::Medium => (2, 100),
+        Scale::Small => (1, 80),
+        Scale::Medium => (2, 160),
         Scale::Full => (3, 400),
     };
     let law = |law: LawChoice, p| Part { laws: vec![law], ..part(size, reduced(&[p]), count) };
@@ -306,7 +306,7 @@ fn jamming(scale: Scale) -> Study {
     let coarse = fractions(&[0.74, 0.77, 0.79, 0.80, 0.81, 0.82, 0.83]);
     let fine = fractions(&[0.74, 0.77, 0.79, 0.80, 0.81, 0.82, 0.825, 0.83, 0.835, 0.838]);
     let parts = match scale {
-        Scale::Small => vec![part(0, coarse.clone(), 24), part(1, coarse, 12)],
+        Scale::Small => vec![part(0, coarse.clone(), 100), part(1, coarse, 100)],
         Scale::Medium => vec![part(0, fine.clone(), 200), part(1, fine.clone(), 100), part(2, fine, 24)],
         Scale::Full => vec![part(1, fine.clone(), 400), part(2, fine.clone(), 400), part(3, fine, 400)],
     };
@@ -315,8 +315,8 @@ fn jamming(scale: Scale) -> Study {
 
 fn contact_changes(scale: Scale) -> Study {
     let (size, count) = match scale {
-        Scale::Small => (1, 20),
-        Scale::Medium => (2, 40),
+        Scale::Small => (1, 40),
+        Scale::Medium => (2, 60),
         Scale::Full => (3, 400),
     };
     let mut study = Study { parts: vec![part(size, reduced(&[1e6, 1e7, 1e8, 4e8, 1e9]), count)], ..common() };

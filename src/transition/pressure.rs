@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | κ | half of the samples have κ_fit ≥ κ_1/2 | logistic regression in ln p̂ |
 //! | Δp | half of the samples have Δp < 0 | the same |
-//! | G* | the mean passes 1 − 2^(−1/2) = 0.293, its value for S ∝ f^(−1.5) | linear in ln p̂ between cells |
+//! | G* | the mean passes 1 − 2^(−1/2) = 0.293, its value for S ∝ f^(−1.5) | linear in ln p̂ between cells, after falling neighbours are pooled |
 //! | θ* | the mean passes 0.303 π, likewise | the same |
 //! | S(f) | the slope of the mean spectrum passes 1.5 | the same |
 //!
@@ -204,18 +204,20 @@ fn by_halves(groups: &[(f64, Vec<bool>)]) -> TransitionPressure {
     }
 }
 
-/// Where what rises with p̂ passes a level for good.
+/// Where what rises with p̂ passes a level.
 fn by_level(
     at: &[f64],
     sizes: &[usize],
     level: f64,
     values: impl Fn(&[Vec<usize>]) -> Option<Vec<f64>>,
 ) -> TransitionPressure {
+    let weights: Vec<f64> = sizes.iter().map(|&size| size as f64).collect();
+    let rising = |groups: &[Vec<usize>]| Some(ascending(&values(groups)?, &weights));
     let all: Vec<Vec<usize>> = sizes.iter().map(|&size| (0..size).collect()).collect();
-    let Some(whole) = values(&all) else { return TransitionPressure::Unordered };
+    let Some(whole) = rising(&all) else { return TransitionPressure::Unordered };
     match crossing(at, &whole, level) {
         Some(_) => {
-            let found = bootstrap(sizes, RESAMPLINGS, |groups| crossing(at, &values(groups)?, level));
+            let found = bootstrap(sizes, RESAMPLINGS, |groups| crossing(at, &rising(groups)?, level));
             found.map_or(TransitionPressure::Unordered, |found| TransitionPressure::Found(exponential(found)))
         }
         None if whole.iter().all(|&value| value < level) => TransitionPressure::Above(at[at.len() - 1]),
@@ -224,12 +226,32 @@ fn by_level(
     }
 }
 
-/// ln p̂ where the values pass the level for the last time upwards, if they stay above it.
+/// ln p̂ where ascending values pass the level.
 fn crossing(at: &[f64], values: &[f64], level: f64) -> Option<f64> {
     let below = values.iter().rposition(|&value| value < level)?;
     let (low, high) = (values[below], *values.get(below + 1)?);
     let share = (level - low) / (high - low);
     Some((1.0 - share) * at[below].ln() + share * at[below + 1].ln())
+}
+
+/// The nearest values that nowhere fall, by weighted least squares: neighbours that do are pooled.
+///
+/// Source: Ayer, Brunk, Ewing, Reid, Silverman (1955), Ann. Math. Stat. 26, 641 (pool adjacent violators).
+fn ascending(values: &[f64], weights: &[f64]) -> Vec<f64> {
+    // Mean, weight and number of members of every pool.
+    let mut pools: Vec<(f64, f64, usize)> = Vec::new();
+    for (&value, &weight) in values.iter().zip(weights) {
+        let mut last = (value, weight, 1);
+        while let Some(&(mean, of_pool, count)) = pools.last()
+            && mean > last.0
+        {
+            let both = of_pool + last.1;
+            last = ((mean * of_pool + last.0 * last.1) / both, both, count + last.2);
+            pools.pop();
+        }
+        pools.push(last);
+    }
+    pools.into_iter().flat_map(|(mean, _, count)| std::iter::repeat_n(mean, count)).collect()
 }
 
 /// The interval of e^x; the standard error to first order.
@@ -254,9 +276,15 @@ mod tests {
         assert!((passed.exp() / 10f64.powf(7.5) - 1.0).abs() < 1e-12);
         assert_eq!(crossing(&at, &[0.1, 0.2, 0.25, 0.29], 0.3), None);
         assert_eq!(crossing(&at, &[0.4, 0.5, 0.6, 0.7], 0.3), None);
-        // The last time counts.
-        let last = crossing(&at, &[0.1, 0.4, 0.2, 0.4], 0.3).expect("between the last two");
-        assert!((last.exp() / 10f64.powf(8.5) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn values_that_fall_are_pooled() {
+        assert_eq!(ascending(&[1.0, 2.0, 3.0], &[1.0; 3]), [1.0, 2.0, 3.0]);
+        assert_eq!(ascending(&[1.0, 4.0, 2.0, 5.0], &[1.0; 4]), [1.0, 3.0, 3.0, 5.0]);
+        // 4 has three times the weight of 2: (3·4 + 2)/4 = 3.5. A last low one pools all.
+        assert_eq!(ascending(&[1.0, 4.0, 2.0, 5.0], &[1.0, 3.0, 1.0, 1.0]), [1.0, 3.5, 3.5, 5.0]);
+        assert_eq!(ascending(&[3.0, 2.0, 1.0], &[1.0; 3]), [2.0; 3]);
     }
 
     #[test]

@@ -202,3 +202,12 @@ fn a_free_exponent_is_found_beside_the_crossover() {
     // 1000 powers over 2.5 e-folds beyond the crossover.
     assert!((fit.exponent - 2.0).abs() < 0.3, "{fit:?}");
 }
+
+#[test]
+fn the_exponent_of_a_flat_spectrum_stays_the_one_asked_for() {
+    for ring in fields(240, 4, |_| 1.0) {
+        let fit = fit_crossover(&[ring], &CrossoverSettings::default()).expect("enough powers");
+        assert!(matches!(fit.outcome, CrossoverOutcome::White { .. }), "{:?}", fit.outcome);
+        assert_eq!(fit.exponent, 1.5);
+    }
+}

@@ -20,8 +20,8 @@ pub struct CollapseSettings<const K: usize> {
     pub ranges: [[f64; 2]; K],
     /// Points of the grid along every range, at least 3. Changes results only where S has several minima.
     pub grid_points: usize,
-    /// Exponents at which fewer than this share of all points have others to be held against are left out: where curves are torn
-    /// apart, S is small for want of points \[1\].
+    /// Exponents at which fewer than this share of all points have others to be held against, or curves fall into groups that do
+    /// not touch, are left out: where curves are torn apart, S is small for want of points \[1\].
     pub least_share: f64,
 }
 
@@ -114,14 +114,19 @@ pub fn collapse<const K: usize>(
     settings.check()?;
     let curves = Curves::of(curves)?;
     let mut largest_share = 0.0f64;
-    let enough = |exponents: [f64; K]| curves.quality(exponents).filter(|found| found.share() >= settings.least_share);
+    let enough = |exponents: [f64; K]| {
+        curves.quality(exponents).filter(|found| found.connected && found.share() >= settings.least_share)
+    };
     let value = |exponents: [f64; K]| enough(exponents).map_or(f64::INFINITY, |found| found.quality);
     let mut best: Option<([f64; K], f64)> = None;
     for index in 0..settings.grid_points.pow(K as u32) {
         let exponents = settings.grid_point(index);
         let Some(found) = curves.quality(exponents) else { continue };
         largest_share = largest_share.max(found.share());
-        if found.share() >= settings.least_share && best.is_none_or(|(_, lowest)| found.quality < lowest) {
+        if found.connected
+            && found.share() >= settings.least_share
+            && best.is_none_or(|(_, lowest)| found.quality < lowest)
+        {
             best = Some((exponents, found.quality));
         }
     }

@@ -22,6 +22,9 @@ pub struct CollapseQuality {
     pub point_count: usize,
     /// All points.
     pub of_count: usize,
+    /// Whether every curve hangs together with every other by curves that overlap: groups that do not touch say nothing of the
+    /// exponents between them.
+    pub connected: bool,
 }
 
 impl CollapseQuality {
@@ -101,23 +104,30 @@ impl<const K: usize> Curves<K> {
         let shifts: Vec<f64> =
             self.curves.iter().map(|(s, _)| s.iter().zip(exponents).map(|(s, e)| s * e).sum()).collect();
         let (mut sum, mut point_count) = (0.0, 0usize);
+        // The group of every curve, by its lowest index.
+        let mut groups: Vec<usize> = (0..self.curves.len()).collect();
         for (own, (_, rows)) in self.curves.iter().enumerate() {
             for row in rows {
-                if let Some((y, variance)) = self.master(own, row.at + shifts[own], &shifts) {
+                if let Some((y, variance)) = self.master(own, row.at + shifts[own], &shifts, &mut groups) {
                     sum += (row.y - y) * (row.y - y) / (1.0 / row.weight + variance);
                     point_count += 1;
                 }
             }
         }
-        (point_count > 0).then(|| CollapseQuality {
+        let mut groups =
+            self.curves.iter().zip(groups).filter(|((_, rows), _)| !rows.is_empty()).map(|(_, group)| group);
+        let first = groups.next();
+        let connected = groups.all(|group| Some(group) == first);
+        (point_count > 0).then_some(CollapseQuality {
             quality: sum / point_count as f64,
             point_count,
             of_count: self.point_count,
+            connected,
         })
     }
 
-    /// Y and dY² at u from all curves but one.
-    fn master(&self, own: usize, u: f64, shifts: &[f64]) -> Option<(f64, f64)> {
+    /// Y and dY² at u from all curves but one, which joins the group of each.
+    fn master(&self, own: usize, u: f64, shifts: &[f64], groups: &mut [usize]) -> Option<(f64, f64)> {
         // About u, so that Y is the value of the line at 0: K, K_x, K_xx, K_y, K_xy of the source.
         let mut k = [0.0; 5];
         for (other, (_, rows)) in self.curves.iter().enumerate() {
@@ -130,6 +140,10 @@ impl<const K: usize> Curves<K> {
             };
             if other == own || above == 0 || above == rows.len() {
                 continue;
+            }
+            if groups[own] != groups[other] {
+                let (low, high) = (groups[own].min(groups[other]), groups[own].max(groups[other]));
+                groups.iter_mut().filter(|group| **group == high).for_each(|group| *group = low);
             }
             for row in &rows[above - 1..=above] {
                 let (x, w) = (row.at + shifts[other] - u, row.weight);

@@ -60,7 +60,12 @@ impl PlotAxis {
                     let margin = (found[1] / low).powf(MARGIN).max(1.1);
                     [low / margin, found[1] * margin]
                 } else {
-                    let margin = (MARGIN * (found[1] - found[0])).max(1e-3 * found[1].abs()).max(f64::MIN_POSITIVE);
+                    // One value alone still has an axis.
+                    let margin = match found[1] - found[0] {
+                        span if span > 1e-9 * found[1].abs().max(found[0].abs()) => MARGIN * span,
+                        _ if found[1] == 0.0 => 1.0,
+                        _ => 0.1 * found[1].abs(),
+                    };
                     [found[0] - margin, found[1] + margin]
                 }
             }
