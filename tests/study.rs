@@ -254,10 +254,10 @@ fn parts_have_lists_of_their_own_and_share_the_rest() {
     let plan = Plan::of(&parted).expect("it makes sense");
     // Two targets of two seeds, and two sizes of two targets of five seeds.
     assert_eq!(plan.tasks.len(), 4 + 20);
-    let scene = |index: usize| &plan.tasks[index].scenes[0];
+    let scene = |index: usize| plan.tasks[index].scenes().swap_remove(0);
     assert_eq!((scene(0).disk_count, scene(0).sample[0].seed, scene(4).disk_count), (60, 5, 70));
     assert_eq!((scene(3).inflation.boundary, scene(4).inflation.boundary), (Boundary::default(), boundary));
-    assert!(plan.tasks.iter().enumerate().all(|(index, task)| task.index == index && task.scenes.len() == 2));
+    assert!(plan.tasks.iter().enumerate().all(|(index, task)| task.index == index && task.scene_count() == 2));
     // A part that says all there is is the study itself, sample for sample.
     let whole = Study { parts: vec![Part::default()], ..study() };
     assert_eq!(Plan::of(&whole), Plan::of(&study()));

@@ -317,11 +317,11 @@ mod cost {
             let (target, value) = first.target.name_and_value();
             text += &format!(
                 "{} {} disks, {} {value}: {} packings, {} inflations each, {} done, {:.1} s each {}, {:.0} s left on one core\n",
-                first.scenes[0].law.name(),
-                first.scenes[0].disk_count,
+                first.law.name(),
+                first.disk_count,
                 target.replace('_', " "),
                 cell.count,
-                first.scenes.len(),
+                first.scene_count(),
                 cell.done,
                 cell.each,
                 if cell.done > 0 { "measured" } else { "expected" },
@@ -363,7 +363,7 @@ mod cost {
 
     fn cells<'a>(plan: &'a Plan, folder: &Path, shard: Shard) -> Vec<Cell<'a>> {
         let alike = |a: &Task, b: &Task| {
-            let of = |task: &Task| (task.scenes[0].law, task.scenes[0].disk_count, task.scenes[0].inflation.boundary);
+            let of = |task: &Task| (task.law, task.disk_count, task.boundary());
             a.target == b.target && of(a) == of(b)
         };
         let cell = |tasks: &'a [Task]| {

@@ -72,7 +72,7 @@ pub fn execute(
     let _lock = store.lock(shard)?;
     let tasks: Vec<&Task> = plan.tasks.iter().filter(|task| shard.has(task.index)).collect();
     let done = Mutex::new(Execution {
-        sample_count: tasks.iter().map(|task| task.scenes.len()).sum(),
+        sample_count: tasks.iter().map(|task| task.scene_count()).sum(),
         foreign: store.foreign(&plan.tasks)?,
         ..Execution::default()
     });
@@ -132,8 +132,7 @@ impl Progress for Deadline {
 fn run_task(task: &Task, time_limit: Option<f64>) -> Vec<Record> {
     let allowed = time_limit.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
     let deadline = Deadline(allowed.and_then(|allowed| Instant::now().checked_add(allowed)));
-    let Some(first) = task.scenes.first() else { return Vec::new() };
-    match first.law {
+    match task.law {
         LawChoice::Hertzian(law) => run_with(task, &law, &deadline),
         LawChoice::Hookean(law) => run_with(task, &law, &deadline),
         LawChoice::PowerLaw(law) => run_with(task, &law, &deadline),
@@ -141,7 +140,8 @@ fn run_task(task: &Task, time_limit: Option<f64>) -> Vec<Record> {
 }
 
 fn run_with<L: PairLaw>(task: &Task, law: &L, deadline: &Deadline) -> Vec<Record> {
-    let first = &task.scenes[0];
+    let scenes = task.scenes();
+    let Some(first) = scenes.first() else { return Vec::new() };
     let prepared = run::prepared(first, &first.sample[0], law, 0, deadline);
     let record = |scene: &Scene| match &prepared {
         Ok((packing, summary)) => {
@@ -151,5 +151,5 @@ fn run_with<L: PairLaw>(task: &Task, law: &L, deadline: &Deadline) -> Vec<Record
         }
         Err(error) => Record::of(task, scene, Err(error)),
     };
-    task.scenes.iter().map(record).collect()
+    scenes.iter().map(record).collect()
 }

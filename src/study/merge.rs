@@ -154,3 +154,75 @@ fn table(cells: &[CellStatistics]) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::response::PhaseDecision;
+    use crate::study::plan::Task;
+    use crate::study::record::{Cell, Record, RecordOutcome};
+    use crate::study::settings::{Seeds, Target};
+
+    /// A record of the size one of 5548 disks has: 45 numbers, 16 curves.
+    fn record(task: &Task) -> Record {
+        let scene = &task.scenes()[0];
+        let sample = &scene.sample[0];
+        let cell = Cell {
+            law: scene.law,
+            disk_count: scene.disk_count,
+            target: task.target,
+            increase: scene.inflation.increase,
+            relaxer: sample.relaxer,
+            boundary: scene.inflation.boundary,
+        };
+        let value = |place: usize| libm::sin((sample.seed as usize + 100 * place) as f64);
+        let curve = |count: usize| (0..count).map(|place| [place as f64 + 0.5, value(place)]).collect::<Vec<_>>();
+        let numbers = (0..45).map(|place| (format!("number_{place}"), value(place))).collect();
+        let mut curves = BTreeMap::from([
+            ("radial_profile".to_string(), curve(41)),
+            ("angular_correlation".to_string(), curve(91)),
+            ("stretching_fluctuation".to_string(), curve(41)),
+            ("radial_fluctuation".to_string(), curve(41)),
+            ("isostatic_fluctuation".to_string(), curve(41)),
+            ("power_spectrum".to_string(), curve(30)),
+        ]);
+        for tenth in 1..10 {
+            curves.insert(format!("power_spectrum_at_0.{tenth}"), curve(4 * tenth));
+        }
+        let outcome = RecordOutcome::Done { phase: PhaseDecision::default(), numbers, curves };
+        Record { cell, seed: sample.seed, outcome }
+    }
+
+    /// Largest memory of this process so far \[bytes\], where the system tells.
+    fn peak() -> Option<f64> {
+        let status = std::fs::read_to_string("/proc/self/status").ok()?;
+        let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+        Some(1024.0 * line.split_whitespace().nth(1)?.parse::<f64>().ok()?)
+    }
+
+    #[test]
+    #[ignore = "writes 10⁵ files of 20 kB; run as the chapter on studies says"]
+    fn a_hundred_thousand_samples_are_merged_in_little_memory() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let targets = (1..=250).map(|place| Target::ReducedPressure(1e6 * f64::from(place))).collect();
+        let study = Study { targets, seeds: Seeds { first: 1, count: 400 }, ..Study::default() };
+        let plan = Plan::of(&study).expect("it makes sense");
+        let store = Store::open(folder.path(), &study, false).expect("an empty folder");
+        for task in &plan.tasks {
+            store.write(task, &[record(task)], 1.0).expect("written");
+        }
+        drop(plan);
+        let before = peak();
+        let start = std::time::Instant::now();
+        let merged = merge(folder.path()).expect("a study is there");
+        assert_eq!((merged.record_count, merged.cells.len()), (100_000, 250));
+        if let (Some(before), Some(after)) = (before, peak()) {
+            let seconds = start.elapsed().as_secs_f64();
+            println!("peak {:.0} MB before, {:.0} MB after the merge of {seconds:.0} s", before / 1e6, after / 1e6);
+            // 75 numbers a sample are 60 MB, twice that while they grow, and 10⁵ names of files.
+            assert!(after < 4e8, "{after} bytes");
+        }
+    }
+}

@@ -1,22 +1,30 @@
 //! [`Plan`]: all packings of a study with the inflations done to each, in an order that only the study decides.
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
-use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use crate::scene::{Scene, Source};
-use crate::study::settings::{Study, StudyError, Target};
+use crate::contact::LawChoice;
+use crate::inflation::Boundary;
+use crate::scene::Scene;
+use crate::study::settings::{Study, StudyError, Target, mobile_count};
 
 /// One packing and what is done to it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Task {
     /// Its place in the plan, from 0.
     pub index: usize,
     /// What it was asked to be prepared to.
     pub target: Target,
-    /// One scene of one sample an inflation; they differ in increase and relaxer.
-    pub scenes: Vec<Scene>,
+    /// The contact law.
+    pub law: LawChoice,
+    /// Disks in the box.
+    pub disk_count: usize,
+    /// The seed.
+    pub seed: u64,
+    /// All the rest, shared by all tasks of a part: a scene apiece would take 4 kB.
+    study: Arc<Study>,
 }
 
 /// All tasks of a study.
@@ -60,33 +68,27 @@ impl Plan {
         study.check()?;
         let mut plan = Plan { tasks: Vec::new(), time_limit: study.time_limit };
         let mut known = HashSet::new();
-        for (place, part) in study.parted().iter().enumerate() {
+        for (place, part) in study.parted().into_iter().enumerate() {
             let first = plan.tasks.len();
-            plan.add(part);
+            plan.add(&Arc::new(part));
             for task in &plan.tasks[first..] {
                 if !known.insert(task.identity()) {
-                    let scene = &task.scenes[0];
-                    let (disk_count, seed) = (scene.disk_count, scene.sample[0].seed);
-                    return Err(StudyError::PartsOverlap { part: place + 1, disk_count, target: task.target, seed });
+                    let Task { disk_count, target, seed, .. } = *task;
+                    return Err(StudyError::PartsOverlap { part: place + 1, disk_count, target, seed });
                 }
             }
         }
         Ok(plan)
     }
 
-    fn add(&mut self, study: &Study) {
+    fn add(&mut self, study: &Arc<Study>) {
         for law in study.laws() {
             for disk_count in study.disk_counts() {
                 for &target in &study.targets {
                     for place in 0..study.seeds.count {
                         let seed = study.seeds.first + place as u64;
-                        let inflations = study
-                            .increases()
-                            .into_iter()
-                            .flat_map(|increase| study.relaxers().into_iter().map(move |relaxer| (increase, relaxer)));
-                        let scene = |inflation| study.scene_of(law, disk_count, target, inflation, seed);
-                        let scenes = inflations.map(scene).collect();
-                        self.tasks.push(Task { index: self.tasks.len(), target, scenes });
+                        let index = self.tasks.len();
+                        self.tasks.push(Task { index, target, law, disk_count, seed, study: Arc::clone(study) });
                     }
                 }
             }
@@ -95,17 +97,37 @@ impl Plan {
 
     /// Samples, one an inflation.
     pub fn sample_count(&self) -> usize {
-        self.tasks.iter().map(|task| task.scenes.len()).sum()
+        self.tasks.iter().map(Task::scene_count).sum()
     }
 }
 
 impl Task {
+    /// One scene of one sample an inflation; they differ in increase and relaxer.
+    pub fn scenes(&self) -> Vec<Scene> {
+        let relaxers = self.study.relaxers();
+        let scene = |increase, relaxer| {
+            self.study.scene_of(self.law, self.disk_count, self.target, (increase, relaxer), self.seed)
+        };
+        let increases = self.study.increases().into_iter();
+        increases.flat_map(|increase| relaxers.iter().map(move |&relaxer| scene(increase, relaxer))).collect()
+    }
+
+    /// How many.
+    pub fn scene_count(&self) -> usize {
+        self.study.increases().len() * self.study.relaxers().len()
+    }
+
+    /// What is held.
+    pub fn boundary(&self) -> Boundary {
+        self.study.scene.inflation.boundary
+    }
+
     /// What tells this task from all others, and from the same one of another version: SHA-256 of version and scenes, in hex.
     ///
     /// The place in the plan is left out: a study with more seeds has the old tasks unchanged.
     pub fn identity(&self) -> String {
         // A scene is plain data: it always has a form as JSON.
-        let scenes = serde_json::to_string(&(self.target, &self.scenes)).unwrap_or_default();
+        let scenes = serde_json::to_string(&(self.target, self.scenes())).unwrap_or_default();
         hash(&[env!("CARGO_PKG_VERSION"), &scenes])
     }
 
@@ -114,13 +136,14 @@ impl Task {
     /// FIRE's steps grow as the square root of n and towards jamming. Measured on the recipes (the chapter on studies has the
     /// table): within a factor of three from 1387 to 22184 disks, p from 0.5 to 4000, of Hertzian and Hookean disks.
     pub fn expected_seconds(&self) -> f64 {
-        let Some(first) = self.scenes.first() else { return 0.0 };
-        let pressure = match first.sample.first().map(|sample| &sample.source) {
-            Some(Source::Pressure(pressure)) => *pressure,
-            _ => 1.0,
+        let mobile = mobile_count(self.disk_count, self.boundary());
+        let pressure = match self.target {
+            Target::Pressure(pressure) => pressure,
+            Target::ReducedPressure(reduced) => reduced / libm::pow(mobile, self.law.exponent() - 1.0),
+            Target::PackingFraction(_) => 1.0,
         };
-        let size = (first.disk_count as f64).powf(1.5);
-        1.4e-5 * size * pressure.powf(-0.25) * (0.6 + 0.4 * self.scenes.len() as f64)
+        let size = libm::pow(self.disk_count as f64, 1.5);
+        1.4e-5 * size * libm::pow(pressure, -0.25) * (0.6 + 0.4 * self.scene_count() as f64)
     }
 
     /// The file of its records.

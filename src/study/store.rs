@@ -170,9 +170,9 @@ impl Store {
             Err(error) => return TaskState::Damaged(Problem { path, reason: error.to_string() }),
         };
         match records(&text, &task.identity()) {
-            Ok((records, seconds)) if records.len() == task.scenes.len() => TaskState::Finished(records, seconds),
+            Ok((records, seconds)) if records.len() == task.scene_count() => TaskState::Finished(records, seconds),
             Ok((records, _)) => {
-                let reason = format!("{} records, not {}", records.len(), task.scenes.len());
+                let reason = format!("{} records, not {}", records.len(), task.scene_count());
                 TaskState::Damaged(Problem { path, reason })
             }
             Err(reason) => TaskState::Damaged(Problem { path, reason }),
