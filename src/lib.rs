@@ -244,6 +244,9 @@ mod book {
     mod exact {}
     #[doc = include_str!("../book/src/report.md")]
     mod report {}
+    #[cfg(feature = "fit")]
+    #[doc = include_str!("../book/src/transition.md")]
+    mod transition {}
     #[doc = include_str!("../book/src/study.md")]
     mod study {}
     #[doc = include_str!("../book/src/validation.md")]

@@ -101,7 +101,8 @@ impl MeanCurve {
 }
 
 impl CellSamples {
-    pub(super) fn new(cell: Cell) -> Self {
+    /// Without samples yet.
+    pub fn new(cell: Cell) -> Self {
         CellSamples {
             cell,
             done_count: 0,

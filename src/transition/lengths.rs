@@ -82,6 +82,19 @@ impl Lengths {
     }
 }
 
+/// p where ℓ_iso falls to the longest screening length, linear in logarithms between cells.
+pub(super) fn matching(lengths: &[Lengths], samples: &[&CellSamples]) -> Option<f64> {
+    let radii = samples.first()?.numbers.get("outer_radius")?;
+    let longest = NumberStatistics::of(radii).mean / super::pressure::FIRST_ZERO;
+    let points: Vec<[f64; 2]> =
+        lengths.iter().filter_map(|it| Some([it.point.pressure.ln(), (it.isostatic? / longest).ln()])).collect();
+    points.windows(2).find_map(|pair| {
+        let [low, high] = [pair[0], pair[1]];
+        let share = low[1] / (low[1] - high[1]);
+        (low[1] > 0.0 && high[1] <= 0.0).then(|| ((1.0 - share) * low[0] + share * high[0]).exp())
+    })
+}
+
 fn curve(samples: &CellSamples, excess: f64) -> Vec<[f64; 4]> {
     let points = |name: &str| samples.curves.get(name).map_or(Vec::new(), |curve| curve.points());
     let (stretching, radial) = (points("stretching_fluctuation"), points("radial_fluctuation"));
@@ -189,6 +202,31 @@ impl JammingSeries {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lengths_match_where_one_falls_to_the_other() {
+        let cell = crate::study::Cell {
+            law: Default::default(),
+            disk_count: 100,
+            target: Target::Pressure(1.0),
+            increase: 0.1,
+            relaxer: Default::default(),
+            boundary: Default::default(),
+        };
+        let mut samples = CellSamples::new(cell);
+        samples.numbers.insert("outer_radius".into(), vec![10.0 * super::super::pressure::FIRST_ZERO]);
+        // ℓ_iso = 100/p, and 1/κ_1 = 10.
+        let length = |pressure: f64| Lengths {
+            point: SeriesPoint { cell: 0, pressure, reduced_pressure: pressure, sample_count: 1 },
+            excess: None,
+            screening: None,
+            isostatic: Some(100.0 / pressure),
+            curve: Vec::new(),
+        };
+        let found = matching(&[length(2.0), length(5.0), length(20.0)], &[&samples]).expect("between 5 and 20");
+        assert!((found - 10.0).abs() < 1e-12, "{found}");
+        assert_eq!(matching(&[length(11.0), length(20.0)], &[&samples]), None);
+    }
 
     #[test]
     fn the_threshold_is_reached_between_two_rings() {

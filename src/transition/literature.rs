@@ -144,6 +144,23 @@ pub(super) fn comparisons(
                 all.extend(found.map(|found| Comparison::bootstrap(quantity, &of, &found, published)));
             }
         }
+        for (point, change) in one.points.iter().zip(&one.pressure_changes).filter(|(it, _)| it.reduced_pressure < 5e7)
+        {
+            if let Some(change) = change {
+                let quantity = format!("Δp/p^(1/3) at p̂ = {:.0e}", point.reduced_pressure);
+                all.push(Comparison::interval(&quantity, &of, change.mean, change.mean_interval, -0.05));
+            }
+        }
+        for lengths in &one.lengths {
+            if let (Some(length), Some(excess)) = (lengths.isostatic, lengths.excess) {
+                let quantity = format!("ℓ_iso ΔZ at p̂ = {:.0e}", lengths.point.reduced_pressure);
+                all.push(Comparison::interval(&quantity, &of, length * excess, None, 6.0));
+            }
+        }
+        if let Some(matching) = one.matching {
+            let reduced = matching * one.mobile_count().powf(1.5);
+            all.push(Comparison::interval("p̂ where ℓ_iso is 1/κ₁", &of, reduced, None, 1e8));
+        }
         if let Some(fit) = one.divergence.at_transition {
             all.push(Comparison::estimate("μ of θ† ∼ (p̂_c − p̂)^(−μ), p̂_c by the slope", &of, fit.exponent, 0.9));
         }

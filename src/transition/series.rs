@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::fit::ensemble::{BootstrapInterval, bootstrap_all};
 use crate::study::{Cell, CellSamples, Merged, NumberStatistics, Target};
 use crate::transition::RESAMPLINGS;
-use crate::transition::lengths::Lengths;
+use crate::transition::lengths::{Lengths, matching};
 use crate::transition::pressure::{MethodEstimate, TransitionPressure, estimates};
 use crate::transition::spectra::{AngleDivergence, CellSpectrum};
 
@@ -30,6 +30,11 @@ pub struct Series {
     pub at_published: Option<AtPressure>,
     /// ℓ_s and ℓ_iso of every cell.
     pub lengths: Vec<Lengths>,
+    /// p where ℓ_iso is R/3.83 = 1/κ_1, the longest screening length, linear in logarithms between cells \[force / length\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub matching: Option<f64>,
+    /// Δp/p^((α−2)/(α−1)) of every cell that has it.
+    pub pressure_changes: Vec<Option<NumberStatistics>>,
 }
 
 /// One cell of a series.
@@ -102,12 +107,19 @@ impl Series {
             points.iter().zip(&samples).filter_map(|(point, samples)| CellSpectrum::of(point, samples)).collect();
         let estimates = estimates(&points, &samples);
         let critical = estimates.iter().find_map(MethodEstimate::by_spectrum).and_then(TransitionPressure::best);
+        let lengths: Vec<Lengths> =
+            points.iter().zip(&samples).map(|(point, samples)| Lengths::of(point, samples)).collect();
         Series {
             cell: samples[0].cell,
+            matching: matching(&lengths, &samples),
+            pressure_changes: points
+                .iter()
+                .map(|point| merged.cells[point.cell].numbers.get("scaled_pressure_change").copied())
+                .collect(),
             divergence: AngleDivergence::of(&spectra, critical),
             at_transition: critical.and_then(|at| AtPressure::of(&points, &samples, at)),
             at_published: AtPressure::of(&points, &samples, PUBLISHED),
-            lengths: points.iter().zip(&samples).map(|(point, samples)| Lengths::of(point, samples)).collect(),
+            lengths,
             points,
             spectra,
             estimates,
