@@ -28,10 +28,15 @@ pub use scaling::{ExponentOutcome, PressureLaw, Scaling};
 pub use series::{AtPressure, Series, SeriesPoint};
 pub use spectra::{AngleDivergence, CellSpectrum, RingSlope};
 
+#[cfg(feature = "plot")]
 pub(crate) use lengths::{ISOSTATIC_THRESHOLD, JAMMING};
+#[cfg(feature = "plot")]
 pub(crate) use literature::words;
+#[cfg(feature = "plot")]
 pub(crate) use pressure::{FIRST_ZERO, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION};
+#[cfg(feature = "plot")]
 pub(crate) use scaling::beta;
+#[cfg(feature = "plot")]
 pub(crate) use series::{ANGLE, ANTICORRELATION, PUBLISHED};
 
 use crate::study::Merged;

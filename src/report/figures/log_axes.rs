@@ -108,12 +108,14 @@ impl LogAxis {
 }
 
 /// An axis with equal steps.
+#[cfg_attr(not(feature = "fit"), allow(dead_code, reason = "only the figures of studies have one"))]
 pub(crate) struct LinearAxis {
     range: [f64; 2],
     /// Where its ends stand \[px\].
     ends: [f64; 2],
 }
 
+#[cfg_attr(not(feature = "fit"), allow(dead_code, reason = "only the figures of studies have one"))]
 impl LinearAxis {
     /// From one value to a larger one.
     pub(crate) fn between(low: f64, high: f64, ends: [f64; 2]) -> Self {
@@ -150,6 +152,7 @@ impl LinearAxis {
 }
 
 /// Either kind.
+#[cfg_attr(not(feature = "fit"), allow(dead_code, reason = "only the figures of studies have one"))]
 pub(crate) enum Axis {
     Log(LogAxis),
     Linear(LinearAxis),

@@ -20,6 +20,7 @@ pub(crate) mod log_axes;
 pub mod map;
 pub mod multipoles;
 pub(crate) mod palette;
+#[cfg(feature = "fit")]
 pub(crate) mod plot;
 pub mod radial;
 pub mod radial_dependence;

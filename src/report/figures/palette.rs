@@ -17,10 +17,12 @@ pub(crate) const SKY: [u8; 3] = [0x56, 0xB4, 0xE9];
 pub(crate) const SEQUENCE: [[u8; 3]; 6] = [PURPLE, GREEN, VERMILLION, BLUE, ORANGE, SKY];
 
 /// Dark to light, for series that have an order. Source: viridis (Smith, van der Walt 2015, CC0), five of its colours.
+#[cfg(feature = "fit")]
 const ORDERED: [[u8; 3]; 5] =
     [[0x44, 0x01, 0x54], [0x3B, 0x52, 0x8B], [0x21, 0x90, 0x8C], [0x5D, 0xC8, 0x63], [0xE3, 0xC5, 0x1E]];
 
 /// The colour of one of `count` series that have an order.
+#[cfg(feature = "fit")]
 pub(crate) fn ordered(index: usize, count: usize) -> [u8; 3] {
     let place = index as f64 / count.saturating_sub(1).max(1) as f64 * (ORDERED.len() - 1) as f64;
     let class = (place as usize).min(ORDERED.len() - 2);
