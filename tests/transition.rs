@@ -119,8 +119,14 @@ fn every_method_finds_the_transition_it_was_given() {
     let series = &transition.series[0];
     assert_eq!(series.points.len(), 8);
     let methods: Vec<Method> = series.estimates.iter().map(|it| it.method).collect();
-    assert_eq!(methods.len(), 5);
+    assert_eq!(methods.len(), 6);
     for estimate in &series.estimates {
+        if estimate.method == Method::Crossover {
+            // Slopes below 1.5 look like Lorentzians, above they do not: between two cells near 3·10⁷, by what 60 samples tell.
+            let TransitionPressure::Between([low, high]) = estimate.pressure else { panic!("{estimate:?}") };
+            assert!(low < 5.1e7 && high > 0.9e7 && low < high, "{low:.2e} to {high:.2e}");
+            continue;
+        }
         let TransitionPressure::Found(found) = estimate.pressure else { panic!("{estimate:?}") };
         let error = found.standard_error.expect("an interval") / found.best;
         // Linear in ln p̂ between cells a factor of two apart, what is crossed errs by the curvature of the truth: below 0.02
@@ -144,7 +150,9 @@ fn the_order_of_cells_and_samples_changes_nothing_but_the_draws() {
     let mut cells = one_series(2);
     let best = |cells: &[CellSamples]| -> Vec<f64> {
         let transition = Transition::of(&merged(cells.to_vec()));
-        transition.series[0].estimates.iter().filter_map(|it| it.pressure.best()).collect()
+        // Where f† vanishes is told by its interval, which is one of draws.
+        let estimates = transition.series[0].estimates.iter().filter(|it| it.method != Method::Crossover);
+        estimates.filter_map(|it| it.pressure.best()).collect()
     };
     let before = best(&cells);
     cells.reverse();

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! series = cells that differ in the pressure alone        p̂ = p N^(α−1)
-//! p̂_c    by κ_fit, by the sign of Δp, by G* and θ* at their values of a scale-free spectrum, by the slope of S(f)
+//! p̂_c    by κ_fit, by the sign of Δp, by G* and θ* at their values of a scale-free spectrum, by the slope of S(f), by f† → 0
 //! θ† ∼ (p̂_c − p̂)^(−μ)        G*, θ* = F(p N^a d_0^(−b))        N^β p_c ∼ (N² d_0)^(β/4)        ξ ∼ (φ_J − φ)^(−ν)
 //! ```
 //!

@@ -7,6 +7,7 @@
 //! | G* | the mean passes 1 − 2^(−1/2) = 0.293, its value for S ∝ f^(−1.5) | linear in ln p̂ between cells, after falling neighbours are pooled |
 //! | θ* | the mean passes 0.303 π, likewise | the same |
 //! | S(f) | the slope of the mean spectrum passes 1.5 | the same |
+//! | f† | the interval of f† of the mean spectrum begins to hold 0, a spectrum without scale | between two cells |
 //!
 //! κ_1 R = 3.8317, the first zero of J_1: κ_fit of single samples is near 0 or from κ_1 on (the study, fig. 2).
 
@@ -18,7 +19,7 @@ use crate::fit::ensemble::{
 use crate::study::CellSamples;
 use crate::transition::RESAMPLINGS;
 use crate::transition::series::{ANGLE, ANTICORRELATION, SeriesPoint};
-use crate::transition::spectra::slope_of;
+use crate::transition::spectra::{CellSpectrum, slope_of};
 
 /// First zero of J_1.
 pub(crate) const FIRST_ZERO: f64 = 3.831_705_970_207_512;
@@ -46,6 +47,8 @@ pub enum Method {
     Angle,
     /// The slope of S(f).
     Spectrum,
+    /// f†.
+    Crossover,
 }
 
 impl Method {
@@ -57,6 +60,7 @@ impl Method {
             Method::Anticorrelation => "G*",
             Method::Angle => "θ*",
             Method::Spectrum => "slope of S(f)",
+            Method::Crossover => "f†",
         }
     }
 }
@@ -174,6 +178,24 @@ pub(super) fn estimates(points: &[SeriesPoint], samples: &[&CellSamples]) -> Vec
     .into_iter()
     .flatten()
     .collect()
+}
+
+/// Where the spectra lose their scale: between the last cell whose f† is above 0 and the next.
+pub(super) fn by_crossover(spectra: &[CellSpectrum]) -> Option<MethodEstimate> {
+    let seen: Vec<(f64, bool)> = spectra
+        .iter()
+        .filter_map(|it| {
+            let [low, _] = it.crossover_interval?.interval?;
+            Some((it.point.reduced_pressure, low > 0.0))
+        })
+        .collect();
+    let (first, last) = (seen.first()?, seen.last()?);
+    let pressure = match seen.iter().rposition(|(_, has_scale)| *has_scale) {
+        None => TransitionPressure::Below(first.0),
+        Some(place) if place + 1 == seen.len() => TransitionPressure::Above(last.0),
+        Some(place) => TransitionPressure::Between([seen[place].0, seen[place + 1].0]),
+    };
+    (seen.len() > 1).then_some(MethodEstimate { method: Method::Crossover, pressure })
 }
 
 /// Where half of the samples are plastic, (ln p̂, plastic or not) by cell.
