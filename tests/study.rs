@@ -142,6 +142,24 @@ fn statistics_stand_by_cell_in_the_order_of_the_plan() {
 }
 
 #[test]
+fn every_row_of_the_table_has_its_columns() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    #[cfg(feature = "linear")]
+    let relaxers = vec![RelaxerChoice::default(), RelaxerChoice::Staged(Default::default())];
+    #[cfg(not(feature = "linear"))]
+    let relaxers = vec![RelaxerChoice::default()];
+    let few = Study { relaxers, seeds: Seeds { first: 1, count: 1 }, ..study() };
+    whole(&few, folder.path());
+    let text = String::from_utf8(merged(folder.path()).remove("summary.csv").expect("written")).expect("text");
+    // Commas within quotes are no ends of fields.
+    let count = |line: &str| line.split('"').step_by(2).map(|part| part.matches(',').count()).sum::<usize>();
+    let expected = count(text.lines().next().expect("a header"));
+    assert!(text.lines().count() > 20 && text.lines().all(|line| count(line) == expected));
+    #[cfg(feature = "linear")]
+    assert!(text.contains("\"FIRE, then Newton\""));
+}
+
+#[test]
 fn failures_are_records_and_are_counted() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let no_steps = RelaxerChoice::Fire(Fire { step_limit: 1, ..Fire::default() });

@@ -122,7 +122,7 @@ struct Summary<'a> {
     merged: &'a Merged,
 }
 
-/// A row a cell and number.
+/// A row a cell and number; names of relaxers have commas, so they stand in quotes.
 fn table(cells: &[CellStatistics]) -> String {
     let mut text = String::from(
         "cell,disk_count,target,target_value,increase,relaxer,law,number,count,mean,standard_error,lower_quartile,median,\
@@ -137,7 +137,7 @@ fn table(cells: &[CellStatistics]) -> String {
             let [mean, middle] = [number.mean_interval, number.median_interval];
             let _ = writeln!(
                 text,
-                "{index},{},{target},{value},{},{},{},{name},{},{},{},{lower},{median},{upper},{},{},{},{}",
+                "{index},{},{target},{value},{},\"{}\",\"{}\",{name},{},{},{},{lower},{median},{upper},{},{},{},{}",
                 cell.disk_count,
                 cell.increase,
                 cell.relaxer.name(),

@@ -9,6 +9,8 @@
 //! | S(f) | the slope of the mean spectrum passes 1.5 | the same |
 //! | f† | the interval of f† of the mean spectrum begins to hold 0, a spectrum without scale | between two cells |
 //!
+//! With few samples the interval of f† holds 0 sooner: that place is a lower bound.
+//!
 //! κ_1 R = 3.8317, the first zero of J_1: κ_fit of single samples is near 0 or from κ_1 on (the study, fig. 2).
 
 use serde::Serialize;
