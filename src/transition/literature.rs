@@ -118,8 +118,7 @@ pub(super) fn comparisons(
     // p̂_c is published for Hertzian disks and d_0 = 0.1.
     for one in series.iter().filter(|one| beta(&one.cell.law) == 3.0 && one.cell.increase == 0.1) {
         let of = one.name();
-        // f† holds 0 the sooner the fewer samples there are: a lower bound, nothing to compare.
-        for estimate in one.estimates.iter().filter(|it| it.method != Method::Crossover) {
+        for estimate in &one.estimates {
             let published = match estimate.method {
                 Method::Wavenumber => 3e8,
                 Method::PressureChange => 3e8,

@@ -7,9 +7,7 @@
 //! | G* | the mean passes 1 − 2^(−1/2) = 0.293, its value for S ∝ f^(−1.5) | linear in ln p̂ between cells, after falling neighbours are pooled |
 //! | θ* | the mean passes 0.303 π, likewise | the same |
 //! | S(f) | the slope of the mean spectrum passes 1.5 | the same |
-//! | f† | the interval of f† of the mean spectrum begins to hold 0, a spectrum without scale | between two cells |
-//!
-//! With few samples the interval of f† holds 0 sooner: that place is a lower bound.
+//! | f† | f† of the mean spectrum falls below 0.1: from f = 1 on a power law within 3 % | the same |
 //!
 //! κ_1 R = 3.8317, the first zero of J_1: κ_fit of single samples is near 0 or from κ_1 on (the study, fig. 2).
 
@@ -21,7 +19,7 @@ use crate::fit::ensemble::{
 use crate::study::CellSamples;
 use crate::transition::RESAMPLINGS;
 use crate::transition::series::{ANGLE, ANTICORRELATION, SeriesPoint};
-use crate::transition::spectra::{CellSpectrum, slope_of};
+use crate::transition::spectra::{crossover_of, slope_of};
 
 /// First zero of J_1.
 pub(crate) const FIRST_ZERO: f64 = 3.831_705_970_207_512;
@@ -34,6 +32,9 @@ pub(crate) const SCALE_FREE_ANGLE: f64 = 0.303_004 * std::f64::consts::PI;
 
 /// Its slope.
 pub(crate) const SCALE_FREE_SLOPE: f64 = 1.5;
+
+/// f† below which S ∼ f^(−1.5) from f = 1 on, within 0.1^1.5 = 3 %.
+const VANISHED: f64 = 0.1;
 
 /// How p̂_c is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -161,43 +162,26 @@ pub(super) fn estimates(points: &[SeriesPoint], samples: &[&CellSamples]) -> Vec
         .filter(|(_, samples)| !samples.powers.is_empty())
         .map(|(point, samples)| (point.reduced_pressure, samples.powers.as_slice()))
         .collect();
-    let spectrum = || {
+    let spectrum = |method, level: f64, of: fn(&[Vec<f64>], &[usize]) -> Option<f64>| {
         let sizes: Vec<usize> = with_powers.iter().map(|(_, powers)| powers.len()).collect();
         let at: Vec<f64> = with_powers.iter().map(|(at, _)| *at).collect();
-        let slopes = |groups: &[Vec<usize>]| -> Option<Vec<f64>> {
-            groups.iter().zip(&with_powers).map(|(chosen, (_, powers))| slope_of(powers, chosen)).collect()
+        let values = |groups: &[Vec<usize>]| -> Option<Vec<f64>> {
+            groups.iter().zip(&with_powers).map(|(chosen, (_, powers))| of(powers, chosen)).collect()
         };
-        let method = Method::Spectrum;
-        (at.len() > 1).then(|| MethodEstimate { method, pressure: by_level(&at, &sizes, SCALE_FREE_SLOPE, slopes) })
+        (at.len() > 1).then(|| MethodEstimate { method, pressure: by_level(&at, &sizes, level, values) })
     };
     [
         plastic(Method::Wavenumber, "wavenumber", &screened),
         plastic(Method::PressureChange, "pressure_change", &|_, change| change < 0.0),
         mean(Method::Anticorrelation, ANTICORRELATION, SCALE_FREE_ANTICORRELATION),
         mean(Method::Angle, ANGLE, SCALE_FREE_ANGLE),
-        spectrum(),
+        spectrum(Method::Spectrum, SCALE_FREE_SLOPE, slope_of),
+        // What falls below a level rises above its opposite.
+        spectrum(Method::Crossover, -VANISHED, |powers, chosen| Some(-crossover_of(powers, chosen)?)),
     ]
     .into_iter()
     .flatten()
     .collect()
-}
-
-/// Where the spectra lose their scale: between the last cell whose f† is above 0 and the next.
-pub(super) fn by_crossover(spectra: &[CellSpectrum]) -> Option<MethodEstimate> {
-    let seen: Vec<(f64, bool)> = spectra
-        .iter()
-        .filter_map(|it| {
-            let [low, _] = it.crossover_interval?.interval?;
-            Some((it.point.reduced_pressure, low > 0.0))
-        })
-        .collect();
-    let (first, last) = (seen.first()?, seen.last()?);
-    let pressure = match seen.iter().rposition(|(_, has_scale)| *has_scale) {
-        None => TransitionPressure::Below(first.0),
-        Some(place) if place + 1 == seen.len() => TransitionPressure::Above(last.0),
-        Some(place) => TransitionPressure::Between([seen[place].0, seen[place + 1].0]),
-    };
-    (seen.len() > 1).then_some(MethodEstimate { method: Method::Crossover, pressure })
 }
 
 /// Where half of the samples are plastic, (ln p̂, plastic or not) by cell.

@@ -6,7 +6,7 @@ use crate::fit::ensemble::{BootstrapInterval, bootstrap_all};
 use crate::study::{Cell, CellSamples, Merged, NumberStatistics, Target};
 use crate::transition::RESAMPLINGS;
 use crate::transition::lengths::{Lengths, matching};
-use crate::transition::pressure::{MethodEstimate, TransitionPressure, by_crossover, estimates};
+use crate::transition::pressure::{MethodEstimate, TransitionPressure, estimates};
 use crate::transition::spectra::{AngleDivergence, CellSpectrum};
 
 /// Cells that differ in the pressure alone, ascending in it.
@@ -105,8 +105,7 @@ impl Series {
         let samples: Vec<&CellSamples> = points.iter().map(|point| &merged.samples[point.cell]).collect();
         let spectra: Vec<CellSpectrum> =
             points.iter().zip(&samples).filter_map(|(point, samples)| CellSpectrum::of(point, samples)).collect();
-        let mut estimates = estimates(&points, &samples);
-        estimates.extend(by_crossover(&spectra));
+        let estimates = estimates(&points, &samples);
         let critical = estimates.iter().find_map(MethodEstimate::by_spectrum).and_then(TransitionPressure::best);
         let lengths: Vec<Lengths> =
             points.iter().zip(&samples).map(|(point, samples)| Lengths::of(point, samples)).collect();

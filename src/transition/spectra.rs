@@ -17,6 +17,9 @@ const SLOPE_WINDOW: [usize; 2] = [2, 24];
 /// The same of a crossover, which needs S(1).
 const CROSSOVER_WINDOW: [usize; 2] = [1, 24];
 
+/// A white spectrum has an f† as good as this.
+const LARGEST_CROSSOVER: f64 = 1e3;
+
 /// The mean spectrum of one cell.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CellSpectrum {
@@ -69,6 +72,16 @@ pub(super) fn slope_of(powers: &[Vec<f64>], chosen: &[usize]) -> Option<f64> {
     let window = window(SLOPE_WINDOW, powers)?;
     let rows: Vec<&[f64]> = chosen.iter().map(|&i| &powers[i][..window[1]]).collect();
     slope_of_mean(&rows, window).ok()?.least_squares.exponent()
+}
+
+/// f† of the mean spectrum of some of the samples: 0 of a power law, at most [`LARGEST_CROSSOVER`].
+pub(super) fn crossover_of(powers: &[Vec<f64>], chosen: &[usize]) -> Option<f64> {
+    let window = window(CROSSOVER_WINDOW, powers)?;
+    let rows: Vec<&[f64]> = chosen.iter().map(|&i| &powers[i][..window[1]]).collect();
+    match crossover_of_mean(&rows, window, &MeanCrossoverSettings::default()).ok()? {
+        MeanCrossover::Fitted { crossover, .. } => Some(crossover.min(LARGEST_CROSSOVER)),
+        MeanCrossover::NegativePowers => None,
+    }
 }
 
 impl CellSpectrum {

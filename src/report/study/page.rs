@@ -179,7 +179,7 @@ fn estimates(transition: &Transition) -> String {
             row("θ* at p̂_c by the slope (rad)", at.angle);
         }
     }
-    let text = "κ and Δp: where half of the samples have κ above κ₁/2, or Δp below zero. G*, θ*, slope: where the mean passes its value for S ∼ f^(−1.5). f†: where its interval begins to hold 0, with few samples too soon.";
+    let text = "κ and Δp: where half of the samples have κ above κ₁/2, or Δp below zero. G*, θ*, slope: where the mean passes its value for S ∼ f^(−1.5). f†: where it falls below 0.1, a power law from f = 1 on.";
     table("Transition pressure p̂_c", text, &["Series", "By", "p̂_c or value (interval)"], &rows)
 }
 
