@@ -133,8 +133,9 @@ impl Task {
 
     /// What it may take on one core \[s\]: c n^(3/2) p^(−1/4) (0.6 + 0.4 k) for n disks and k inflations, c = 1.4·10⁻⁵ s.
     ///
-    /// FIRE's steps grow as the square root of n and towards jamming. Measured on the recipes (the chapter on studies has the
-    /// table): within a factor of three from 1387 to 22184 disks, p from 0.5 to 4000, of Hertzian and Hookean disks.
+    /// FIRE's steps grow as the square root of n and towards jamming. A rough guide for jammed packings, by the medium study of
+    /// the chapter on the transition (1387 to 22184 disks, p from 0.5 to 4000); beside other work they took up to ten times as
+    /// long, and unjammed packings, for which p = 1 is taken, take a tenth and less.
     pub fn expected_seconds(&self) -> f64 {
         let mobile = mobile_count(self.disk_count, self.boundary());
         let pressure = match self.target {
