@@ -126,6 +126,7 @@ pub mod report;
 pub mod response;
 pub mod run;
 pub mod scene;
+pub mod side_by_side;
 #[cfg(feature = "linear")]
 pub mod sparse;
 pub mod study;

@@ -6,22 +6,36 @@
 /// A vector of D components.
 pub type Vector<const D: usize> = [f64; D];
 
+// Plain loops: a closure a component may stay a call inside the hot loop.
+
 /// `a + b`, component by component.
 #[inline(always)]
 pub fn sum<const D: usize>(a: Vector<D>, b: Vector<D>) -> Vector<D> {
-    std::array::from_fn(|d| a[d] + b[d])
+    let mut result = [0.0; D];
+    for d in 0..D {
+        result[d] = a[d] + b[d];
+    }
+    result
 }
 
 /// `a − b`, component by component.
 #[inline(always)]
 pub fn difference<const D: usize>(a: Vector<D>, b: Vector<D>) -> Vector<D> {
-    std::array::from_fn(|d| a[d] - b[d])
+    let mut result = [0.0; D];
+    for d in 0..D {
+        result[d] = a[d] - b[d];
+    }
+    result
 }
 
 /// `factor · a`.
 #[inline(always)]
 pub fn scaled<const D: usize>(factor: f64, a: Vector<D>) -> Vector<D> {
-    std::array::from_fn(|d| factor * a[d])
+    let mut result = [0.0; D];
+    for d in 0..D {
+        result[d] = factor * a[d];
+    }
+    result
 }
 
 /// `Σ a_d b_d`.

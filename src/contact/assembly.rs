@@ -6,9 +6,10 @@
 //! from the origin a packing lies. When the neighbour list is made anew, anchors take over what the displacements have gathered
 //! (without rounding: the remainder stays in the displacement).
 
-use crate::contact::forces::{self, Totals};
+use crate::contact::forces::{self, Across, Totals};
 use crate::contact::law::PairLaw;
-use crate::contact::neighbours::{Disks, PairList, build_pairs, spatial_order};
+use crate::contact::neighbours::{Disks, ListRoom, build_pairs, spatial_order};
+use crate::contact::pair_list::PairList;
 use crate::packing::{Domain, Packing, PackingError};
 use crate::vector::{Vector, difference, dot, extended_sum, sum, two_sum};
 
@@ -32,6 +33,8 @@ pub struct Assembly<const D: usize, L> {
     from_sites: Vec<[(f64, f64); D]>,
     radii: Vec<f64>,
     pairs: PairList<D>,
+    across: Across<D>,
+    list_room: ListRoom<D>,
     skin: f64,
     /// Displacements when the list was made.
     listed: Vec<Vector<D>>,
@@ -93,6 +96,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             rebuild_count: 0,
             from_sites: Vec::new(),
             pairs: PairList::default(),
+            across: Across::default(),
+            list_room: ListRoom::default(),
             radii,
             skin,
             order,
@@ -175,7 +180,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// Forces of the present displacements into [`Assembly::forces`].
     pub fn evaluate(&mut self) {
-        forces::forces(&self.law, &self.pairs, &self.displacements, &mut self.forces);
+        forces::forces(&self.law, &self.pairs, &self.displacements, &mut self.across, &mut self.forces);
         if L::ON_SITE {
             let _ = self.add_on_site_forces();
         }
@@ -183,7 +188,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// Forces as by [`Assembly::evaluate`], with energy, virial and contact count.
     pub fn evaluate_totals(&mut self) -> Totals<D> {
-        let mut totals = forces::forces_and_totals(&self.law, &self.pairs, &self.displacements, &mut self.forces);
+        let mut totals =
+            forces::forces_and_totals(&self.law, &self.pairs, &self.displacements, &mut self.across, &mut self.forces);
         if L::ON_SITE {
             totals.on_site_energy = self.add_on_site_forces();
             totals.energy += totals.on_site_energy;
@@ -301,13 +307,15 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             mobile_count: self.mobile_count,
         };
         let law = self.law;
-        build_pairs(&disks, self.skin, |a, b| law.coefficient(a, b), &mut self.pairs).map_err(|error| match error {
-            PackingError::CoincidentCentres { first, second } => {
-                let (a, b) = (self.order[first] as usize, self.order[second] as usize);
-                PackingError::CoincidentCentres { first: a.min(b), second: a.max(b) }
-            }
-            other => other,
-        })?;
+        build_pairs(&disks, self.skin, |a, b| law.coefficient(a, b), &mut self.list_room, &mut self.pairs).map_err(
+            |error| match error {
+                PackingError::CoincidentCentres { first, second } => {
+                    let (a, b) = (self.order[first] as usize, self.order[second] as usize);
+                    PackingError::CoincidentCentres { first: a.min(b), second: a.max(b) }
+                }
+                other => other,
+            },
+        )?;
         self.listed.clone_from(&self.displacements);
         self.moved = 0.0;
         self.rebuild_count += 1;

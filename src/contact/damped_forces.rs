@@ -7,9 +7,8 @@
 //! Blocks, columns and order of sums as in [`super::forces`].
 
 use crate::contact::damping::DampingLaw;
-use crate::contact::forces::BLOCK;
 use crate::contact::law::PairLaw;
-use crate::contact::neighbours::PairList;
+use crate::contact::pair_list::{BLOCK, PairList};
 use crate::vector::{Vector, difference, scaled, sum};
 
 /// Lanes of the sum of powers; fixed, so the bits do not depend on the machine.
@@ -182,7 +181,7 @@ mod tests {
         let wave = |i: usize| [(7.0 * i as f64).sin(), (11.0 * i as f64).cos()];
         let velocities: Vec<Vector<2>> = (0..assembly.len()).map(wave).collect();
         let mut apart = vec![[0.0; 2]; assembly.len()];
-        forces::forces(&law, pairs, at, &mut apart);
+        forces::forces(&law, pairs, at, &mut forces::Across::default(), &mut apart);
         let power = forces::add_damping(damping, pairs, &coefficients, at, &velocities, &mut apart);
         let mut together = vec![[1.0; 2]; assembly.len()];
         let found = damped_forces((&law, damping), pairs, &coefficients, at, &velocities, &mut together);

@@ -14,11 +14,9 @@
 
 use crate::contact::damping::DampingLaw;
 use crate::contact::law::PairLaw;
-use crate::contact::neighbours::PairList;
+use crate::contact::pair_list::{BLOCK, Block, LONGEST_ROW, PairList, Tile};
+use crate::side_by_side;
 use crate::vector::{Vector, difference, scaled, sum};
-
-/// Pairs handled together; the columns of a block stay in the nearest cache.
-pub const BLOCK: usize = 128;
 
 /// What the loop sums beside the forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,6 +37,18 @@ impl<const D: usize> Totals<D> {
     const ZERO: Self =
         Totals { energy: 0.0, on_site_energy: 0.0, virial: [[0.0; D]; D], contact_count: 0, force_sum: 0.0 };
 
+    fn add(&mut self, part: &Self) {
+        self.energy += part.energy;
+        self.on_site_energy += part.on_site_energy;
+        self.force_sum += part.force_sum;
+        self.contact_count += part.contact_count;
+        for (row, of_part) in self.virial.iter_mut().zip(&part.virial) {
+            for (total, more) in row.iter_mut().zip(of_part) {
+                *total += more;
+            }
+        }
+    }
+
     /// Mean contact force, 0 where there is no contact \[force\].
     pub fn mean_contact_force(&self) -> f64 {
         if self.contact_count == 0 { 0.0 } else { self.force_sum / self.contact_count as f64 }
@@ -56,7 +66,7 @@ impl<const D: usize> Totals<D> {
 }
 
 /// One block of pairs, column by column.
-struct Block<const D: usize> {
+struct Columns<const D: usize> {
     moved: [Vector<D>; BLOCK],
     apart: [Vector<D>; BLOCK],
     overlap: [f64; BLOCK],
@@ -65,15 +75,29 @@ struct Block<const D: usize> {
     factor: [f64; BLOCK],
 }
 
-impl<const D: usize> Block<D> {
+impl<const D: usize> Columns<D> {
     #[inline(always)]
     fn new() -> Self {
-        Block {
+        Columns {
             moved: [[0.0; D]; BLOCK],
             apart: [[0.0; D]; BLOCK],
             overlap: [0.0; BLOCK],
             force: [0.0; BLOCK],
             factor: [0.0; BLOCK],
+        }
+    }
+}
+
+/// Forces of pairs across the border of a tile, for each tile: those on the first disks. Room that is kept between two
+/// evaluations; what it holds before one does not matter.
+#[derive(Debug, Clone, Default)]
+pub struct Across<const D: usize>(Vec<Vec<Vector<D>>>);
+
+impl<const D: usize> Across<D> {
+    fn fit(&mut self, pairs: &PairList<D>) {
+        self.0.resize(pairs.tiles.len(), Vec::new());
+        for (room, tile) in self.0.iter_mut().zip(&pairs.tiles) {
+            room.resize(tile.border_pairs.len(), [0.0; D]);
         }
     }
 }
@@ -89,10 +113,10 @@ pub fn forces<const D: usize, L: PairLaw>(
     law: &L,
     pairs: &PairList<D>,
     displacements: &[Vector<D>],
+    across: &mut Across<D>,
     forces: &mut [Vector<D>],
 ) {
-    let mut totals = Totals::ZERO;
-    pulp::Arch::new().dispatch(Sweep::<D, L, false> { law, pairs, displacements, forces, totals: &mut totals });
+    let _ = all_tiles::<D, L, false>(law, pairs, displacements, across, forces);
 }
 
 /// Forces as by [`forces`], with energy, virial, contact count and mean force in the same pass.
@@ -100,19 +124,67 @@ pub fn forces_and_totals<const D: usize, L: PairLaw>(
     law: &L,
     pairs: &PairList<D>,
     displacements: &[Vector<D>],
+    across: &mut Across<D>,
     forces: &mut [Vector<D>],
 ) -> Totals<D> {
+    all_tiles::<D, L, true>(law, pairs, displacements, across, forces)
+}
+
+fn all_tiles<const D: usize, L: PairLaw, const TOTALS: bool>(
+    law: &L,
+    pairs: &PairList<D>,
+    displacements: &[Vector<D>],
+    across: &mut Across<D>,
+    forces: &mut [Vector<D>],
+) -> Totals<D> {
+    if let [tile] = pairs.tiles.as_slice() {
+        let mut totals = Totals::ZERO;
+        let task = Task { law, pairs, displacements, tile, offset: 0 };
+        pulp::Arch::new().dispatch(Sweep::<D, L, TOTALS> { task, forces, across: &mut [], totals: &mut totals });
+        return totals;
+    }
+    across.fit(pairs);
+    let room = forces.chunks_mut(pairs.tile_size).zip(&mut across.0);
+    let parts = side_by_side::each(pairs.tiles.iter().zip(room).enumerate(), |(place, (tile, (forces, across)))| {
+        let mut totals = Totals::ZERO;
+        let offset = (place * pairs.tile_size) as u32;
+        let task = Task { law, pairs, displacements, tile, offset };
+        pulp::Arch::new().dispatch(Sweep::<D, L, TOTALS> { task, forces, across, totals: &mut totals });
+        totals
+    });
+    let tiles = pairs.tiles.iter().zip(forces.chunks_mut(pairs.tile_size)).enumerate();
+    side_by_side::each(tiles, |(place, (tile, forces))| {
+        for &(disk, from, pair) in &tile.incoming {
+            let force = &mut forces[disk as usize - place * pairs.tile_size];
+            *force = difference(*force, across.0[from as usize][pair as usize]);
+        }
+    });
     let mut totals = Totals::ZERO;
-    pulp::Arch::new().dispatch(Sweep::<D, L, true> { law, pairs, displacements, forces, totals: &mut totals });
+    if TOTALS {
+        for part in &parts {
+            totals.add(part);
+        }
+    }
     totals
+}
+
+/// What the loop over a tile reads.
+struct Task<'a, const D: usize, L> {
+    law: &'a L,
+    pairs: &'a PairList<D>,
+    displacements: &'a [Vector<D>],
+    tile: &'a Tile,
+    /// First disk of the tile.
+    offset: u32,
 }
 
 /// The loop as a job that is compiled for each vector width the machine may have, and started for the widest it has.
 struct Sweep<'a, const D: usize, L, const TOTALS: bool> {
-    law: &'a L,
-    pairs: &'a PairList<D>,
-    displacements: &'a [Vector<D>],
+    task: Task<'a, D, L>,
+    /// Forces on the disks of the tile.
     forces: &'a mut [Vector<D>],
+    /// Forces of the pairs across its border.
+    across: &'a mut [Vector<D>],
     totals: &'a mut Totals<D>,
 }
 
@@ -121,81 +193,221 @@ impl<const D: usize, L: PairLaw, const TOTALS: bool> pulp::WithSimd for Sweep<'_
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        sweep::<D, L, TOTALS>(self.law, self.pairs, self.displacements, self.forces, self.totals);
+        sweep::<D, L, TOTALS>(&self.task, self.forces, self.across, self.totals);
     }
 }
 
 #[inline(always)]
 fn sweep<const D: usize, L: PairLaw, const TOTALS: bool>(
-    law: &L,
-    pairs: &PairList<D>,
-    displacements: &[Vector<D>],
+    task: &Task<'_, D, L>,
     forces: &mut [Vector<D>],
+    across: &mut [Vector<D>],
     totals: &mut Totals<D>,
 ) {
     forces.fill([0.0; D]);
-    let mut block = Block::<D>::new();
-    let mut start = 0;
-    while start < pairs.len() {
-        let count = BLOCK.min(pairs.len() - start);
-        let range = start..start + count;
-        let (first, second) = (&pairs.first[range.clone()], &pairs.second[range.clone()]);
-        gather(&mut block, first, second, &pairs.separation[range.clone()], displacements);
-        let (distance, overlap) = (&pairs.distance[range.clone()], &pairs.overlap[range.clone()]);
-        evaluate(law, &mut block, distance, overlap, &pairs.coefficient[range]);
-        if TOTALS {
-            tally(law, &block, count, totals);
-        }
-        scatter(&block, first, second, forces);
-        start += count;
+    let mut columns = Columns::<D>::new();
+    let blocks = &task.pairs.blocks;
+    for block in &blocks[task.tile.inner.clone()] {
+        let seconds = evaluate_block::<D, L, TOTALS>(task, block, &mut columns, totals);
+        scatter(&columns, block, (rows_of(task.pairs, block), seconds, task.offset), forces);
     }
+    for block in &blocks[task.tile.border.clone()] {
+        let _ = evaluate_block::<D, L, TOTALS>(task, block, &mut columns, totals);
+        let first = &task.pairs.first[block.pairs..block.pairs + block.pair_count];
+        let room = &mut across[block.pairs - task.tile.border_pairs.start..];
+        scatter_to_border(&columns, (first, task.offset), room, forces);
+    }
+}
+
+/// Fills the columns of a block; its second disks are returned.
+#[inline(always)]
+fn evaluate_block<'a, const D: usize, L: PairLaw, const TOTALS: bool>(
+    task: &Task<'a, D, L>,
+    block: &Block,
+    columns: &mut Columns<D>,
+    totals: &mut Totals<D>,
+) -> &'a [u32] {
+    let (law, pairs) = (task.law, task.pairs);
+    let range = block.pairs..block.pairs + block.pair_count;
+    let second = &pairs.second[range.clone()];
+    gather(columns, block, rows_of(pairs, block), second, &pairs.separation[range.clone()], task.displacements);
+    let whole = block.pairs..block.pairs + BLOCK;
+    let anchors = (pairs.distance.get(whole.clone()), pairs.overlap.get(whole.clone()), pairs.coefficient.get(whole));
+    if let (Some(distance), Some(overlap), Some(coefficient)) = anchors {
+        // A block that is not full goes on into the next one; what comes of that is not used.
+        evaluate(law, columns, distance, overlap, coefficient);
+    } else {
+        let padded = |column: &[f64]| {
+            let mut whole = [1.0; BLOCK];
+            whole[..block.pair_count].copy_from_slice(&column[range.clone()]);
+            whole
+        };
+        let (distance, overlap) = (padded(&pairs.distance), padded(&pairs.overlap));
+        evaluate(law, columns, &distance, &overlap, &padded(&pairs.coefficient));
+    }
+    if TOTALS {
+        tally(law, columns, block.pair_count, totals);
+    }
+    second
+}
+
+/// First disks of the rows of a block.
+#[inline(always)]
+fn rows_of<'a, const D: usize>(pairs: &'a PairList<D>, block: &Block) -> &'a [u32] {
+    let count: usize = block.row_counts.iter().map(|&count| usize::from(count)).sum();
+    &pairs.rows[block.rows..block.rows + count]
+}
+
+/// Calls a function of the length of rows, as a constant, for the rows of each length: `$rows` and `$pairs` are where they are
+/// in their block.
+macro_rules! for_each_length {
+    ($block:expr, |$rows:ident, $pairs:ident| $call:ident($($argument:expr),*)) => {{
+        let (mut row, mut pair) = (0, 0);
+        for (index, &count) in $block.row_counts.iter().enumerate() {
+            let (count, length) = (usize::from(count), index + 1);
+            let ($rows, $pairs) = (row..row + count, pair..pair + count * length);
+            (row, pair) = ($rows.end, $pairs.end);
+            match length {
+                _ if count == 0 => {}
+                1 => $call::<D, 1>($($argument),*),
+                2 => $call::<D, 2>($($argument),*),
+                3 => $call::<D, 3>($($argument),*),
+                4 => $call::<D, 4>($($argument),*),
+                5 => $call::<D, 5>($($argument),*),
+                6 => $call::<D, 6>($($argument),*),
+                7 => $call::<D, 7>($($argument),*),
+                _ => $call::<D, LONGEST_ROW>($($argument),*),
+            }
+        }
+    }};
 }
 
 #[inline(always)]
 fn gather<const D: usize>(
-    block: &mut Block<D>,
-    first: &[u32],
+    columns: &mut Columns<D>,
+    block: &Block,
+    rows: &[u32],
     second: &[u32],
     separation: &[Vector<D>],
     displacements: &[Vector<D>],
 ) {
-    for (k, ((&i, &j), &anchor)) in first.iter().zip(second).zip(separation).enumerate() {
-        let (a, b) = (displacements[i as usize], displacements[j as usize]);
-        let moved = difference(a, b);
-        block.moved[k] = moved;
-        block.apart[k] = sum(anchor, moved);
+    for_each_length!(block, |of_rows, of_pairs| gather_rows(
+        (&mut columns.moved[of_pairs.clone()], &mut columns.apart[of_pairs.clone()]),
+        &rows[of_rows],
+        &second[of_pairs.clone()],
+        &separation[of_pairs.clone()],
+        displacements
+    ));
+}
+
+#[inline(always)]
+fn gather_rows<const D: usize, const LENGTH: usize>(
+    (moved, apart): (&mut [Vector<D>], &mut [Vector<D>]),
+    rows: &[u32],
+    second: &[u32],
+    separation: &[Vector<D>],
+    displacements: &[Vector<D>],
+) {
+    // Columns of one length and a plain index: of chained iterators some stay calls.
+    let count = rows.len();
+    let (moved, apart) = (&mut moved.as_chunks_mut::<LENGTH>().0[..count], &mut apart.as_chunks_mut().0[..count]);
+    let (second, separation) = (&second.as_chunks::<LENGTH>().0[..count], &separation.as_chunks().0[..count]);
+    for row in 0..count {
+        let a = displacements[rows[row] as usize];
+        let (moved, apart): (&mut [_; LENGTH], &mut [_; LENGTH]) = (&mut moved[row], &mut apart[row]);
+        let (second, separation): (&[_; LENGTH], &[_; LENGTH]) = (&second[row], &separation[row]);
+        for k in 0..LENGTH {
+            moved[k] = difference(a, displacements[second[k] as usize]);
+            apart[k] = sum(separation[k], moved[k]);
+        }
     }
 }
 
 #[inline(always)]
 fn evaluate<const D: usize, L: PairLaw>(
     law: &L,
-    block: &mut Block<D>,
+    columns: &mut Columns<D>,
     anchor_distance: &[f64],
     anchor_overlap: &[f64],
     coefficient: &[f64],
 ) {
-    let columns = anchor_distance.iter().zip(anchor_overlap).zip(coefficient);
-    for (k, ((&anchor_distance, &anchor_overlap), &coefficient)) in columns.enumerate() {
+    // As many turns as a column has places, known beforehand: whole vectors, and no check.
+    let length = "columns as long as a block";
+    let anchor_distance: &[f64; BLOCK] = anchor_distance.try_into().expect(length);
+    let anchor_overlap: &[f64; BLOCK] = anchor_overlap.try_into().expect(length);
+    let coefficient: &[f64; BLOCK] = coefficient.try_into().expect(length);
+    let Columns { moved, apart, overlap: overlaps, force: forces, factor: factors } = columns;
+    for k in 0..BLOCK {
         let mut squared = 0.0;
         let mut change = 0.0;
         for d in 0..D {
-            let (apart, moved) = (block.apart[k][d], block.moved[k][d]);
+            let (apart, moved) = (apart[k][d], moved[k][d]);
             squared += apart * apart;
             // 2 D + w = (D + w) + D = 2 apart − moved.
             change += moved * (2.0 * apart - moved);
         }
         let distance = squared.sqrt();
-        let both = distance + anchor_distance;
+        let both = distance + anchor_distance[k];
         // One division for change / both and 1 / distance: divisions and roots are what the loop waits for.
         let inverse = 1.0 / (distance * both);
-        let gap = anchor_overlap - change * (distance * inverse);
+        let gap = anchor_overlap[k] - change * (distance * inverse);
         // Written so that NaN stays NaN.
         let overlap = if gap < 0.0 { 0.0 } else { gap };
-        let force = law.force(coefficient, overlap);
-        block.overlap[k] = overlap;
-        block.force[k] = force;
-        block.factor[k] = force * (both * inverse);
+        let force = law.force(coefficient[k], overlap);
+        overlaps[k] = overlap;
+        forces[k] = force;
+        factors[k] = force * (both * inverse);
+    }
+}
+
+#[inline(always)]
+fn scatter<const D: usize>(
+    columns: &Columns<D>,
+    block: &Block,
+    (rows, second, offset): (&[u32], &[u32], u32),
+    forces: &mut [Vector<D>],
+) {
+    for_each_length!(block, |of_rows, of_pairs| scatter_rows(
+        (&columns.factor[of_pairs.clone()], &columns.apart[of_pairs.clone()]),
+        (&rows[of_rows], &second[of_pairs.clone()], offset),
+        forces
+    ));
+}
+
+#[inline(always)]
+fn scatter_rows<const D: usize, const LENGTH: usize>(
+    (factor, apart): (&[f64], &[Vector<D>]),
+    (rows, second, offset): (&[u32], &[u32], u32),
+    forces: &mut [Vector<D>],
+) {
+    let count = rows.len();
+    let (factor, apart) = (&factor.as_chunks::<LENGTH>().0[..count], &apart.as_chunks::<LENGTH>().0[..count]);
+    let second = &second.as_chunks::<LENGTH>().0[..count];
+    for row in 0..count {
+        let first = (rows[row] - offset) as usize;
+        let mut total = forces[first];
+        for k in 0..LENGTH {
+            let force = scaled(factor[row][k], apart[row][k]);
+            total = sum(total, force);
+            let other = &mut forces[(second[row][k] - offset) as usize];
+            *other = difference(*other, force);
+        }
+        forces[first] = total;
+    }
+}
+
+/// Few pairs: no rows of fixed length here.
+#[inline(always)]
+fn scatter_to_border<const D: usize>(
+    columns: &Columns<D>,
+    (first, offset): (&[u32], u32),
+    across: &mut [Vector<D>],
+    forces: &mut [Vector<D>],
+) {
+    for (k, (&i, across)) in first.iter().zip(across).enumerate() {
+        *across = scaled(columns.factor[k], columns.apart[k]);
+        let total = &mut forces[(i - offset) as usize];
+        *total = sum(*total, *across);
     }
 }
 
@@ -222,36 +434,20 @@ pub fn geometry<const D: usize>(
 }
 
 #[inline(always)]
-fn tally<const D: usize, L: PairLaw>(law: &L, block: &Block<D>, count: usize, totals: &mut Totals<D>) {
+fn tally<const D: usize, L: PairLaw>(law: &L, columns: &Columns<D>, count: usize, totals: &mut Totals<D>) {
     let mut part = Totals::<D>::ZERO;
     for k in 0..count {
-        part.energy += law.energy(block.force[k], block.overlap[k]);
-        part.force_sum += block.force[k];
-        part.contact_count += usize::from(block.overlap[k] > 0.0);
+        part.energy += law.energy(columns.force[k], columns.overlap[k]);
+        part.force_sum += columns.force[k];
+        part.contact_count += usize::from(columns.overlap[k] > 0.0);
         for a in 0..D {
             for b in 0..=a {
-                part.virial[a][b] += block.factor[k] * (block.apart[k][a] * block.apart[k][b]);
+                part.virial[a][b] += columns.factor[k] * (columns.apart[k][a] * columns.apart[k][b]);
+                part.virial[b][a] = part.virial[a][b];
             }
         }
     }
-    totals.energy += part.energy;
-    totals.force_sum += part.force_sum;
-    totals.contact_count += part.contact_count;
-    for a in 0..D {
-        for b in 0..=a {
-            totals.virial[a][b] += part.virial[a][b];
-            totals.virial[b][a] = totals.virial[a][b];
-        }
-    }
-}
-
-#[inline(always)]
-fn scatter<const D: usize>(block: &Block<D>, first: &[u32], second: &[u32], forces: &mut [Vector<D>]) {
-    for (k, (&i, &j)) in first.iter().zip(second).enumerate() {
-        let force = scaled(block.factor[k], block.apart[k]);
-        forces[i as usize] = sum(forces[i as usize], force);
-        forces[j as usize] = difference(forces[j as usize], force);
-    }
+    totals.add(&part);
 }
 
 /// Adds the damping forces −c_ij v_n of all contacts to `forces`; the power they take, Σ c_ij v_n², is returned.
@@ -288,7 +484,7 @@ pub fn add_damping<const D: usize, C: DampingLaw>(
     dissipation
 }
 
-/// Sums over the contacts of each disk: of the stiffness, and of a second quantity of the contact.
+/// Sums over the contacts of each disk: of the stiffness, or of what `weight` makes of (overlap, stiffness).
 ///
 /// The largest row sum bounds the largest eigenvalue of the stiffness matrix from above (Gershgorin): with masses 1,
 /// `λ ≤ max_i Σ_j 2 F'(δ_ij)`, the prestress part being negative. A contact with a held disk counts once.
@@ -304,18 +500,47 @@ pub fn stiffness_rows<const D: usize, L: PairLaw>(
     row: &mut [f64],
 ) {
     row.fill(0.0);
-    for k in 0..pairs.len() {
-        let (i, j) = (pairs.first[k] as usize, pairs.second[k] as usize);
-        let (_, _, overlap) = geometry(pairs, k, displacements);
-        if overlap > 0.0 {
-            let stiffness = law.stiffness(law.force(pairs.coefficient[k], overlap), overlap);
-            let value = weight(k, overlap, stiffness);
-            if j < mobile_count {
-                row[i] += 2.0 * value;
-                row[j] += 2.0 * value;
-            } else {
-                row[i] += value;
+    let stiffness = &mut [0.0; BLOCK];
+    let mut columns = Columns::<D>::new();
+    for tile in &pairs.tiles {
+        let task = Task { law, pairs, displacements, tile, offset: 0 };
+        for block in &pairs.blocks[tile.inner.start..tile.border.end] {
+            let (task, columns) = (&task, &mut columns);
+            pulp::Arch::new().dispatch(Stiffnesses { task, block, columns, stiffness });
+            for (k, &stiffness) in stiffness[..block.pair_count].iter().enumerate() {
+                if columns.overlap[k] > 0.0 {
+                    let pair = block.pairs + k;
+                    let (i, j) = (pairs.first[pair] as usize, pairs.second[pair] as usize);
+                    let value = weight(pair, columns.overlap[k], stiffness);
+                    if j < mobile_count {
+                        row[i] += 2.0 * value;
+                        row[j] += 2.0 * value;
+                    } else {
+                        row[i] += value;
+                    }
+                }
             }
+        }
+    }
+}
+
+/// The columns of a block and the stiffness of its pairs, of any value where they do not touch.
+struct Stiffnesses<'a, const D: usize, L> {
+    task: &'a Task<'a, D, L>,
+    block: &'a Block,
+    columns: &'a mut Columns<D>,
+    stiffness: &'a mut [f64; BLOCK],
+}
+
+impl<const D: usize, L: PairLaw> pulp::WithSimd for Stiffnesses<'_, D, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        let mut none = Totals::ZERO;
+        let _ = evaluate_block::<D, L, false>(self.task, self.block, self.columns, &mut none);
+        for k in 0..BLOCK {
+            self.stiffness[k] = self.task.law.stiffness(self.columns.force[k], self.columns.overlap[k]);
         }
     }
 }

@@ -12,6 +12,7 @@ pub mod law;
 pub mod neighbours;
 pub mod network;
 pub mod on_site;
+pub mod pair_list;
 
 pub use assembly::Assembly;
 #[cfg(feature = "linear")]

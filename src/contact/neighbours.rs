@@ -4,46 +4,9 @@
 //! disk has moved by half the skin. Each pair carries its separation at the anchors, so the box and its images are
 //! looked at only while the list is built.
 
+use crate::contact::pair_list::{Pair, PairList};
 use crate::packing::{Domain, PackingError};
 use crate::vector::{Vector, difference, dot, extended_norm, sum, two_sum};
-
-/// Pairs that may touch, as parallel columns.
-#[derive(Debug, Clone, Default)]
-pub struct PairList<const D: usize> {
-    /// First disk of each pair.
-    pub first: Vec<u32>,
-    /// Second disk of each pair.
-    pub second: Vec<u32>,
-    /// From the anchor of the second to that of the first along the nearest image, D \[length\].
-    pub separation: Vec<Vector<D>>,
-    /// Distance of the anchors, |D| \[length\].
-    pub distance: Vec<f64>,
-    /// Overlap at the anchors, R_i + R_j − |D|, rounded once only; negative for a pair apart \[length\].
-    pub overlap: Vec<f64>,
-    /// Coefficient of the contact law for this pair.
-    pub coefficient: Vec<f64>,
-}
-
-impl<const D: usize> PairList<D> {
-    /// Number of pairs.
-    pub fn len(&self) -> usize {
-        self.first.len()
-    }
-
-    /// Whether no pair may touch.
-    pub fn is_empty(&self) -> bool {
-        self.first.is_empty()
-    }
-
-    fn clear(&mut self) {
-        self.first.clear();
-        self.second.clear();
-        self.separation.clear();
-        self.distance.clear();
-        self.overlap.clear();
-        self.coefficient.clear();
-    }
-}
 
 /// The disks as the list builder sees them: mobile ones first, then the held ones.
 pub struct Disks<'a, const D: usize> {
@@ -60,21 +23,25 @@ pub struct Disks<'a, const D: usize> {
 }
 
 /// Cells no smaller than the range, and the disks in each, in ascending order.
-struct CellGrid<const D: usize> {
-    counts: [usize; D],
+#[derive(Debug, Clone, Default)]
+struct CellGrid {
+    /// Cells along each axis.
+    counts: Vec<usize>,
     cell_of: Vec<u32>,
     starts: Vec<u32>,
     members: Vec<u32>,
 }
 
 /// A run of cells along the first axis next to a cell, and the shift that brings its disks next to those of the cell.
+#[derive(Debug, Clone)]
 struct Run<const D: usize> {
     cells: std::ops::Range<usize>,
     shift: Vector<D>,
 }
 
-impl<const D: usize> CellGrid<D> {
-    fn new(domain: &Domain<D>, points: &[Vector<D>], range: f64) -> Self {
+impl CellGrid {
+    /// Sorts the points into cells; whatever the grid held is overwritten, its room used again.
+    fn fill<const D: usize>(&mut self, domain: &Domain<D>, points: &[Vector<D>], range: f64) {
         let (corner, lengths) = match domain {
             Domain::Periodic { corner, lengths } => (*corner, *lengths),
             Domain::Open => bounding_box(points),
@@ -84,61 +51,64 @@ impl<const D: usize> CellGrid<D> {
         let counts: [usize; D] = std::array::from_fn(|d| (lengths[d] / range).floor().clamp(1.0, 4.0 * most) as usize);
         let cell_count: usize = counts.iter().product();
         let scale: Vector<D> = std::array::from_fn(|d| counts[d] as f64 / lengths[d]);
-        let cell_of: Vec<u32> = points
-            .iter()
-            .map(|point| {
-                let mut cell = 0;
-                for d in (0..D).rev() {
-                    cell =
-                        cell * counts[d] + (((point[d] - corner[d]) * scale[d]).max(0.0) as usize).min(counts[d] - 1);
-                }
-                cell as u32
-            })
-            .collect();
-        let mut starts = vec![0u32; cell_count + 1];
-        for &cell in &cell_of {
-            starts[cell as usize + 1] += 1;
+        self.counts.clear();
+        self.counts.extend_from_slice(&counts);
+        self.cell_of.clear();
+        self.cell_of.extend(points.iter().map(|point| {
+            let mut cell = 0;
+            for d in (0..D).rev() {
+                cell = cell * counts[d] + (((point[d] - corner[d]) * scale[d]).max(0.0) as usize).min(counts[d] - 1);
+            }
+            cell as u32
+        }));
+        // Counted one cell further on, so that filling a cell moves its start to where it belongs.
+        self.starts.clear();
+        self.starts.resize(cell_count + 2, 0);
+        for &cell in &self.cell_of {
+            self.starts[cell as usize + 2] += 1;
         }
-        for cell in 0..cell_count {
-            starts[cell + 1] += starts[cell];
+        for cell in 0..=cell_count {
+            self.starts[cell + 1] += self.starts[cell];
         }
-        let mut next = starts.clone();
-        let mut members = vec![0u32; points.len()];
-        for (disk, &cell) in cell_of.iter().enumerate() {
-            members[next[cell as usize] as usize] = disk as u32;
-            next[cell as usize] += 1;
+        self.members.clear();
+        self.members.resize(points.len(), 0);
+        for (disk, &cell) in self.cell_of.iter().enumerate() {
+            let next = &mut self.starts[cell as usize + 1];
+            self.members[*next as usize] = disk as u32;
+            *next += 1;
         }
-        CellGrid { counts, cell_of, starts, members }
     }
 
     /// The cell and its neighbours as runs along the first axis, each cell once with each shift that can matter.
-    fn neighbourhood(&self, cell: usize, lengths: Option<Vector<D>>, runs: &mut Vec<Run<D>>) {
-        let mut index = [0usize; D];
-        let mut rest = cell;
+    fn neighbourhood<const D: usize>(&self, cell: usize, lengths: Option<Vector<D>>, runs: &mut Vec<Run<D>>) {
+        // Along each axis the cell before, the cell and the cell after: where they begin, and their shift.
+        let mut sides = [[None; 3]; D];
+        let (mut rest, mut stride) = (cell, 1);
         for d in 0..D {
-            index[d] = rest % self.counts[d];
-            rest /= self.counts[d];
+            let count = self.counts[d];
+            let index = rest % count;
+            rest /= count;
+            let wrapped = |to: usize, shift: f64| lengths.map(|lengths| (stride * to, shift * lengths[d]));
+            sides[d] = [
+                if index > 0 { Some((stride * (index - 1), 0.0)) } else { wrapped(count - 1, -1.0) },
+                Some((stride * index, 0.0)),
+                if index + 1 < count { Some((stride * (index + 1), 0.0)) } else { wrapped(0, 1.0) },
+            ];
+            stride *= count;
         }
         runs.clear();
         for code in 0..3usize.pow(D as u32) {
             let mut digits = code;
-            let mut neighbour = 0;
-            let mut stride = 1;
-            let mut shift = [0.0; D];
-            let mut inside = true;
+            let (mut neighbour, mut shift, mut inside) = (0, [0.0; D], true);
             for d in 0..D {
-                let step = digits % 3; // 0, 1, 2 for −1, 0, +1
-                digits /= 3;
-                let count = self.counts[d];
-                let shifted = index[d] + step;
-                let wraps = shifted == 0 || shifted > count;
-                match lengths {
-                    Some(lengths) if wraps => shift[d] = if shifted == 0 { -lengths[d] } else { lengths[d] },
-                    None if wraps => inside = false,
-                    _ => {}
+                match sides[d][digits % 3] {
+                    Some((start, way)) => {
+                        neighbour += start;
+                        shift[d] = way;
+                    }
+                    None => inside = false,
                 }
-                neighbour += stride * ((shifted + count - 1) % count);
-                stride *= count;
+                digits /= 3;
             }
             if !inside {
                 continue;
@@ -149,6 +119,16 @@ impl<const D: usize> CellGrid<D> {
             }
         }
     }
+}
+
+/// Room for making a list, kept between two: only the first one asks for memory.
+#[derive(Debug, Clone, Default)]
+pub struct ListRoom<const D: usize> {
+    grid: CellGrid,
+    points: Vec<Vector<D>>,
+    /// Centres and radii in the order of the cells, so that the disks of a run lie side by side.
+    sorted: Vec<(Vector<D>, f64)>,
+    runs: Vec<Run<D>>,
 }
 
 fn bounding_box<const D: usize>(points: &[Vector<D>]) -> (Vector<D>, Vector<D>) {
@@ -172,7 +152,8 @@ pub fn spatial_order<const D: usize>(
     held: &[bool],
 ) -> Vec<u32> {
     let range = 2.0 * radii.iter().copied().fold(0.0, f64::max);
-    let grid = CellGrid::new(domain, points, range);
+    let mut grid = CellGrid::default();
+    grid.fill(domain, points, range);
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
     order.sort_by_key(|&disk| (held[disk as usize], grid.cell_of[disk as usize]));
     order
@@ -189,6 +170,7 @@ pub fn build_pairs<const D: usize>(
     disks: &Disks<'_, D>,
     skin: f64,
     coefficient: impl Fn(f64, f64) -> f64,
+    room: &mut ListRoom<D>,
     pairs: &mut PairList<D>,
 ) -> Result<(), PackingError> {
     let largest = disks.radii.iter().copied().fold(0.0, f64::max);
@@ -199,30 +181,29 @@ pub fn build_pairs<const D: usize>(
             return Err(PackingError::BoxTooSmall { axis, length: lengths[axis], range: 2.0 * largest });
         }
     }
+    let ListRoom { grid, points, sorted, runs } = room;
+    points.clear();
     let centres = disks.anchors.iter().zip(disks.displacements);
-    let points: Vec<Vector<D>> = centres.map(|(&a, &u)| disks.domain.wrapped(sum(a, u))).collect();
-    let grid = CellGrid::new(disks.domain, &points, 2.0 * largest + skin);
-    // In the order of the cells, so that the disks of a run lie side by side.
-    let sorted: Vec<(Vector<D>, f64)> =
-        grid.members.iter().map(|&disk| (points[disk as usize], disks.radii[disk as usize])).collect();
-    pairs.clear();
-    let mut runs = Vec::new();
+    points.extend(centres.map(|(&a, &u)| disks.domain.wrapped(sum(a, u))));
+    grid.fill(disks.domain, points, 2.0 * largest + skin);
+    sorted.clear();
+    sorted.extend(grid.members.iter().map(|&disk| (points[disk as usize], disks.radii[disk as usize])));
     let mut current = usize::MAX;
-    for first in 0..disks.mobile_count {
+    pairs.fill(points.len(), disks.mobile_count, |first, row| {
         let cell = grid.cell_of[first] as usize;
         if cell != current {
-            grid.neighbourhood(cell, lengths, &mut runs);
+            grid.neighbourhood(cell, lengths, runs);
             current = cell;
         }
         let (point, radius) = (points[first], disks.radii[first]);
-        for run in &runs {
+        for run in &*runs {
             let from: Vector<D> = difference(point, run.shift);
             let (start, end) = (grid.starts[run.cells.start] as usize, grid.starts[run.cells.end] as usize);
             for (&second, &(other, other_radius)) in grid.members[start..end].iter().zip(&sorted[start..end]) {
                 let range = radius + other_radius + skin;
                 let apart = difference(from, other);
                 // Rounding of the coordinates moves this edge by far less than the skin can spare.
-                if dot(apart, apart) >= range * range || second as usize <= first {
+                if second as usize <= first || dot(apart, apart) >= range * range {
                     continue;
                 }
                 let (separation, rest) = anchor_separation(disks, first, second as usize, apart);
@@ -231,16 +212,13 @@ pub fn build_pairs<const D: usize>(
                     return Err(PackingError::CoincidentCentres { first, second: second as usize });
                 }
                 let (gap, gap_rest) = two_sum(radius + other_radius, -distance);
-                pairs.first.push(first as u32);
-                pairs.second.push(second);
-                pairs.separation.push(separation);
-                pairs.distance.push(distance);
-                pairs.overlap.push(gap + (gap_rest - distance_rest));
-                pairs.coefficient.push(coefficient(radius, other_radius));
+                let overlap = gap + (gap_rest - distance_rest);
+                let coefficient = coefficient(radius, other_radius);
+                row.push(Pair { second, separation, distance, overlap, coefficient });
             }
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 /// Separation of the anchors along the image that is nearest for the centres.

@@ -69,9 +69,10 @@ impl<const D: usize> Domain<D> {
         let mut result = ([0.0; D], [0.0; D]);
         for d in 0..D {
             let high = two_sum(a.0[d], -b.0[d]);
-            let shifted = extended_sum(high, self.shift(high.0, d));
-            let both = extended_sum(shifted, a.1[d] - b.1[d]);
-            (result.0[d], result.1[d]) = two_sum(both.0, both.1);
+            let (shift, rest) = (self.shift(high.0, d), a.1[d] - b.1[d]);
+            // Nothing to add, as for most pairs of a box: the sum is there.
+            (result.0[d], result.1[d]) =
+                if shift == 0.0 && rest == 0.0 { high } else { extended_sum(extended_sum(high, shift), rest) };
         }
         result
     }

@@ -1,4 +1,10 @@
-//! Sums over flat columns in a fixed order, in lanes the compiler can turn into vector instructions.
+//! Sums over flat columns in a fixed order, in lanes the compiler can turn into vector instructions. Long columns are cut into
+//! pieces of a fixed length, which may be worked on side by side; their sums are added in order.
+
+use crate::side_by_side;
+
+/// Length of a piece of a long column; fixed, so the bits do not depend on the number of threads.
+const PIECE: usize = 1 << 15;
 
 /// Lanes of a sum; fixed, so the bits do not depend on the machine.
 const LANES: usize = 8;
@@ -16,7 +22,17 @@ pub struct Products {
 
 /// F·v, F·F and v·v in one pass.
 pub fn products(force: &[f64], velocity: &[f64]) -> Products {
-    pulp::Arch::new().dispatch(ProductsOf { force, velocity })
+    let of_piece = |(force, velocity)| pulp::Arch::new().dispatch(ProductsOf { force, velocity });
+    if force.len() <= PIECE {
+        return of_piece((force, velocity));
+    }
+    let pieces = side_by_side::each(force.chunks(PIECE).zip(velocity.chunks(PIECE)), of_piece);
+    let zero = Products { power: 0.0, force_squared: 0.0, speed_squared: 0.0 };
+    pieces.iter().fold(zero, |sum, piece| Products {
+        power: sum.power + piece.power,
+        force_squared: sum.force_squared + piece.force_squared,
+        speed_squared: sum.speed_squared + piece.speed_squared,
+    })
 }
 
 struct ProductsOf<'a> {
@@ -35,22 +51,27 @@ impl pulp::WithSimd for ProductsOf<'_> {
 
 #[inline(always)]
 fn products_in_lanes(force: &[f64], velocity: &[f64]) -> Products {
-    let mut lanes = [[0.0; LANES]; 3];
-    let (forces, velocities) = (force.chunks_exact(LANES), velocity.chunks_exact(LANES));
-    let rest = (forces.remainder(), velocities.remainder());
-    for (f, v) in forces.zip(velocities) {
+    // A loop for each sum: of one loop over all three the compiler makes a patchwork.
+    let (mut power, mut force_squared, mut speed_squared) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+    let (forces, force_rest) = force.as_chunks::<LANES>();
+    let (velocities, velocity_rest) = velocity.as_chunks::<LANES>();
+    for (f, v) in forces.iter().zip(velocities) {
         for k in 0..LANES {
-            lanes[0][k] += f[k] * v[k];
-            lanes[1][k] += f[k] * f[k];
-            lanes[2][k] += v[k] * v[k];
+            power[k] += f[k] * v[k];
+        }
+        for k in 0..LANES {
+            force_squared[k] += f[k] * f[k];
+        }
+        for k in 0..LANES {
+            speed_squared[k] += v[k] * v[k];
         }
     }
-    for (k, (&f, &v)) in rest.0.iter().zip(rest.1).enumerate() {
-        lanes[0][k] += f * v;
-        lanes[1][k] += f * f;
-        lanes[2][k] += v * v;
+    for (k, (&f, &v)) in force_rest.iter().zip(velocity_rest).enumerate() {
+        power[k] += f * v;
+        force_squared[k] += f * f;
+        speed_squared[k] += v * v;
     }
-    let [power, force_squared, speed_squared] = lanes.map(|lane| lane.iter().sum());
+    let [power, force_squared, speed_squared] = [power, force_squared, speed_squared].map(|lanes| lanes.iter().sum());
     Products { power, force_squared, speed_squared }
 }
 
@@ -63,7 +84,14 @@ pub fn kick_and_drift(
     velocity: &mut [f64],
     displacement: &mut [f64],
 ) {
-    pulp::Arch::new().dispatch(KickAndDrift { keep, push, time_step, force, velocity, displacement });
+    let piece = |((force, velocity), displacement): ((&_, &mut _), &mut _)| {
+        pulp::Arch::new().dispatch(KickAndDrift { keep, push, time_step, force, velocity, displacement });
+    };
+    if force.len() <= PIECE {
+        return piece(((force, velocity), displacement));
+    }
+    let pieces = force.chunks(PIECE).zip(velocity.chunks_mut(PIECE)).zip(displacement.chunks_mut(PIECE));
+    side_by_side::each(pieces, piece);
 }
 
 struct KickAndDrift<'a> {

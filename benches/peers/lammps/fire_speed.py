@@ -1,7 +1,7 @@
 """CPU time per particle step of LAMMPS's FIRE on Hertzian disks: one JSON line a run.
 
     . FOLDER/activate-lammps                       (see setup.sh)
-    python benches/peers/lammps/fire_speed.py [PACKING] [--steps N] [--replicate K] [--case inflated|jittered] [--repeat N]
+    python benches/peers/lammps/fire_speed.py [PACKING] [--steps N] [--replicate K] [--case inflated|jittered] [--law hertz|hooke] [--repeat N]
 
 The case `inflated` (default): one small disk, the one nearest to the middle of the box, grows by 0.1 and is held; all others
 are mobile in the periodic box. The case `jittered`: every coordinate moved by a uniform random number in +-0.01, none held.
@@ -26,6 +26,11 @@ GROWTH = 0.1  # radius added to the inflated disk [length]
 JITTER = 0.01  # half width of the random displacement [length]
 SEED = 1
 STIFFNESS = 2e5
+STYLES = {
+    "hertz": f"gran/hertz/history {STIFFNESS} 0.0 0.0 0.0 0.0 0",
+    # About as stiff as the Hertzian contacts at p = 100; without tangential forces it needs no history.
+    "hooke": "gran/hooke 1e4 0.0 0.0 0.0 0.0 0",
+}
 # First time step; FIRE raises it up to tenfold (LAMMPS's tmax). 0.0003 converges at p = 100. From 0.0007 on it does not: the
 # disks then never settle, lists are rebuilt often and a step costs half as much again, which would flatter the other side.
 TIME_STEP = 0.0003
@@ -63,7 +68,7 @@ def middle_small_disk(sides, disks):
     )
 
 
-def run(sides, disks, case, steps, time_step):
+def run(sides, disks, case, law, steps, time_step):
     """CPU seconds, steps made and largest force after them."""
     disks, held = list(disks), None
     if case == "inflated":
@@ -100,7 +105,7 @@ def run(sides, disks, case, steps, time_step):
         set group all mass 1.0
         neighbor 0.1 bin
         neigh_modify every 1 delay 0 check yes
-        pair_style gran/hertz/history {STIFFNESS} 0.0 0.0 0.0 0.0 0
+        pair_style {STYLES[law]}
         pair_coeff * *
         timestep {time_step}
         thermo 1000000
@@ -126,15 +131,17 @@ def main():
     parser.add_argument("--steps", type=int, default=2000)
     parser.add_argument("--replicate", type=int, default=1)
     parser.add_argument("--case", choices=("inflated", "jittered"), default="inflated")
+    parser.add_argument("--law", choices=tuple(STYLES), default="hertz")
     parser.add_argument("--repeat", type=int, default=1)
     parser.add_argument("--time-step", type=float, default=TIME_STEP)
     arguments = parser.parse_args()
     sides, disks = tiled(*read_packing(arguments.packing), arguments.replicate)
     for _ in range(arguments.repeat):
-        seconds, steps, force = run(sides, disks, arguments.case, arguments.steps, arguments.time_step)
+        seconds, steps, force = run(sides, disks, arguments.case, arguments.law, arguments.steps, arguments.time_step)
         line = {
             "code": "LAMMPS 22 Jul 2025 Update 4",
             "case": arguments.case,
+            "law": arguments.law,
             "disks": len(disks),
             "steps": steps,
             "cpu_seconds": round(seconds, 4),

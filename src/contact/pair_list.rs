@@ -1,0 +1,229 @@
+//! The pairs that may touch, laid out for the hot loop: columns, cut into rows, blocks and tiles.
+//!
+//! ```text
+//! row    the pairs of one first disk, at most LONGEST_ROW of them
+//! block  at most BLOCK pairs: whole rows, the short ones first
+//! tile   a fixed number of disks in working order; first the blocks within it, then those across its border
+//! ```
+//!
+//! Rows of one length lie side by side, so the loop over a row has a fixed number of turns: the first disk is read and
+//! written once a row, and no branch is guessed wrong. A tile writes forces on its own disks only; what pairs across its
+//! border do to the disks of other tiles is kept apart and added afterwards, tile by tile. So tiles can be
+//! worked on side by side, and the order of every sum is that of one thread.
+
+use std::ops::Range;
+
+use crate::vector::Vector;
+
+/// Most pairs of a block; its columns stay in the nearest cache.
+pub const BLOCK: usize = 128;
+
+/// Most pairs of a row; a disk with more has several rows.
+pub const LONGEST_ROW: usize = 8;
+
+/// Fewest disks of a tile: packings of up to so many have no border.
+const LEAST_TILE: usize = 8192;
+
+/// Pairs that may touch, as parallel columns.
+#[derive(Debug, Clone, Default)]
+pub struct PairList<const D: usize> {
+    /// First disk of each pair.
+    pub first: Vec<u32>,
+    /// Second disk of each pair.
+    pub second: Vec<u32>,
+    /// From the anchor of the second to that of the first along the nearest image, D \[length\].
+    pub separation: Vec<Vector<D>>,
+    /// Distance of the anchors, |D| \[length\].
+    pub distance: Vec<f64>,
+    /// Overlap at the anchors, R_i + R_j − |D|, rounded once only; negative for a pair apart \[length\].
+    pub overlap: Vec<f64>,
+    /// Coefficient of the contact law for this pair.
+    pub coefficient: Vec<f64>,
+    /// First disk of each row.
+    pub(super) rows: Vec<u32>,
+    pub(super) blocks: Vec<Block>,
+    pub(super) tiles: Vec<Tile>,
+    /// Disks of a tile.
+    pub(super) tile_size: usize,
+    arranger: Arranger<D>,
+}
+
+/// A block: where its pairs and rows begin, and how many rows of each length it has.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Block {
+    pub pairs: usize,
+    pub pair_count: usize,
+    pub rows: usize,
+    pub row_counts: [u8; LONGEST_ROW],
+}
+
+/// A tile: its blocks, and what comes to its disks from others.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Tile {
+    /// Blocks of pairs within the tile.
+    pub inner: Range<usize>,
+    /// Blocks of pairs whose second disk is in another tile.
+    pub border: Range<usize>,
+    /// Pairs of `border`.
+    pub border_pairs: Range<usize>,
+    /// Disk of this tile, the tile that has the pair, and the pair's place among the border pairs there.
+    pub incoming: Vec<(u32, u32, u32)>,
+}
+
+/// One pair on its way into the columns.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pair<const D: usize> {
+    pub second: u32,
+    pub separation: Vector<D>,
+    pub distance: f64,
+    pub overlap: f64,
+    pub coefficient: f64,
+}
+
+/// Rows waiting for their block or for the end of their tile.
+#[derive(Debug, Clone, Default)]
+struct Arranger<const D: usize> {
+    block: Waiting<D>,
+    border: Waiting<D>,
+    row: Vec<Pair<D>>,
+}
+
+#[derive(Debug, Clone, Default)]
+struct Waiting<const D: usize> {
+    pairs: Vec<Pair<D>>,
+    /// First disk, where its pairs begin, and how many there are.
+    rows: Vec<(u32, usize, usize)>,
+}
+
+impl<const D: usize> Waiting<D> {
+    fn clear(&mut self) {
+        self.pairs.clear();
+        self.rows.clear();
+    }
+}
+
+impl<const D: usize> PairList<D> {
+    /// Number of pairs.
+    pub fn len(&self) -> usize {
+        self.first.len()
+    }
+
+    /// Whether no pair may touch.
+    pub fn is_empty(&self) -> bool {
+        self.first.is_empty()
+    }
+
+    /// Empties the list and fills it: `pairs_of` writes the pairs of one first disk, each pair named by one of its disks
+    /// only. Disks from `first_count` on are never first.
+    pub(super) fn fill<E>(
+        &mut self,
+        disk_count: usize,
+        first_count: usize,
+        mut pairs_of: impl FnMut(usize, &mut Vec<Pair<D>>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        self.clear();
+        // Sixteen layers of disks: few pairs cross its border.
+        let layer = (disk_count as f64).powf(1.0 - 1.0 / D as f64);
+        self.tile_size = LEAST_TILE.max(16 * layer as usize);
+        let mut arranger = std::mem::take(&mut self.arranger);
+        self.tiles.resize(disk_count.div_ceil(self.tile_size), Tile::default());
+        for place in 0..self.tiles.len() {
+            let start = place * self.tile_size;
+            let disks = start..disk_count.min(start + self.tile_size);
+            let inner = self.blocks.len();
+            for first in disks.start..disks.end.min(first_count) {
+                arranger.row.clear();
+                pairs_of(first, &mut arranger.row)?;
+                self.add_row(first as u32, &disks, &mut arranger);
+            }
+            self.close_block(&mut arranger.block);
+            let (border, border_pairs) = (self.blocks.len(), self.len());
+            for &(first, begin, count) in &arranger.border.rows {
+                self.add_to_block(first, &arranger.border.pairs[begin..begin + count], &mut arranger.block);
+            }
+            self.close_block(&mut arranger.block);
+            arranger.border.clear();
+            let tile = &mut self.tiles[place];
+            (tile.inner, tile.border) = (inner..border, border..self.blocks.len());
+            tile.border_pairs = border_pairs..self.first.len();
+            tile.incoming.clear();
+        }
+        self.arranger = arranger;
+        for tile in 0..self.tiles.len() {
+            for (place, pair) in self.tiles[tile].border_pairs.clone().enumerate() {
+                let second = self.second[pair];
+                self.tiles[second as usize / self.tile_size].incoming.push((second, tile as u32, place as u32));
+            }
+        }
+        Ok(())
+    }
+
+    fn clear(&mut self) {
+        self.first.clear();
+        self.second.clear();
+        self.separation.clear();
+        self.distance.clear();
+        self.overlap.clear();
+        self.coefficient.clear();
+        self.rows.clear();
+        self.blocks.clear();
+        self.arranger.block.clear();
+        self.arranger.border.clear();
+    }
+
+    /// Rows of the pairs of a first disk: those within the tile to the block, the others to the border.
+    fn add_row(&mut self, first: u32, disks: &Range<usize>, arranger: &mut Arranger<D>) {
+        let Arranger { block, border, row } = arranger;
+        let begin = border.pairs.len();
+        row.retain(|pair| {
+            let inside = disks.contains(&(pair.second as usize));
+            if !inside {
+                border.pairs.push(*pair);
+            }
+            inside
+        });
+        for part in (begin..border.pairs.len()).step_by(LONGEST_ROW) {
+            border.rows.push((first, part, LONGEST_ROW.min(border.pairs.len() - part)));
+        }
+        for part in row.chunks(LONGEST_ROW) {
+            self.add_to_block(first, part, block);
+        }
+    }
+
+    fn add_to_block(&mut self, first: u32, pairs: &[Pair<D>], block: &mut Waiting<D>) {
+        if block.pairs.len() + pairs.len() > BLOCK {
+            self.close_block(block);
+        }
+        block.rows.push((first, block.pairs.len(), pairs.len()));
+        block.pairs.extend_from_slice(pairs);
+    }
+
+    /// Writes the rows that wait as a block, the short ones first.
+    fn close_block(&mut self, block: &mut Waiting<D>) {
+        if block.rows.is_empty() {
+            return;
+        }
+        let mut row_counts = [0u8; LONGEST_ROW];
+        for &(_, _, count) in &block.rows {
+            row_counts[count - 1] += 1;
+        }
+        self.blocks.push(Block { pairs: self.len(), pair_count: block.pairs.len(), rows: self.rows.len(), row_counts });
+        let lengths = (1..=LONGEST_ROW).filter(|length| row_counts[length - 1] > 0);
+        for length in lengths {
+            for &(first, begin, count) in &block.rows {
+                if count == length {
+                    self.rows.push(first);
+                    for pair in &block.pairs[begin..begin + count] {
+                        self.first.push(first);
+                        self.second.push(pair.second);
+                        self.separation.push(pair.separation);
+                        self.distance.push(pair.distance);
+                        self.overlap.push(pair.overlap);
+                        self.coefficient.push(pair.coefficient);
+                    }
+                }
+            }
+        }
+        block.clear();
+    }
+}

@@ -1,0 +1,25 @@
+//! Pieces of one computation on several threads.
+//!
+//! Each piece has its own place for what it writes, and results come back in the order of the pieces, so no bit depends
+//! on the number of threads. Inside a thread pool, where samples of an ensemble already run side by side, everything stays on
+//! the thread it is on: a thread that waited for a piece would take up another sample meanwhile.
+
+/// Fewest pieces that are worth waking other threads for.
+#[cfg(feature = "parallel")]
+const LEAST_PIECES: usize = 4;
+
+/// Applies `work` to every piece; the results in the order of the pieces.
+pub fn each<T: Send, R: Send>(pieces: impl Iterator<Item = T>, work: impl Fn(T) -> R + Send + Sync) -> Vec<R> {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        let pieces: Vec<T> = pieces.collect();
+        let alone = rayon::current_thread_index().is_some();
+        if pieces.len() < LEAST_PIECES || alone || rayon::current_num_threads() == 1 {
+            return pieces.into_iter().map(work).collect();
+        }
+        pieces.into_par_iter().with_max_len(1).map(work).collect()
+    }
+    #[cfg(not(feature = "parallel"))]
+    pieces.map(work).collect()
+}
