@@ -106,12 +106,10 @@ pub fn extended_norm<const D: usize>(high: Vector<D>, low: Vector<D>) -> (f64, f
         square = two_sum(total, square.1 + (lost + rest + 2.0 * high[d] * low[d]));
     }
     let root = square.0.sqrt();
-    if root == 0.0 {
-        return (0.0, 0.0);
-    }
     let (product, rest) = two_product(root, root);
-    // One Newton step of the root, its residual taken without cancellation.
-    two_sum(root, ((square.0 - product) - rest + square.1) / (2.0 * root))
+    // One Newton step of the root, its residual taken without cancellation; no branch, so a loop over many may take vectors.
+    let step = ((square.0 - product) - rest + square.1) / (2.0 * root);
+    two_sum(root, if root == 0.0 { 0.0 } else { step })
 }
 
 #[cfg(test)]

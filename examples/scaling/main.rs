@@ -39,6 +39,10 @@ type Failure = Box<dyn Error + Send + Sync>;
 const SIZES: [(&str, usize); 8] =
     [("N1000", 1), ("N1000", 2), ("N5548", 1), ("N5548", 2), ("N5548", 4), ("N5548", 6), ("N5548", 9), ("N5548", 14)];
 
+/// Steps of FIRE before and while it is timed.
+const FIRST_STEPS: usize = 200;
+const STEPS: usize = 200;
+
 /// Disks above which nothing is factorised: a factor of 10⁶ disks takes some GB.
 const MOST_FACTORISED: usize = 500_000;
 
@@ -54,6 +58,8 @@ struct Row {
     step: f64,
     forces_on_all: f64,
     step_on_all: f64,
+    /// Lists made during the steps of FIRE that were timed.
+    lists: usize,
     /// ns a disk: Hessian, order and analysis, factor, solution, implicit step, profiles of a field.
     linear: Option<[f64; 6]>,
     /// Largest memory of the process so far, bytes a disk.
@@ -91,7 +97,7 @@ fn main() -> Result<(), Failure> {
 
     println!("ns a disk; on all: {threads} threads, the same bits");
     println!(
-        "{:>8} {:>6} {:>8} {:>7} {:>7} {:>7} {:>7} {:>9} {:>9} | {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} | {:>7}",
+        "{:>8} {:>6} {:>8} {:>7} {:>7} {:>7} {:>7} {:>9} {:>9} {:>5} | {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} | {:>7}",
         "disks",
         "pairs",
         "contacts",
@@ -101,6 +107,7 @@ fn main() -> Result<(), Failure> {
         "step",
         "loop all",
         "step all",
+        "lists",
         "Hessian",
         "analysis",
         "factor",
@@ -155,14 +162,25 @@ fn measured(packing: &Packing<2>, one: &rayon::ThreadPool) -> Result<Row, Failur
     let radius = packing.radii()[chosen];
     let held = (0..disks).map(|disk| disk == chosen).collect();
     let start = packing.clone().with_radius(chosen, radius + 0.1)?.with_held(held)?;
-    let steps = (40_000_000 / disks).clamp(100, 2000);
-    let relax = || -> Result<_, Failure> {
+    // What a step costs once the first lists are made, whatever the number of disks.
+    let relax = |steps| -> Result<_, Failure> {
         let fire = Fire { limit: ForceLimit::Relative(0.0), step_limit: steps, ..Fire::default() };
         let outcome = fire.relax(start.clone(), &law, &mut ())?;
-        Ok((outcome.cost.seconds / outcome.cost.step_count as f64, outcome.state))
+        Ok((outcome.cost.seconds, outcome.cost.rebuild_count, outcome.state))
     };
-    let (step_on_all, state_of_all) = relax()?;
-    let (step, state) = one.install(relax)?;
+    let steps = || -> Result<_, Failure> {
+        let (mut least, mut lists) = (f64::INFINITY, 0);
+        let mut last = None;
+        for _ in 0..(200_000 / disks).clamp(1, 20) {
+            let ((early, before, _), (late, after, state)) = (relax(FIRST_STEPS)?, relax(FIRST_STEPS + STEPS)?);
+            least = least.min((late - early) / STEPS as f64);
+            lists = after - before;
+            last = Some(state);
+        }
+        Ok((least, lists, last.ok_or("no turn")?))
+    };
+    let (step_on_all, _, state_of_all) = steps()?;
+    let (step, lists, state) = one.install(steps)?;
     assert!(state.positions() == state_of_all.positions(), "the bits depend on the number of threads");
     drop((state, state_of_all, start));
 
@@ -178,6 +196,7 @@ fn measured(packing: &Packing<2>, one: &rayon::ThreadPool) -> Result<Row, Failur
         step: step * per_disk,
         forces_on_all: forces_on_all * per_disk,
         step_on_all: step_on_all * per_disk,
+        lists,
         linear,
         memory: peak_memory().map(|bytes| bytes / disks as f64),
     })
@@ -251,7 +270,7 @@ fn print_row(row: &Row) {
         },
     );
     println!(
-        "{:>8} {:>6.2} {:>8.2} {:>7.1} {:>7.2} {:>7.2} {:>7.2} {:>9.2} {:>9.2} | {linear} | {:>7.0}",
+        "{:>8} {:>6.2} {:>8.2} {:>7.1} {:>7.2} {:>7.2} {:>7.2} {:>9.2} {:>9.2} {:>5} | {linear} | {:>7.0}",
         row.disks,
         row.pairs as f64 / row.disks as f64,
         row.contacts as f64 / row.disks as f64,
@@ -261,6 +280,7 @@ fn print_row(row: &Row) {
         row.step,
         row.forces_on_all,
         row.step_on_all,
+        row.lists,
         row.memory.unwrap_or(f64::NAN),
     );
 }
@@ -293,13 +313,13 @@ fn print_exponents(rows: &[Row]) {
 
 fn csv(rows: &[Row]) -> String {
     let mut text = String::from(
-        "disks,pairs,contacts,list,loop,loop_with_totals,fire_step,loop_on_all,fire_step_on_all,hessian,analysis,factor,solution,implicit_step,profiles,memory\n\
-         1,1,1,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,byte/disk\n",
+        "disks,pairs,contacts,list,loop,loop_with_totals,fire_step,loop_on_all,fire_step_on_all,lists,hessian,analysis,factor,solution,implicit_step,profiles,memory\n\
+         1,1,1,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,1,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,byte/disk\n",
     );
     for row in rows {
         let times = [row.list, row.forces, row.totals, row.step, row.forces_on_all, row.step_on_all];
         let linear = row.linear.map_or(vec![None; 6], |of| of.into_iter().map(Some).collect());
-        let cells = times.into_iter().map(Some).chain(linear).chain([row.memory]);
+        let cells = times.into_iter().chain([row.lists as f64]).map(Some).chain(linear).chain([row.memory]);
         let cells: Vec<String> = cells.map(|cell| cell.map_or(String::new(), |value| format!("{value:.3}"))).collect();
         text += &format!("{},{},{},{}\n", row.disks, row.pairs, row.contacts, cells.join(","));
     }

@@ -6,7 +6,7 @@
 
 use crate::contact::pair_list::{Pair, PairList};
 use crate::packing::{Domain, PackingError};
-use crate::vector::{Vector, difference, dot, extended_norm, sum, two_sum};
+use crate::vector::{Vector, difference, dot, sum};
 
 /// The disks as the list builder sees them: mobile ones first, then the held ones.
 pub struct Disks<'a, const D: usize> {
@@ -202,22 +202,16 @@ pub fn build_pairs<const D: usize>(
             for (&second, &(other, other_radius)) in grid.members[start..end].iter().zip(&sorted[start..end]) {
                 let range = radius + other_radius + skin;
                 let apart = difference(from, other);
-                // Rounding of the coordinates moves this edge by far less than the skin can spare.
-                if second as usize <= first || dot(apart, apart) >= range * range {
+                // Rounding of the coordinates moves this edge by far less than the skin can spare. One branch, not two: which
+                // of the two conditions fails cannot be guessed.
+                if (second as usize <= first) | (dot(apart, apart) >= range * range) {
                     continue;
                 }
-                let (separation, rest) = anchor_separation(disks, first, second as usize, apart);
-                let (distance, distance_rest) = extended_norm(separation, rest);
-                if distance == 0.0 {
-                    return Err(PackingError::CoincidentCentres { first, second: second as usize });
-                }
-                let (gap, gap_rest) = two_sum(radius + other_radius, -distance);
-                let overlap = gap + (gap_rest - distance_rest);
-                let coefficient = coefficient(radius, other_radius);
-                row.push(Pair { second, separation, distance, overlap, coefficient });
+                let separation = anchor_separation(disks, first, second as usize, apart);
+                let (reach, coefficient) = (radius + other_radius, coefficient(radius, other_radius));
+                row.push(Pair { second, separation, reach, coefficient });
             }
         }
-        Ok(())
     })
 }
 

@@ -13,7 +13,8 @@
 
 use std::ops::Range;
 
-use crate::vector::Vector;
+use crate::packing::PackingError;
+use crate::vector::{Vector, extended_norm, two_sum};
 
 /// Most pairs of a block; its columns stay in the nearest cache.
 pub const BLOCK: usize = 128;
@@ -74,9 +75,10 @@ pub(super) struct Tile {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pair<const D: usize> {
     pub second: u32,
-    pub separation: Vector<D>,
-    pub distance: f64,
-    pub overlap: f64,
+    /// Separation of the anchors, and what its rounding took away.
+    pub separation: (Vector<D>, Vector<D>),
+    /// Sum of the radii.
+    pub reach: f64,
     pub coefficient: f64,
 }
 
@@ -115,12 +117,15 @@ impl<const D: usize> PairList<D> {
 
     /// Empties the list and fills it: `pairs_of` writes the pairs of one first disk, each pair named by one of its disks
     /// only. Disks from `first_count` on are never first.
-    pub(super) fn fill<E>(
+    ///
+    /// # Errors
+    /// Two disks with the same centre.
+    pub(super) fn fill(
         &mut self,
         disk_count: usize,
         first_count: usize,
-        mut pairs_of: impl FnMut(usize, &mut Vec<Pair<D>>) -> Result<(), E>,
-    ) -> Result<(), E> {
+        mut pairs_of: impl FnMut(usize, &mut Vec<Pair<D>>),
+    ) -> Result<(), PackingError> {
         self.clear();
         // Sixteen layers of disks: few pairs cross its border.
         let layer = (disk_count as f64).powf(1.0 - 1.0 / D as f64);
@@ -133,7 +138,7 @@ impl<const D: usize> PairList<D> {
             let inner = self.blocks.len();
             for first in disks.start..disks.end.min(first_count) {
                 arranger.row.clear();
-                pairs_of(first, &mut arranger.row)?;
+                pairs_of(first, &mut arranger.row);
                 self.add_row(first as u32, &disks, &mut arranger);
             }
             self.close_block(&mut arranger.block);
@@ -149,6 +154,10 @@ impl<const D: usize> PairList<D> {
             tile.incoming.clear();
         }
         self.arranger = arranger;
+        if let Some(pair) = self.distance.iter().position(|&distance| distance == 0.0) {
+            let (first, second) = (self.first[pair] as usize, self.second[pair] as usize);
+            return Err(PackingError::CoincidentCentres { first, second });
+        }
         for tile in 0..self.tiles.len() {
             for (place, pair) in self.tiles[tile].border_pairs.clone().enumerate() {
                 let second = self.second[pair];
@@ -208,6 +217,8 @@ impl<const D: usize> PairList<D> {
             row_counts[count - 1] += 1;
         }
         self.blocks.push(Block { pairs: self.len(), pair_count: block.pairs.len(), rows: self.rows.len(), row_counts });
+        let mut measured = Measured { rest: [[0.0; D]; BLOCK], reach: [1.0; BLOCK], distance: [0.0; BLOCK] };
+        let mut place = 0;
         let lengths = (1..=LONGEST_ROW).filter(|length| row_counts[length - 1] > 0);
         for length in lengths {
             for &(first, begin, count) in &block.rows {
@@ -216,14 +227,50 @@ impl<const D: usize> PairList<D> {
                     for pair in &block.pairs[begin..begin + count] {
                         self.first.push(first);
                         self.second.push(pair.second);
-                        self.separation.push(pair.separation);
-                        self.distance.push(pair.distance);
-                        self.overlap.push(pair.overlap);
+                        self.separation.push(pair.separation.0);
                         self.coefficient.push(pair.coefficient);
+                        (measured.rest[place], measured.reach[place]) = (pair.separation.1, pair.reach);
+                        place += 1;
                     }
                 }
             }
         }
+        let separation = &self.separation[self.distance.len()..];
+        pulp::Arch::new().dispatch(Measure { separation, measured: &mut measured });
+        self.distance.extend_from_slice(&measured.distance[..place]);
+        self.overlap.extend_from_slice(&measured.reach[..place]);
         block.clear();
+    }
+}
+
+/// What a block is measured by, column by column.
+struct Measured<const D: usize> {
+    rest: [Vector<D>; BLOCK],
+    /// Sum of the radii, then the overlap.
+    reach: [f64; BLOCK],
+    distance: [f64; BLOCK],
+}
+
+/// Distances and overlaps of a block to full accuracy: some sixty operations a pair, in vectors.
+struct Measure<'a, const D: usize> {
+    separation: &'a [Vector<D>],
+    measured: &'a mut Measured<D>,
+}
+
+impl<const D: usize> pulp::WithSimd for Measure<'_, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        // As long as a block whatever it holds, so that no pair is left over for a loop without vectors.
+        let mut separation = [[1.0; D]; BLOCK];
+        separation[..self.separation.len()].copy_from_slice(self.separation);
+        let Measured { rest, reach, distance } = self.measured;
+        for k in 0..BLOCK {
+            let (rounded, of_distance) = extended_norm(separation[k], rest[k]);
+            let (gap, of_gap) = two_sum(reach[k], -rounded);
+            distance[k] = rounded;
+            reach[k] = gap + (of_gap - of_distance);
+        }
     }
 }
