@@ -2,7 +2,7 @@
 # FIRE, jamscope beside jax-md: alternates the two on one packing, one JSON line a run. From the root of the repository:
 #
 #     . FOLDER/bin/activate                                             (see setup.sh)
-#     benches/peers/jax_md/compare.sh [PACKING] [STEPS] [REPEATS] [REPLICATE]
+#     benches/peers/jax_md/compare.sh [PACKING] [STEPS] [REPEATS] [REPLICATE] | python3 benches/peers/table.py
 set -eu
 packing=${1:-fixtures/packings/hertz_N5548_p100.xyz}
 steps=${2:-2000}

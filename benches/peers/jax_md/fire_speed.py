@@ -109,6 +109,7 @@ def main():
     line = {
         "code": f"jax {jax.__version__}, jax-md",
         "case": "inflated",
+        "law": "hertz",
         "format": arguments.format,
         "disks": len(disks),
         "steps": steps,

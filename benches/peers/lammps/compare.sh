@@ -2,7 +2,7 @@
 # FIRE, jamscope beside LAMMPS: alternates the two on one packing, one JSON line a run. From the root of the repository:
 #
 #     . FOLDER/activate-lammps                                          (see setup.sh)
-#     benches/peers/lammps/compare.sh [PACKING] [STEPS] [REPEATS] [REPLICATE]
+#     benches/peers/lammps/compare.sh [PACKING] [STEPS] [REPEATS] [REPLICATE] [hertz|hooke] | python3 benches/peers/table.py
 #
 # Alternating spreads the noise of a shared machine over both; compare medians. Jamscope's side is the example
 # `fire_speed`, which prints the same JSON keys for the same problem.
@@ -11,10 +11,11 @@ packing=${1:-fixtures/packings/hertz_N5548_p100.xyz}
 steps=${2:-2000}
 repeats=${3:-5}
 replicate=${4:-1}
+law=${5:-hertz}
 export OMP_NUM_THREADS=1 RAYON_NUM_THREADS=1
 
 cargo build --quiet --release --example fire_speed
 for _ in $(seq "$repeats"); do
-    cargo run --quiet --release --example fire_speed -- "$packing" --steps "$steps" --replicate "$replicate"
-    python benches/peers/lammps/fire_speed.py "$packing" --steps "$steps" --replicate "$replicate"
+    cargo run --quiet --release --example fire_speed -- "$packing" --steps "$steps" --replicate "$replicate" --law "$law"
+    python benches/peers/lammps/fire_speed.py "$packing" --steps "$steps" --replicate "$replicate" --law "$law"
 done

@@ -1,0 +1,28 @@
+"""JSON lines of `fire_speed` and its peers as a table of medians, ranges and ratios.
+
+    benches/peers/lammps/compare.sh | python3 benches/peers/table.py
+"""
+
+import json
+import statistics
+import sys
+
+
+def main():
+    times = {}
+    for line in sys.stdin:
+        run = json.loads(line)
+        case = (run.get("law", "hertz"), run["disks"], run["steps"])
+        times.setdefault(case, {}).setdefault(run["code"], []).append(run["ns_per_particle_step"])
+    print("| law | disks | steps | code | median, ns a particle step | lowest to highest | over jamscope |")
+    print("|---|---|---|---|---|---|---|")
+    for (law, disks, steps), codes in times.items():
+        ours = statistics.median(codes["jamscope"])
+        for code, found in codes.items():
+            median = statistics.median(found)
+            span = f"{min(found):.1f}–{max(found):.1f}"
+            print(f"| {law} | {disks} | {steps} | {code} | {median:.1f} | {span} | {median / ours:.1f} |")
+
+
+if __name__ == "__main__":
+    main()
