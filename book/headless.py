@@ -21,7 +21,8 @@ def pages(paths):
     for path in map(Path, paths):
         if not path.exists():
             sys.exit(f"{path}: not there")
-        yield from sorted(path.rglob("*.html")) if path.is_dir() else [path]
+        # 404.html is for a server: its addresses begin at the root of one.
+        yield from (page for page in sorted(path.rglob("*.html")) if page.name != "404.html") if path.is_dir() else [path]
 
 
 def name(page):

@@ -1,7 +1,10 @@
-"""Takes the pictures out of a report: python3 book/pictures.py report.html FOLDER
+"""Takes pictures of the book out of a page: python3 book/pictures.py run|study report.html FOLDER
 
-Writes FOLDER/three_phases.svg, map, radial profile and angular profiles of three samples side by side, and FOLDER/first_run/NAME.svg, the
-other pictures of the sample in the middle. Needs Python and nothing else. A file is written under another name and then renamed.
+run     of the built-in scene: FOLDER/three_phases.svg, map, radial profile and angular profiles of three samples side by side, and
+        FOLDER/first_run/NAME.svg, the other pictures of the sample in the middle
+study   of `order-parameters`, scale medium: FOLDER/transition/NAME.svg
+
+Needs Python and nothing else. A file is written under another name and then renamed.
 """
 
 import os
@@ -10,6 +13,16 @@ import sys
 from pathlib import Path
 
 WIDTH_GAP, HEAD = 16, 34
+
+# Figures of a study that the book shows, by their titles.
+OF_STUDY = {
+    "G* against p̂": "order_parameter",
+    "θ* against p̂": "correlation_angle",
+    "S(f), 5548": "spectrum_5548",
+    "G(θ), 5548": "correlation_5548",
+    "Mean radial profiles, 22184 disks, d_0 = 0.1": "profiles_22184",
+    "κ of the best screened solution against p̂": "wavenumber",
+}
 
 
 def sections(html):
@@ -58,14 +71,30 @@ def three_phases(samples):
     return "\n".join([head, back, *rows, "</svg>", ""])
 
 
-def main():
-    report, folder = Path(sys.argv[1]), Path(sys.argv[2])
+def of_run(report, folder):
     samples = list(sections(report.read_text(encoding="utf-8")))
     if len(samples) != 3:
         sys.exit(f"{report}: {len(samples)} samples, not the three of the built-in scene")
     write(folder / "three_phases.svg", three_phases(samples))
     for svg in samples[1][1][3:]:
         write(folder / "first_run" / f"{file_name(title(svg))}.svg", alone(svg))
+
+
+def of_study(report, folder):
+    found = {}
+    for svg in re.findall(r"<svg.*?</svg>", report.read_text(encoding="utf-8"), re.S):
+        found.setdefault(re.search(r"<title>(.*?)</title>", svg, re.S).group(1), svg)
+    missing = [name for name in OF_STUDY if name not in found]
+    if missing:
+        sys.exit(f"{report}: no figure {missing}")
+    for name, file in OF_STUDY.items():
+        write(folder / "transition" / f"{file}.svg", alone(found[name]))
+
+
+def main():
+    if len(sys.argv) != 4 or sys.argv[1] not in ("run", "study"):
+        sys.exit(__doc__)
+    {"run": of_run, "study": of_study}[sys.argv[1]](Path(sys.argv[2]), Path(sys.argv[3]))
 
 
 if __name__ == "__main__":
