@@ -20,7 +20,7 @@ pub struct Comparison {
     pub quantity: String,
     /// Of which series or law.
     pub of: String,
-    /// What was found.
+    /// What was found \[unit of the quantity\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
     /// Its interval, 95 %.
