@@ -100,7 +100,7 @@ fn field(displacement: impl Fn([f64; 2]) -> [f64; 2]) -> DisplacementField<2> {
         let position = [distance * angle.cos(), distance * angle.sin()];
         let (distance, displacement) = (norm(position), displacement(position));
         let radial = (displacement[0] * position[0] + displacement[1] * position[1]) / distance;
-        Moved { disk: index, position, distance, displacement, radial, counted: index % 7 != 0 }
+        Moved { disk: index, position, distance, displacement, radial, counted: !index.is_multiple_of(7) }
     };
     let disks = (0..300).map(disk).collect();
     DisplacementField { disks, inner_radius: 0.5, outer_radius: 20.0, measured_on: MeasuredOn::Backbone }
