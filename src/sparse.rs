@@ -84,7 +84,7 @@ impl SymmetricMatrix {
         shifted
     }
 
-    /// Largest sum of absolute values in a row, ‖A‖_∞: a bound on the size of every eigenvalue. NaN if an entry is.
+    /// Largest sum of absolute values in a row, ‖A‖_∞ \[unit of the entries\]: a bound on the size of every eigenvalue. NaN if an entry is.
     pub fn norm(&self) -> f64 {
         let mut sums = vec![0.0; self.dimension()];
         for column in 0..self.dimension() {

@@ -88,7 +88,7 @@ impl<const D: usize> LinearResponse<D> {
 }
 
 /// Change of the pressure over a volume, contacts for which `rim` holds at one end counted half, as in
-/// [`ContactNetwork::cluster_pressure`].
+/// [`ContactNetwork::cluster_pressure`]: per d_0 \[force / length^D\] where a disk grows, else \[force / length^(D−1)\].
 pub fn pressure_change<const D: usize>(changes: &[ContactChange], volume: f64, rim: impl Fn(usize) -> bool) -> f64 {
     let half = |change: &ContactChange| rim(change.first as usize) || rim(change.second as usize);
     let virial: f64 = changes.iter().map(|change| if half(change) { 0.5 } else { 1.0 } * change.virial_change).sum();

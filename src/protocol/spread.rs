@@ -11,7 +11,7 @@ pub struct Spread {
     pub count: usize,
     /// Their mean \[unit of the quantity\].
     pub mean: f64,
-    /// Standard deviation, Σ(x − mean)²/(n − 1) under the root; 0 for one ending.
+    /// Standard deviation, Σ(x − mean)²/(n − 1) under the root \[the same\]; 0 for one ending.
     pub standard_deviation: f64,
 }
 

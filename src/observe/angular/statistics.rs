@@ -13,7 +13,7 @@ use crate::observe::angular::{AngularCorrelation, AngularError, PowerSpectrum};
 pub struct Mean {
     /// The mean \[unit of the number\].
     pub value: f64,
-    /// Its standard error; none from one sample.
+    /// Its standard error \[the same\]; none from one sample.
     pub standard_error: Option<f64>,
 }
 
