@@ -127,7 +127,7 @@ fn the_swirl_of_a_rotation_is_its_angle_and_that_of_an_elastic_field_is_nothing(
 }
 
 #[test]
-fn the_swirl_of_a_response_changes_sign_in_a_mirror_and_is_small_far_from_jamming() {
+fn the_swirl_of_a_response_is_below_that_of_its_disks_and_changes_sign_in_a_mirror() {
     let packing = read_packing::<2>("fixtures/packings/hertz_N1000_p800.xyz").expect("readable");
     let law = Hertzian::default();
     let inflated = inflate(&Inflation::default(), &packing, &law, &Fire::default(), 1, &mut ()).expect("at rest");
