@@ -113,9 +113,9 @@ pub struct ContactCount {
 /// Two routes to Σ F r \[energy\].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct VirialIdentity {
-    /// Σ F r over the contacts: D V times the pressure.
+    /// Σ F r over the contacts: D V times the pressure \[energy\].
     pub from_forces: f64,
-    /// −dE/d ln L at fixed radii, by a central difference of energies.
+    /// −dE/d ln L at fixed radii, by a central difference of energies \[energy\].
     pub from_energies: f64,
     /// Their difference over the first \[1\].
     pub relative_difference: f64,

@@ -35,7 +35,7 @@ pub struct Moved<const D: usize> {
 }
 
 impl Moved<2> {
-    /// Angle θ of the position, in (−π, π].
+    /// Angle θ of the position, in (−π, π] \[rad\].
     pub fn angle(&self) -> f64 {
         libm::atan2(self.position[1], self.position[0])
     }

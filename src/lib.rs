@@ -139,6 +139,10 @@ pub mod vector;
 mod book {
     #[doc = include_str!("../README.md")]
     mod readme {}
+    #[doc = include_str!("../book/src/introduction.md")]
+    mod introduction {}
+    #[doc = include_str!("../book/src/first_run.md")]
+    mod first_run {}
     #[doc = include_str!("../book/src/experiment.md")]
     mod experiment {}
     #[doc = include_str!("../book/src/units.md")]
@@ -241,6 +245,8 @@ mod book {
     #[cfg(feature = "fit")]
     #[doc = include_str!("../book/src/analysis.md")]
     mod analysis {}
+    #[doc = include_str!("../book/src/library.md")]
+    mod library {}
     #[doc = include_str!("../book/src/exact.md")]
     mod exact {}
     #[doc = include_str!("../book/src/report.md")]
@@ -250,6 +256,14 @@ mod book {
     mod transition {}
     #[doc = include_str!("../book/src/study.md")]
     mod study {}
+    #[doc = include_str!("../book/src/cluster.md")]
+    mod cluster {}
+    #[doc = include_str!("../book/src/outcomes.md")]
+    mod outcomes {}
+    #[doc = include_str!("../book/src/extremes.md")]
+    mod extremes {}
+    #[doc = include_str!("../book/src/slips.md")]
+    mod slips {}
     #[doc = include_str!("../book/src/validation.md")]
     mod validation {}
     #[cfg(feature = "linear")]
@@ -259,6 +273,8 @@ mod book {
     mod performance {}
     #[doc = include_str!("../book/src/figures.md")]
     mod figures {}
+    #[doc = include_str!("../book/src/glossary.md")]
+    mod glossary {}
     #[doc = include_str!("../book/src/references.md")]
     mod references {}
 }

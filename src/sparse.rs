@@ -38,7 +38,7 @@ impl SymmetricMatrix {
         &self.rows
     }
 
-    /// Value of each entry.
+    /// Value of each entry \[force / length, of a Hessian\].
     pub fn values(&self) -> &[f64] {
         &self.values
     }
@@ -48,7 +48,7 @@ impl SymmetricMatrix {
         self.starts == other.starts && self.rows == other.rows
     }
 
-    /// The entries as (row, column, value), column by column.
+    /// The entries as (row, column, value \[force / length, of a Hessian\]), column by column.
     pub fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         (0..self.dimension()).flat_map(move |column| {
             (self.starts[column]..self.starts[column + 1]).map(move |k| (self.rows[k], column, self.values[k]))
@@ -84,7 +84,7 @@ impl SymmetricMatrix {
         shifted
     }
 
-    /// Largest sum of absolute values in a row, ‖A‖_∞: a bound on the size of every eigenvalue. NaN if an entry is.
+    /// Largest sum of absolute values in a row, ‖A‖_∞ \[unit of the entries\]: a bound on the size of every eigenvalue. NaN if an entry is.
     pub fn norm(&self) -> f64 {
         let mut sums = vec![0.0; self.dimension()];
         for column in 0..self.dimension() {

@@ -22,9 +22,9 @@ use crate::reference::ReferenceError;
 /// A fitted number and its standard error, in the units of the number.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
-    /// The best value.
+    /// The best value \[unit of the number\].
     pub value: f64,
-    /// One standard error.
+    /// One standard error \[the same\].
     pub standard_error: f64,
 }
 

@@ -82,7 +82,8 @@ impl<const D: usize> Circle<D> {
         self.centre
     }
 
-    /// Pressure of the circle: virial of its disks over π r_out², contacts with the rim counted half.
+    /// Pressure of the circle: virial of its disks over π r_out², contacts with the rim counted half
+    /// \[force / length^(D−1)\].
     pub fn pressure_of(&self, network: &ContactNetwork<D>) -> f64 {
         network.cluster_pressure(ball_volume::<D>(self.outer_radius), |disk| disk > self.centre)
     }

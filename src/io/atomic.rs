@@ -52,6 +52,14 @@ pub enum WriteError {
         /// The value.
         value: String,
     },
+    /// What the format cannot say, and a reader would not know of.
+    #[error("{path}: LAMMPS data has no place for {what}")]
+    NoPlaceFor {
+        /// The file.
+        path: PathBuf,
+        /// What of the packing would be lost.
+        what: &'static str,
+    },
 }
 
 /// Writes a file by way of a temporary one in the same folder, renamed when it is complete and on disk.

@@ -1,4 +1,4 @@
-//! LAMMPS data files of `atom_style sphere` (from `write_data`), to a [`Packing`].
+//! LAMMPS data files of `atom_style sphere` (from `write_data`, or ours), to a [`Packing`].
 //!
 //! ```text
 //! free text

@@ -1,9 +1,10 @@
-//! Packings in files: [`read_packing`] tells the format from the content, [`write_packing`] writes extended XYZ.
+//! Packings in files: [`read_packing`] tells the format from the content, [`write_packing`] writes extended XYZ,
+//! [`write_lammps_data`] LAMMPS data.
 //!
 //! | format | read | written | radii from |
 //! |---|---|---|---|
 //! | extended XYZ (ASE, OVITO) | yes | yes, to the same bits | column `radius` |
-//! | LAMMPS data, `atom_style sphere` | yes | no | column `diameter` |
+//! | LAMMPS data, `atom_style sphere` | yes | yes, without corrections | column `diameter` |
 //! | LAMMPS text dump | yes | no | column `radius` or `diameter` |
 //!
 //! What a file does not say is an error and not a guess: radii, the sides of the box, which directions are periodic.
@@ -18,12 +19,14 @@ pub mod lammps_data;
 pub mod lammps_dump;
 mod read_error;
 mod source;
+mod write_lammps_data;
 mod write_packing;
 
 use std::path::Path;
 
 pub use atomic::{WriteError, write_atomically};
 pub use read_error::ReadError;
+pub use write_lammps_data::write_lammps_data;
 pub use write_packing::{Column, write_packing};
 
 use crate::packing::Packing;

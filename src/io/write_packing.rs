@@ -21,7 +21,7 @@ pub struct Column<'a> {
     pub name: &'a str,
     /// Number of values a disk, 1 or more.
     pub width: usize,
-    /// The values, disk by disk.
+    /// The values, disk by disk \[the caller's unit\].
     pub values: &'a [f64],
 }
 

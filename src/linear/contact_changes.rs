@@ -21,16 +21,17 @@ pub struct ContactChange {
     pub second: u32,
     /// Overlap δ before \[length\].
     pub overlap: f64,
-    /// Change of the overlap, dδ.
+    /// Change of the overlap, dδ, per d_0 \[1\] where a disk grows, else \[length\].
     pub overlap_change: f64,
-    /// Change of the contact force, dF.
+    /// Change of the contact force, dF, per d_0 \[force / length\] where a disk grows, else \[force\].
     pub force_change: f64,
-    /// Change of F r, what the contact adds to the virial.
+    /// Change of F r, what the contact adds to the virial, per d_0 \[force\] where a disk grows, else \[energy\].
     pub virial_change: f64,
 }
 
 impl ContactChange {
-    /// The load at which the overlap would vanish if it went on changing like this; none if it does not shrink.
+    /// The load at which the overlap would vanish if it went on changing like this, d_0 \[length\] where a disk grows, else a
+    /// multiple of the load \[1\]; none if it does not shrink.
     pub fn opens_at(&self) -> Option<f64> {
         (self.overlap_change < 0.0).then(|| -self.overlap / self.overlap_change)
     }
@@ -87,7 +88,7 @@ impl<const D: usize> LinearResponse<D> {
 }
 
 /// Change of the pressure over a volume, contacts for which `rim` holds at one end counted half, as in
-/// [`ContactNetwork::cluster_pressure`].
+/// [`ContactNetwork::cluster_pressure`]: per d_0 \[force / length^D\] where a disk grows, else \[force / length^(D−1)\].
 pub fn pressure_change<const D: usize>(changes: &[ContactChange], volume: f64, rim: impl Fn(usize) -> bool) -> f64 {
     let half = |change: &ContactChange| rim(change.first as usize) || rim(change.second as usize);
     let virial: f64 = changes.iter().map(|change| if half(change) { 0.5 } else { 1.0 } * change.virial_change).sum();

@@ -12,7 +12,7 @@ pub const RING_HALF_WIDTH: f64 = 0.03;
 pub struct AngularProfile {
     /// r̂ = r/R, the middle of the ring \[1\].
     pub relative_radius: f64,
-    /// Angles θ in (−π, π], ascending.
+    /// Angles θ in (−π, π], ascending \[rad\].
     pub angles: Vec<f64>,
     /// Radial displacements d_r \[length\].
     pub radial: Vec<f64>,

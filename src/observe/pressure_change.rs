@@ -26,7 +26,7 @@ pub struct PressureChange {
     pub change: f64,
     /// (α − 2)/(α − 1) \[1\].
     pub exponent: f64,
-    /// Δp over that power of p; absent where there was no pressure.
+    /// Δp over that power of p \[(force / length^(D−1))^(1/(α−1))\]; absent where there was no pressure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scaled: Option<f64>,
 }

@@ -23,7 +23,7 @@ impl<const D: usize> Domain<D> {
         Domain::Periodic { corner: [0.0; D], lengths: [length; D] }
     }
 
-    /// Area (D = 2) or volume (D = 3) of the box; `None` in the open plane.
+    /// Area (D = 2) or volume (D = 3) of the box \[length^D\]; `None` in the open plane.
     pub fn volume(&self) -> Option<f64> {
         match self {
             Domain::Periodic { lengths, .. } => Some(lengths.iter().product()),

@@ -35,7 +35,7 @@ impl Mixture {
         Mixture { components: vec![Component { radius, share: 1.0 }] }
     }
 
-    /// Radii of `count` disks, kind by kind in the order of the components.
+    /// Radii of `count` disks \[length\], kind by kind in the order of the components.
     ///
     /// The numbers are the shares rounded by largest remainder, so they add up to `count` and differ from the exact
     /// proportions by less than one disk a kind.

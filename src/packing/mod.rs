@@ -361,7 +361,7 @@ impl<const D: usize> Packing<D> {
         (stretched, strains)
     }
 
-    /// Volume of all disks over the volume of the box; `None` in the open plane.
+    /// Volume of all disks over the volume of the box \[1\]; `None` in the open plane.
     ///
     /// ```text
     /// φ = Σ π R_i² / (L_x L_y)          D = 3: Σ (4/3) π R_i³ / (L_x L_y L_z)
@@ -378,7 +378,7 @@ fn check_radius(disk: usize, radius: f64) -> Result<(), PackingError> {
     if possible { Ok(()) } else { Err(PackingError::RadiusOutOfRange { disk, radius }) }
 }
 
-/// Area of a disk (D = 2) or volume of a ball (D = 3).
+/// Area of a disk (D = 2) or volume of a ball (D = 3) \[length^D\].
 ///
 /// # Panics
 /// For other D.

@@ -9,9 +9,9 @@ use crate::protocol::Ending;
 pub struct Spread {
     /// Number of endings that have the quantity.
     pub count: usize,
-    /// Their mean.
+    /// Their mean \[unit of the quantity\].
     pub mean: f64,
-    /// Standard deviation, Σ(x − mean)²/(n − 1) under the root; 0 for one ending.
+    /// Standard deviation, Σ(x − mean)²/(n − 1) under the root \[the same\]; 0 for one ending.
     pub standard_deviation: f64,
 }
 

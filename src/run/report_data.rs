@@ -170,7 +170,7 @@ pub struct InflationSummary {
     pub deflated: Option<StateSummary>,
     /// Δp = p_after − p_before \[force / length\].
     pub pressure_change: f64,
-    /// Δp / p^((α−2)/(α−1)), absent for an unjammed packing.
+    /// Δp / p^((α−2)/(α−1)) \[(force / length)^(1/(α−1))\], absent for an unjammed packing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scaled_pressure_change: Option<f64>,
 }

@@ -151,7 +151,7 @@ impl Record {
         Record { cell, seed: sample.seed, outcome }
     }
 
-    /// A number of a sample that was measured.
+    /// A number of a sample that was measured \[unit in the table of names in the book\].
     pub fn number(&self, name: &str) -> Option<f64> {
         match &self.outcome {
             RecordOutcome::Done { numbers, .. } => numbers.get(name).copied(),

@@ -23,7 +23,7 @@ pub struct CellSamples {
     pub failures: BTreeMap<FailureKind, usize>,
     /// Samples of every phase.
     pub phases: PhaseCounts,
-    /// Numbers by name, of the samples that have them, in the order of the plan.
+    /// Numbers by name \[unit in the table of names in the book\], of the samples that have them, in the order of the plan.
     pub numbers: BTreeMap<String, Vec<f64>>,
     /// P_f over the variance of the ring, f = 1, 2, …, of every sample that has it.
     pub powers: Vec<Vec<f64>>,
@@ -40,7 +40,7 @@ pub struct Single {
     pub seed: u64,
     /// (r, ⟨d_r⟩) \[length\].
     pub profile: Vec<[f64; 2]>,
-    /// Its numbers.
+    /// Its numbers \[unit in the table of names in the book\].
     pub numbers: BTreeMap<String, f64>,
 }
 
@@ -66,11 +66,11 @@ struct Sums {
 /// One point of a mean curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeanPoint {
-    /// Mean abscissa.
+    /// Mean abscissa \[unit in the list of curves in the book\].
     pub x: f64,
-    /// Mean ordinate.
+    /// Mean ordinate \[unit in the list of curves in the book\].
     pub y: f64,
-    /// Its standard error; none from one sample.
+    /// Its standard error \[the same\]; none from one sample.
     pub standard_error: Option<f64>,
     /// Samples in it.
     pub count: usize,

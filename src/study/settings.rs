@@ -73,7 +73,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// What it is called in a table, and its value.
+    /// What it is called in a table, and its value \[force / length of a pressure, 1 of a packing fraction\].
     pub fn name_and_value(self) -> (&'static str, f64) {
         match self {
             Target::Pressure(value) => ("pressure", value),

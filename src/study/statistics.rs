@@ -17,7 +17,7 @@ const RESAMPLINGS: usize = 1000;
 pub struct NumberStatistics {
     /// Samples that have it.
     pub count: usize,
-    /// Mean.
+    /// Mean \[unit of the number, as all below\].
     pub mean: f64,
     /// Standard error of the mean; absent from one sample.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -42,7 +42,7 @@ pub struct Lengths {
     /// ℓ_iso \[length\]; absent where y is above the threshold from the start or never.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub isostatic: Option<f64>,
-    /// (r, x, y, h_r/h_r(1.5) x).
+    /// r \[length\], x, y, h_r/h_r(1.5) x \[1\].
     #[serde(skip)]
     pub curve: Vec<[f64; 4]>,
 }

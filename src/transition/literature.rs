@@ -20,13 +20,13 @@ pub struct Comparison {
     pub quantity: String,
     /// Of which series or law.
     pub of: String,
-    /// What was found.
+    /// What was found \[unit of the quantity\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
-    /// Its interval, 95 %.
+    /// Its interval, 95 % \[the same\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interval: Option<[f64; 2]>,
-    /// What is published.
+    /// What is published \[the same\].
     pub published: f64,
     /// Whether they agree.
     pub verdict: Verdict,

@@ -101,7 +101,7 @@ pub enum TransitionPressure {
 }
 
 impl TransitionPressure {
-    /// The best value.
+    /// The best value of p̂_c \[force / length\].
     pub fn best(self) -> Option<f64> {
         match self {
             TransitionPressure::Found(found) => Some(found.best),
@@ -110,7 +110,7 @@ impl TransitionPressure {
         }
     }
 
-    /// The interval, as far as there is one.
+    /// Its interval \[force / length\], as far as there is one.
     pub fn interval(self) -> Option<[f64; 2]> {
         match self {
             TransitionPressure::Found(found) => found.interval,

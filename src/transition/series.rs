@@ -53,7 +53,7 @@ pub struct SeriesPoint {
 /// What there is at one p̂, between two cells linear in ln p̂.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AtPressure {
-    /// p̂.
+    /// p̂ = p N^(α−1) \[force / length, as p\].
     pub reduced_pressure: f64,
     /// G*.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -2,6 +2,7 @@
 
 mod damaged_files;
 mod lammps;
+mod lammps_data_written;
 mod refusals;
 mod round_trip;
 mod writing;

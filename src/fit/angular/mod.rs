@@ -102,11 +102,11 @@ pub enum SingleDiskNoise {
 /// A fitted number with its interval of two standard errors.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Interval {
-    /// The best value.
+    /// The best value \[1, rad of an angle\].
     pub best: f64,
-    /// Lower end; none if it reaches the end of the search.
+    /// Lower end \[the same\]; none if it reaches the end of the search.
     pub lower: Option<f64>,
-    /// Upper end; none if it reaches the end of the search.
+    /// Upper end \[the same\]; none if it reaches the end of the search.
     pub upper: Option<f64>,
 }
 

@@ -38,9 +38,9 @@ pub use quality::{CollapseQuality, Curve, collapse_quality};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MeasuredPoint {
-    /// The parameter.
+    /// The parameter \[any unit\].
     pub x: f64,
-    /// The number.
+    /// The number \[any unit\].
     pub y: f64,
     /// Standard error of y, positive \[y\].
     pub error: f64,

@@ -134,7 +134,7 @@ impl AngularCorrelation {
         AngularCorrelation { estimator, disk_count, angles, values, anticorrelation, crossings }
     }
 
-    /// θ* of a threshold, if it was asked for and met.
+    /// θ* of a threshold \[rad\], if it was asked for and met.
     pub fn crossing(&self, threshold: f64) -> Option<f64> {
         self.crossings.iter().find(|crossing| crossing.threshold == threshold)?.outcome.angle()
     }

@@ -30,7 +30,7 @@ pub enum CrossingOutcome {
 }
 
 impl CrossingOutcome {
-    /// The angle, if there is one.
+    /// The angle \[rad\], if there is one.
     pub fn angle(self) -> Option<f64> {
         match self {
             CrossingOutcome::At { angle } => Some(angle),

@@ -229,7 +229,7 @@ impl PowerSpectrum {
         PowerSpectrum { estimator, disk_count, variance, power, unresolved: 0.0, white_floor }
     }
 
-    /// S(f) = P_f/P_1 at its index f; none where P_1 is not positive.
+    /// S(f) = P_f/P_1 \[1\] at its index f; none where P_1 is not positive.
     pub fn normalised(&self) -> Option<Vec<f64>> {
         let first = self.power[1];
         (first > 0.0).then(|| self.power.iter().map(|power| power / first).collect())

@@ -106,7 +106,7 @@ impl RingSample {
         &self.angles
     }
 
-    /// Values, in the order of the angles.
+    /// Values, in the order of the angles \[length, of a displacement\].
     pub fn values(&self) -> &[f64] {
         &self.values
     }

@@ -11,9 +11,9 @@ use crate::observe::angular::{AngularCorrelation, AngularError, PowerSpectrum};
 /// A mean over samples.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Mean {
-    /// The mean.
+    /// The mean \[unit of the number\].
     pub value: f64,
-    /// Its standard error; none from one sample.
+    /// Its standard error \[the same\]; none from one sample.
     pub standard_error: Option<f64>,
 }
 

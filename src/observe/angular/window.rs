@@ -110,7 +110,7 @@ impl SpectralWindow {
         self.frequency_limit
     }
 
-    /// N_f for f = 1, …: the power that values of single disks leave, over their variance.
+    /// N_f for f = 1, … \[1\]: the power that values of single disks leave, over their variance.
     pub fn white(&self) -> &[f64] {
         &self.white
     }

@@ -135,9 +135,9 @@ pub struct ModeFit {
     pub amplitude: f64,
     /// Standard error of A_n along (c_n, s_n) \[length\].
     pub amplitude_error: f64,
-    /// ψ_n in (−π, π], 0 for n = 0: the mode is largest at θ = ψ_n/n.
+    /// ψ_n in (−π, π] \[rad\], 0 for n = 0: the mode is largest at θ = ψ_n/n.
     pub phase: f64,
-    /// Standard error of ψ_n across (c_n, s_n), at most π/2; 0 for n = 0.
+    /// Standard error of ψ_n across (c_n, s_n), at most π/2 \[rad\]; 0 for n = 0.
     pub phase_error: f64,
 }
 

@@ -41,9 +41,9 @@ use crate::vector::two_product;
 /// The two amplitudes of a mode: of the displacement \[length\], or of its derivative along the radius \[1\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModeAmplitudes {
-    /// U, along the radius.
+    /// U, along the radius \[length\].
     pub radial: Complex<f64>,
-    /// V, along the circle, counterclockwise.
+    /// V, along the circle, counterclockwise \[length\].
     pub transverse: Complex<f64>,
 }
 
@@ -54,7 +54,7 @@ impl ModeAmplitudes {
         ModeAmplitudes { radial: Complex::new(radial, 0.0), transverse: Complex::new(0.0, -transverse) }
     }
 
-    /// The radial and the transverse component at `angle` θ, `[Re(U e^(inθ)), Re(V e^(inθ))]`, for mode n = `mode`.
+    /// The radial and the transverse component at `angle` θ, `[Re(U e^(inθ)), Re(V e^(inθ))]`, for mode n = `mode` \[length\].
     pub fn at_angle(&self, mode: u32, angle: f64) -> [f64; 2] {
         let wave = phase_factor(mode, angle);
         [(self.radial * wave).re, (self.transverse * wave).re]

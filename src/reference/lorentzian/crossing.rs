@@ -13,7 +13,7 @@ pub enum Crossing {
 }
 
 impl Crossing {
-    /// The angle, if there is one.
+    /// The angle \[rad\], or f†θ \[1\] of the continuum, if there is one.
     pub fn angle(self) -> Option<f64> {
         match self {
             Crossing::At(angle) => Some(angle),

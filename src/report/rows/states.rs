@@ -94,7 +94,9 @@ pub(super) fn inflation(report: &Report, samples: &[SampleReport], times: Times)
 
 pub(super) fn certificate(samples: &[SampleReport]) -> Section {
     let mut rows = Rows::of_samples(samples);
-    let excess = |certificate: &Certificate| certificate.contacts.map(|contacts| format!("{:+}", contacts.excess));
+    let excess = |certificate: &Certificate| {
+        certificate.contacts.map(|contacts| format!("{:+}", contacts.excess).replace('-', "−"))
+    };
     let virial = |certificate: &Certificate| Some(significant(certificate.virial?.relative_difference.abs(), 1));
     let packing = |it: &SampleResult| it.packing.certificate.clone();
     let (before, after) = (

@@ -1,0 +1,88 @@
+//! [`write_lammps_data`]: a periodic packing as a LAMMPS data file of `atom_style sphere`.
+
+use std::collections::HashSet;
+use std::io::{self, Write};
+use std::path::Path;
+
+use crate::io::atomic::{WriteError, write_atomically};
+use crate::packing::{Domain, Packing};
+
+/// Volume of a ball of radius 1 \[1\]: `atom_style sphere` has the density of balls, in two dimensions too.
+const UNIT_BALL: f64 = 4.0 / 3.0 * std::f64::consts::PI;
+
+/// Writes a periodic packing as LAMMPS data, `atom_style sphere`, which `read_data` of LAMMPS and
+/// [`read_packing`](crate::io::read_packing) read.
+///
+/// One atom type a radius, from the smallest on; densities that make every mass 1, as in the model. Numbers are the shortest
+/// decimals that give the same `f64` again. Ids are the labels, where these are positive and no two alike, else 1, 2, 3, … in the
+/// order of the packing; who reads sorts by id. For D = 2 a coordinate z = 0 and a height from −0.5 to 0.5 are added.
+///
+/// Not in such a file: corrections, so that overlaps are off by the rounding of coordinates; and sides of the box, which are
+/// differences of its ends: to the bit if the corner is the origin, else to a rounding of the larger end.
+///
+/// # Errors
+/// [`WriteError`] names the file and what is wrong, and nothing is written then: a packing in the open plane, with held disks or
+/// with sites is another one without them, and the format has no place for these.
+///
+/// # Example
+/// ```
+/// use jamscope::io::{read_packing, write_lammps_data};
+///
+/// let packing = read_packing::<2>("fixtures/packings/hertz_N1000_p100.xyz")?;
+/// let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("packing.data");
+/// write_lammps_data(&file, &packing)?;
+/// let read = read_packing::<2>(&file)?;
+/// assert_eq!((read.domain(), read.positions()[0]), (packing.domain(), packing.positions()[0]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write_lammps_data<const D: usize>(path: impl AsRef<Path>, packing: &Packing<D>) -> Result<(), WriteError> {
+    const { assert!(D == 2 || D == 3, "packings have two or three dimensions") };
+    let path = path.as_ref();
+    let refused = |what: &'static str| Err(WriteError::NoPlaceFor { path: path.into(), what });
+    let Domain::Periodic { corner, lengths } = packing.domain() else { return refused("the open plane") };
+    if packing.held().contains(&true) {
+        return refused("held disks");
+    }
+    if packing.sites().is_some() {
+        return refused("sites");
+    }
+    let ends = |axis: usize| if axis < D { (corner[axis], corner[axis] + lengths[axis]) } else { (-0.5, 0.5) };
+    if (0..D).any(|axis| !ends(axis).1.is_finite() || ends(axis).1 <= ends(axis).0) {
+        return refused("a box whose end is not a number, or its corner");
+    }
+    // Beyond this LAMMPS has no type or mass that is a number.
+    if packing.radii().iter().any(|&radius| !density(radius).is_normal()) {
+        return refused("a radius whose cube is no number");
+    }
+    write_atomically(path, |writer| write(writer, packing, [ends(0), ends(1), ends(2)]))
+}
+
+/// Density of a ball of mass 1.
+fn density(radius: f64) -> f64 {
+    1.0 / (UNIT_BALL * radius * radius * radius)
+}
+
+fn write<const D: usize>(writer: &mut impl Write, packing: &Packing<D>, ends: [(f64, f64); 3]) -> io::Result<()> {
+    let mut sizes = packing.radii().to_vec();
+    sizes.sort_by(f64::total_cmp);
+    sizes.dedup();
+    let mut seen = HashSet::new();
+    let usable = packing.labels().iter().all(|&label| label > 0 && seen.insert(label));
+    writeln!(writer, "packing of jamscope {}, mass of every disk 1", env!("CARGO_PKG_VERSION"))?;
+    writeln!(writer, "\n{} atoms\n{} atom types\n", packing.len(), sizes.len())?;
+    for ((low, high), axis) in ends.into_iter().zip(["x", "y", "z"]) {
+        writeln!(writer, "{low:?} {high:?} {axis}lo {axis}hi")?;
+    }
+    writeln!(writer, "\nAtoms # sphere\n")?;
+    for (disk, (position, &radius)) in packing.positions().iter().zip(packing.radii()).enumerate() {
+        let id = if usable { packing.labels()[disk] } else { disk as u64 + 1 };
+        let kind = 1 + sizes.partition_point(|&size| size < radius);
+        write!(writer, "{id} {kind} {:?} {:?}", 2.0 * radius, density(radius))?;
+        for axis in 0..3 {
+            write!(writer, " {:?}", position.get(axis).copied().unwrap_or(0.0))?;
+        }
+        writeln!(writer)?;
+    }
+    Ok(())
+}
