@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let fit = fit_radial_profile(&profile, annulus, &ProfileFitSettings::default())?;
             seconds += begin.elapsed().as_secs_f64();
             let close = |fit: &jamscope::fit::profile::ScreenedFit| {
-                (fit.wavenumber.value - wavenumber).abs() <= 5.0 * fit.wavenumber.error
+                (fit.wavenumber.value - wavenumber).abs() <= 5.0 * fit.wavenumber.standard_error
             };
             right += usize::from(fit.screened.as_ref().is_some_and(close));
         }
