@@ -140,7 +140,7 @@ fn all_tiles<const D: usize, L: PairLaw, const TOTALS: bool>(
     if let [tile] = pairs.tiles.as_slice() {
         let mut totals = Totals::ZERO;
         let task = Task { law, pairs, displacements, tile, offset: 0 };
-        pulp::Arch::new().dispatch(Sweep::<D, L, TOTALS> { task, forces, across: &mut [], totals: &mut totals });
+        sweep::<D, L, TOTALS>(&task, forces, &mut [], &mut totals);
         return totals;
     }
     across.fit(pairs);
@@ -149,7 +149,7 @@ fn all_tiles<const D: usize, L: PairLaw, const TOTALS: bool>(
         let mut totals = Totals::ZERO;
         let offset = (place * pairs.tile_size) as u32;
         let task = Task { law, pairs, displacements, tile, offset };
-        pulp::Arch::new().dispatch(Sweep::<D, L, TOTALS> { task, forces, across, totals: &mut totals });
+        sweep::<D, L, TOTALS>(&task, forces, across, &mut totals);
         totals
     });
     let tiles = pairs.tiles.iter().zip(forces.chunks_mut(pairs.tile_size)).enumerate();
@@ -178,26 +178,7 @@ struct Task<'a, const D: usize, L> {
     offset: u32,
 }
 
-/// The loop as a job that is compiled for each vector width the machine may have, and started for the widest it has.
-struct Sweep<'a, const D: usize, L, const TOTALS: bool> {
-    task: Task<'a, D, L>,
-    /// Forces on the disks of the tile.
-    forces: &'a mut [Vector<D>],
-    /// Forces of the pairs across its border.
-    across: &'a mut [Vector<D>],
-    totals: &'a mut Totals<D>,
-}
-
-impl<const D: usize, L: PairLaw, const TOTALS: bool> pulp::WithSimd for Sweep<'_, D, L, TOTALS> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        sweep::<D, L, TOTALS>(&self.task, self.forces, self.across, self.totals);
-    }
-}
-
-#[inline(always)]
+/// Forces of the pairs of a tile: on its disks, and across its border.
 fn sweep<const D: usize, L: PairLaw, const TOTALS: bool>(
     task: &Task<'_, D, L>,
     forces: &mut [Vector<D>],
@@ -208,24 +189,23 @@ fn sweep<const D: usize, L: PairLaw, const TOTALS: bool>(
     let mut columns = Columns::<D>::new();
     let blocks = &task.pairs.blocks;
     for block in &blocks[task.tile.inner.clone()] {
-        let seconds = evaluate_block::<D, L, TOTALS>(task, block, &mut columns, totals);
+        let seconds = evaluate_block(task, block, &mut columns, TOTALS.then_some(&mut *totals));
         scatter(&columns, block, (rows_of(task.pairs, block), seconds, task.offset), forces);
     }
     for block in &blocks[task.tile.border.clone()] {
-        let _ = evaluate_block::<D, L, TOTALS>(task, block, &mut columns, totals);
+        let _ = evaluate_block(task, block, &mut columns, TOTALS.then_some(&mut *totals));
         let first = &task.pairs.first[block.pairs..block.pairs + block.pair_count];
         let room = &mut across[block.pairs - task.tile.border_pairs.start..];
         scatter_to_border(&columns, (first, task.offset), room, forces);
     }
 }
 
-/// Fills the columns of a block; its second disks are returned.
-#[inline(always)]
-fn evaluate_block<'a, const D: usize, L: PairLaw, const TOTALS: bool>(
+/// Fills the columns of a block and adds to the totals, if they are asked for; its second disks are returned.
+fn evaluate_block<'a, const D: usize, L: PairLaw>(
     task: &Task<'a, D, L>,
     block: &Block,
     columns: &mut Columns<D>,
-    totals: &mut Totals<D>,
+    totals: Option<&mut Totals<D>>,
 ) -> &'a [u32] {
     let (law, pairs) = (task.law, task.pairs);
     let range = block.pairs..block.pairs + block.pair_count;
@@ -233,22 +213,59 @@ fn evaluate_block<'a, const D: usize, L: PairLaw, const TOTALS: bool>(
     gather(columns, block, rows_of(pairs, block), second, &pairs.separation[range.clone()], task.displacements);
     let whole = block.pairs..block.pairs + BLOCK;
     let anchors = (pairs.distance.get(whole.clone()), pairs.overlap.get(whole.clone()), pairs.coefficient.get(whole));
+    let arch = pulp::Arch::new();
     if let (Some(distance), Some(overlap), Some(coefficient)) = anchors {
         // A block that is not full goes on into the next one; what comes of that is not used.
-        evaluate(law, columns, distance, overlap, coefficient);
+        arch.dispatch(Arithmetic { law, columns, distance, overlap, coefficient });
     } else {
         let padded = |column: &[f64]| {
             let mut whole = [1.0; BLOCK];
             whole[..block.pair_count].copy_from_slice(&column[range.clone()]);
             whole
         };
-        let (distance, overlap) = (padded(&pairs.distance), padded(&pairs.overlap));
-        evaluate(law, columns, &distance, &overlap, &padded(&pairs.coefficient));
+        let (distance, overlap) = (&padded(&pairs.distance), &padded(&pairs.overlap));
+        arch.dispatch(Arithmetic { law, columns, distance, overlap, coefficient: &padded(&pairs.coefficient) });
     }
-    if TOTALS {
-        tally(law, columns, block.pair_count, totals);
+    if let Some(totals) = totals {
+        arch.dispatch(Tally { law, columns, count: block.pair_count, totals });
     }
     second
+}
+
+/// The arithmetic of a block as a job that is compiled for each vector width the machine may have, and started for the widest
+/// it has. What only moves numbers is compiled once.
+struct Arithmetic<'a, const D: usize, L> {
+    law: &'a L,
+    columns: &'a mut Columns<D>,
+    distance: &'a [f64],
+    overlap: &'a [f64],
+    coefficient: &'a [f64],
+}
+
+impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        evaluate(self.law, self.columns, self.distance, self.overlap, self.coefficient);
+    }
+}
+
+/// The sums over a block.
+struct Tally<'a, const D: usize, L> {
+    law: &'a L,
+    columns: &'a Columns<D>,
+    count: usize,
+    totals: &'a mut Totals<D>,
+}
+
+impl<const D: usize, L: PairLaw> pulp::WithSimd for Tally<'_, D, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        tally(self.law, self.columns, self.count, self.totals);
+    }
 }
 
 /// First disks of the rows of a block.
@@ -282,7 +299,6 @@ macro_rules! for_each_length {
     }};
 }
 
-#[inline(always)]
 fn gather<const D: usize>(
     columns: &mut Columns<D>,
     block: &Block,
@@ -360,7 +376,6 @@ fn evaluate<const D: usize, L: PairLaw>(
     }
 }
 
-#[inline(always)]
 fn scatter<const D: usize>(
     columns: &Columns<D>,
     block: &Block,
@@ -397,7 +412,6 @@ fn scatter_rows<const D: usize, const LENGTH: usize>(
 }
 
 /// Few pairs: no rows of fixed length here.
-#[inline(always)]
 fn scatter_to_border<const D: usize>(
     columns: &Columns<D>,
     (first, offset): (&[u32], u32),
@@ -505,8 +519,8 @@ pub fn stiffness_rows<const D: usize, L: PairLaw>(
     for tile in &pairs.tiles {
         let task = Task { law, pairs, displacements, tile, offset: 0 };
         for block in &pairs.blocks[tile.inner.start..tile.border.end] {
-            let (task, columns) = (&task, &mut columns);
-            pulp::Arch::new().dispatch(Stiffnesses { task, block, columns, stiffness });
+            let _ = evaluate_block(&task, block, &mut columns, None);
+            pulp::Arch::new().dispatch(Stiffnesses { law, columns: &columns, stiffness });
             for (k, &stiffness) in stiffness[..block.pair_count].iter().enumerate() {
                 if columns.overlap[k] > 0.0 {
                     let pair = block.pairs + k;
@@ -524,11 +538,10 @@ pub fn stiffness_rows<const D: usize, L: PairLaw>(
     }
 }
 
-/// The columns of a block and the stiffness of its pairs, of any value where they do not touch.
+/// Stiffness of the pairs of a block, of any value where they do not touch.
 struct Stiffnesses<'a, const D: usize, L> {
-    task: &'a Task<'a, D, L>,
-    block: &'a Block,
-    columns: &'a mut Columns<D>,
+    law: &'a L,
+    columns: &'a Columns<D>,
     stiffness: &'a mut [f64; BLOCK],
 }
 
@@ -537,10 +550,8 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Stiffnesses<'_, D, L> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        let mut none = Totals::ZERO;
-        let _ = evaluate_block::<D, L, false>(self.task, self.block, self.columns, &mut none);
         for k in 0..BLOCK {
-            self.stiffness[k] = self.task.law.stiffness(self.columns.force[k], self.columns.overlap[k]);
+            self.stiffness[k] = self.law.stiffness(self.columns.force[k], self.columns.overlap[k]);
         }
     }
 }
