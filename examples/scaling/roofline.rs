@@ -6,6 +6,10 @@ use plotters::prelude::*;
 
 use crate::{Failure, Row};
 
+/// Ranges of the axes: pairs a byte, pairs a second.
+const BYTES: (f64, f64) = (0.003, 0.1);
+const PAIRS: (f64, f64) = (5e7, 2e9);
+
 /// Bytes the loop moves: indices, separation, distance, overlap and coefficient of a pair; displacement read, force cleared, read
 /// and written of a disk.
 fn bytes(row: &Row) -> f64 {
@@ -23,8 +27,8 @@ pub fn draw(path: &Path, rows: &[Row], bandwidths: &[(&str, f64)], roots: f64) -
         let mut chart = ChartBuilder::on(&root)
             .margin(12)
             .x_label_area_size(44)
-            .y_label_area_size(64)
-            .build_cartesian_2d((0.002f64..0.2).log_scale(), (3e7f64..3e9).log_scale())?;
+            .y_label_area_size(96)
+            .build_cartesian_2d((BYTES.0..BYTES.1).log_scale(), (PAIRS.0..PAIRS.1).log_scale())?;
         chart
             .configure_mesh()
             .x_desc("pairs per byte moved")
@@ -32,16 +36,19 @@ pub fn draw(path: &Path, rows: &[Row], bandwidths: &[(&str, f64)], roots: f64) -
             .axis_desc_style(("sans-serif", 15))
             .label_style(("sans-serif", 13))
             .light_line_style(TRANSPARENT)
+            .x_label_formatter(&|x| format!("{x}"))
+            .y_label_formatter(&|y| format!("{:.0} million", y * 1e-6))
             .draw()?;
         let colours = [RGBColor(0, 114, 178), RGBColor(0, 158, 115), RGBColor(213, 94, 0)];
         for ((name, bandwidth), colour) in bandwidths.iter().zip(colours) {
-            let line = [0.002, 0.2].map(|x: f64| (x, x * bandwidth));
+            // From edge to edge of the chart: what leaves it is not cut but bent.
+            let line = [BYTES.0.max(PAIRS.0 / bandwidth), BYTES.1.min(PAIRS.1 / bandwidth)].map(|x| (x, x * bandwidth));
             chart
                 .draw_series(LineSeries::new(line, colour.stroke_width(2)))?
                 .label(format!("{name}, {:.0} GB/s", bandwidth * 1e-9))
                 .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
         }
-        let ceiling = [(0.002, 1.0 / roots), (0.2, 1.0 / roots)];
+        let ceiling = [(BYTES.0, 1.0 / roots), (BYTES.1, 1.0 / roots)];
         chart
             .draw_series(LineSeries::new(ceiling, BLACK.stroke_width(2)))?
             .label("two roots and a division a pair")
