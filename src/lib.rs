@@ -89,7 +89,7 @@
 //! |---|---|---|
 //! | `fit` | fits of a measured profile, of a measured spectrum, of ensembles | argmin, statrs |
 //! | `linear` | Hessian, factorisations, Newton, linear response, plastic part, moduli, modes, protocol sensitivity | faer |
-//! | `parallel` | the samples of a scene side by side; never changes a bit of a result | rayon |
+//! | `parallel` | the samples of a scene side by side, or the tiles of one large packing; never changes a bit of a result | rayon |
 //! | `plot` | figures and the HTML page of a report | plotters |
 //! | `cli` | the program `jamscope`, scenes from TOML | clap, toml, indicatif |
 //!
@@ -126,7 +126,7 @@ pub mod report;
 pub mod response;
 pub mod run;
 pub mod scene;
-pub mod side_by_side;
+mod side_by_side;
 #[cfg(feature = "linear")]
 pub mod sparse;
 pub mod study;

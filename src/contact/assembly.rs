@@ -43,9 +43,9 @@ pub struct Assembly<const D: usize, L> {
     /// A bound on how far any disk has moved since `listed`.
     moved: f64,
     rebuild_count: usize,
-    /// Centre minus anchor of each disk; a relaxer moves the first [`Assembly::mobile_count`] of them.
+    /// Centre minus anchor of each disk; a relaxer moves the first [`Assembly::mobile_count`] of them \[length\].
     pub displacements: Vec<Vector<D>>,
-    /// Forces of the last evaluation, all disks.
+    /// Forces of the last evaluation, all disks \[force\].
     pub forces: Vec<Vector<D>>,
 }
 
@@ -153,7 +153,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         &self.order
     }
 
-    /// Radii in working order.
+    /// Radii in working order \[length\].
     pub fn radii(&self) -> &[f64] {
         &self.radii
     }

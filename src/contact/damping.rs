@@ -101,7 +101,7 @@ impl Default for DampingChoice {
 }
 
 impl DampingChoice {
-    /// γ of either law.
+    /// γ of either law \[force / velocity, or 1 / (time length)\].
     pub fn rate(&self) -> f64 {
         match self {
             DampingChoice::Constant(law) => law.rate,

@@ -59,7 +59,7 @@ pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
         0.0
     }
 
-    /// The force of a disk pressed against its like by its own radius: the scale on which a force counts as none.
+    /// The force of a disk pressed against its like by its own radius: the scale on which a force counts as none \[force\].
     fn force_scale(&self, radius: f64) -> f64 {
         self.force(self.coefficient(radius, radius), radius)
     }
@@ -257,7 +257,7 @@ impl LawChoice {
         Ok(())
     }
 
-    /// Exponent α of the energy.
+    /// Exponent α of the energy \[1\].
     pub fn exponent(&self) -> f64 {
         match self {
             LawChoice::Hertzian(law) => law.exponent(),

@@ -12,11 +12,11 @@ use crate::vector::{Vector, difference, dot, sum};
 pub struct Disks<'a, const D: usize> {
     /// The domain.
     pub domain: &'a Domain<D>,
-    /// Positions, rounded to one number a coordinate.
+    /// Positions, rounded to one number a coordinate \[length\].
     pub anchors: &'a [Vector<D>],
-    /// Centre minus position.
+    /// Centre minus position \[length\].
     pub displacements: &'a [Vector<D>],
-    /// Radii.
+    /// Radii \[length\].
     pub radii: &'a [f64],
     /// How many of them, from the front, are mobile.
     pub mobile_count: usize,

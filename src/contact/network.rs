@@ -164,7 +164,7 @@ impl<const D: usize> ContactNetwork<D> {
         self.contacts.iter().filter(|contact| self.on_backbone(contact))
     }
 
-    /// Mean number of contacts of a mobile disk of the backbone, Z; 0 without a backbone.
+    /// Mean number of contacts of a mobile disk of the backbone, Z; 0 without a backbone \[1\].
     pub fn coordination(&self) -> f64 {
         let count = self.backbone_count();
         if count == 0 {
@@ -210,7 +210,7 @@ impl<const D: usize> ContactNetwork<D> {
         virial / (D as f64 * volume)
     }
 
-    /// Pressure of a cluster of disks with a held rim: contacts for which `rim` holds at one end count half.
+    /// Pressure of a cluster of disks with a held rim: contacts for which `rim` holds at one end count half \[force / length^(D−1)\].
     pub fn cluster_pressure(&self, volume: f64, rim: impl Fn(usize) -> bool) -> f64 {
         let virial: f64 = self
             .contacts

@@ -38,7 +38,7 @@ pub struct PairList<const D: usize> {
     pub distance: Vec<f64>,
     /// Overlap at the anchors, R_i + R_j − |D|, rounded once only; negative for a pair apart \[length\].
     pub overlap: Vec<f64>,
-    /// Coefficient of the contact law for this pair.
+    /// Coefficient of the contact law for this pair \[force / length^(α−1)\].
     pub coefficient: Vec<f64>,
     /// First disk of each row.
     pub(super) rows: Vec<u32>,

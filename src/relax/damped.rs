@@ -205,7 +205,7 @@ impl DampedDynamics {
 pub struct Motion<const D: usize, L, C> {
     /// Where the disks are, and the elastic forces.
     pub assembly: Assembly<D, L>,
-    /// Velocities in working order; those of held disks stay 0.
+    /// Velocities in working order; those of held disks stay 0 \[length / time\].
     pub velocities: Vec<Vector<D>>,
     accelerations: Vec<Vector<D>>,
     predicted: Vec<Vector<D>>,

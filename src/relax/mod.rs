@@ -57,7 +57,7 @@ impl Default for ForceLimit {
 }
 
 impl ForceLimit {
-    /// The number, whatever it is relative to.
+    /// The number, whatever it is relative to \[1, or force\].
     pub fn value(&self) -> f64 {
         match *self {
             ForceLimit::Relative(value) | ForceLimit::Absolute(value) => value,

@@ -232,7 +232,7 @@ impl Monitor {
     }
 }
 
-/// What rounding alone makes of the relative residual.
+/// What rounding alone makes of the relative residual \[1\].
 ///
 /// ```text
 /// max_i Σ_j [F'(δ_ij) 4 u w + 4 u F(δ_ij)] / ⟨F⟩          u = 2⁻⁵³

@@ -135,8 +135,13 @@ pub fn run(scene: &Scene, progress: &impl Progress) -> Result<Report, RunError> 
     #[cfg(feature = "parallel")]
     let samples: Vec<SampleReport> = {
         use rayon::prelude::*;
-        // One at a time from the front: the order of the results is that of the scene.
-        scene.sample.par_iter().enumerate().with_max_len(1).map(one).collect()
+        if scene.sample.len() == 1 {
+            // Alone, so that its relaxations may have the threads.
+            scene.sample.iter().enumerate().map(one).collect()
+        } else {
+            // One at a time from the front: the order of the results is that of the scene.
+            scene.sample.par_iter().enumerate().with_max_len(1).map(one).collect()
+        }
     };
     #[cfg(not(feature = "parallel"))]
     let samples: Vec<SampleReport> = scene.sample.iter().enumerate().map(one).collect();

@@ -77,11 +77,11 @@ pub struct Work {
 pub struct ImplicitMotion<const D: usize, L, C> {
     /// Where the disks are, and the elastic forces.
     pub assembly: Assembly<D, L>,
-    /// Velocities of the mobile disks in working order; 0 for gradient flow.
+    /// Velocities of the mobile disks in working order; 0 for gradient flow \[length / time\].
     pub velocities: Vec<Vector<D>>,
     /// Work of damping and friction since the start \[energy\].
     pub dissipated: f64,
-    /// Time since the start.
+    /// Time since the start \[time\].
     pub time: f64,
     /// Work so far.
     pub work: Work,
