@@ -10,6 +10,9 @@
 //! nothing moves: the start is written to a file, a line a disk (x, y, radius, 1 if held), with its residual in the JSON line.
 //! With `--motion` no Newton finishes the motion, and the line has the times between which the residual fell to R.
 
+#[path = "scenes/processor.rs"]
+mod processor;
+
 use std::error::Error;
 use std::fmt::Write;
 
@@ -19,6 +22,8 @@ use jamscope::io::read_packing;
 use jamscope::packing::Packing;
 use jamscope::relax::implicit::Finish;
 use jamscope::relax::{DampedDynamics, ForceLimit, ImplicitDynamics, Look, Relaxer};
+
+use processor::cpu_seconds;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (mut path, mut file, mut limit, mut motion) = (None, None, 1e-5, false);
@@ -90,10 +95,4 @@ fn table(packing: &Packing<2>) -> Result<String, std::fmt::Error> {
         writeln!(text, "{:?} {:?} {:?} {}", position[0], position[1], radius, u8::from(held))?;
     }
     Ok(text)
-}
-
-/// Processor time of this process, where the system tells it.
-fn cpu_seconds() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/self/schedstat").ok()?;
-    Some(text.split_whitespace().next()?.parse::<f64>().ok()? * 1e-9)
 }

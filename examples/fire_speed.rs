@@ -8,6 +8,10 @@
 //! and is held, all others move. The force limit is 0, so exactly N steps are made, neighbour lists, looks at the residual
 //! and bounds on the time step included.
 
+#[path = "scenes/middle.rs"]
+mod middle;
+#[path = "scenes/processor.rs"]
+mod processor;
 #[path = "scenes/tiled.rs"]
 mod tiled;
 
@@ -17,8 +21,9 @@ use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw};
 use jamscope::io::read_packing;
 use jamscope::packing::Packing;
 use jamscope::relax::{Fire, ForceLimit, Relaxer};
-use jamscope::vector::norm;
 
+use middle::inflated;
+use processor::cpu_seconds;
 use tiled::tiled;
 
 /// Stiffness of linear springs: about that of the Hertzian contacts of a packing at p = 100.
@@ -66,26 +71,4 @@ fn timed<L: PairLaw>(packing: Packing<2>, law: &L, steps: usize) -> Result<(), B
         ContactNetwork::new(&outcome.state, law)?.largest_net_force(),
     );
     Ok(())
-}
-
-/// The packing with the smallest disk nearest to the middle of the box grown by 0.1 and held.
-fn inflated(packing: Packing<2>) -> Result<Packing<2>, Box<dyn Error>> {
-    let lengths = packing.domain().lengths().ok_or("the packing is not periodic")?;
-    let smallest = packing.radii().iter().copied().fold(f64::INFINITY, f64::min);
-    let from_middle = |disk: usize| {
-        let position = packing.positions()[disk];
-        norm([position[0] - 0.5 * lengths[0], position[1] - 0.5 * lengths[1]])
-    };
-    let centre = (0..packing.len())
-        .filter(|&disk| packing.radii()[disk] == smallest)
-        .min_by(|&a, &b| from_middle(a).total_cmp(&from_middle(b)))
-        .ok_or("no disk")?;
-    let held = (0..packing.len()).map(|disk| disk == centre).collect();
-    Ok(packing.with_radius(centre, smallest + 0.1)?.with_held(held)?)
-}
-
-/// Processor time of this process, where the system tells it.
-fn cpu_seconds() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/self/schedstat").ok()?;
-    Some(text.split_whitespace().next()?.parse::<f64>().ok()? * 1e-9)
 }

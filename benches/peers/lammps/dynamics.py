@@ -32,16 +32,28 @@ MARGIN = 0.3
 
 
 class Residual:
-    """Largest net elastic force on the mobile backbone over the backbone's mean contact force."""
+    """Largest net elastic force on the mobile backbone over the backbone's mean contact force; `sides`: of a periodic box."""
 
-    def __init__(self, radius, held):
-        self.radius, self.held = radius, held
+    def __init__(self, radius, held, sides=None):
+        self.radius, self.held, self.sides = radius, held, sides
         self.listed = None
+
+    def nearest(self, apart):
+        """The shortest of the vectors between the images of two disks."""
+        return apart if self.sides is None else apart - self.sides * np.round(apart / self.sides)
 
     def pairs_near(self, position):
         """All pairs whose gap is below MARGIN, not both held, by a grid of cells."""
         size = 2 * self.radius.max() + MARGIN
-        cell = np.floor((position - position.min(axis=0)) / size).astype(int) + 1
+        place, owner = position, np.arange(len(position))
+        if self.sides is not None:
+            # With images of the disks that touch the box from outside.
+            place = np.mod(position, self.sides)
+            images = [place + np.array([x, y]) * self.sides for x in (-1, 0, 1) for y in (-1, 0, 1) if (x, y) != (0, 0)]
+            images, of_image = np.concatenate(images), np.tile(owner, 8)
+            near = ((images > -size) & (images < self.sides + size)).all(axis=1)
+            place, owner = np.concatenate([place, images[near]]), np.concatenate([owner, of_image[near]])
+        cell = np.floor((place - place.min(axis=0)) / size).astype(int) + 1
         width = cell[:, 1].max() + 2
         key = cell[:, 0] * width + cell[:, 1]
         order = np.argsort(key, kind="stable")
@@ -55,8 +67,10 @@ class Residual:
             keep = i < j if (across, along) == (0, 0) else slice(None)
             first.append(i[keep])
             second.append(j[keep])
-        i, j = np.concatenate(first), np.concatenate(second)
-        gap = np.hypot(*(position[i] - position[j]).T) - self.radius[i] - self.radius[j]
+        i, j = owner[np.concatenate(first)], owner[np.concatenate(second)]
+        if self.sides is not None:
+            i, j = np.unique(np.sort(np.stack([i, j]), axis=0), axis=1)
+        gap = np.hypot(*self.nearest(position[i] - position[j]).T) - self.radius[i] - self.radius[j]
         keep = (gap < MARGIN) & ~(self.held[i] & self.held[j])
         self.first, self.second, self.listed = i[keep], j[keep], position.copy()
 
@@ -64,7 +78,7 @@ class Residual:
         if self.listed is None or np.abs(position - self.listed).max() > 0.3 * MARGIN:
             self.pairs_near(position)
         i, j = self.first, self.second
-        apart = position[i] - position[j]
+        apart = self.nearest(position[i] - position[j])
         distance = np.hypot(*apart.T)
         overlap = self.radius[i] + self.radius[j] - distance
         touch = overlap > 0
@@ -83,7 +97,8 @@ class Residual:
                 break
             backbone &= ~loose
         mobile = backbone & ~self.held
-        return float(np.hypot(*net[:, mobile]).max() / size[both].mean())
+        self.mean_force, self.virial = float(size[both].mean()), float((size * distance).sum())
+        return float(np.hypot(*net[:, mobile]).max() / self.mean_force)
 
 
 def set_up(disks):

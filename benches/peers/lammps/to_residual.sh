@@ -1,0 +1,65 @@
+#!/bin/sh
+# To a residual of 1e-8, jamscope's FIRE and staged relaxer beside LAMMPS's FIRE, from the same start. From the root of the
+# repository:
+#
+#     . FOLDER/activate-lammps                                          (see setup.sh)
+#     benches/peers/lammps/to_residual.sh [REPEATS] [CASE ...]
+#
+# A case is `random-SEED` (random points) or a packing in whose middle a disk grows; without any, those of the README.
+# jamscope writes the start; LAMMPS's first time step and tolerance are chosen by runs that do not count. Then the three take
+# turns REPEATS times. JSON lines of all runs go to standard error, the table of medians to standard output.
+set -eu
+repeats=${1:-3}
+[ $# -eq 0 ] || shift
+[ $# -gt 0 ] || set -- random-1 random-2 random-3 fixtures/packings/hertz_N5548_p100.xyz fixtures/packings/hertz_N5548_p10.xyz
+export OMP_NUM_THREADS=1 RAYON_NUM_THREADS=1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+lammps="python $(dirname "$0")/to_residual.py"
+
+cargo build --quiet --release --example to_residual
+jamscope=${CARGO_TARGET_DIR:-target}/release/examples/to_residual
+for from in "$@"; do
+    case=$(basename "$from" .xyz)
+    "$jamscope" "$from" --write "$folder/start"
+    "$jamscope" "$from" --relaxer fire >"$folder/guess"
+    mean=$(python -c 'import json, sys; print(json.load(open(sys.argv[1]))["mean_contact_force"])' "$folder/guess")
+    $lammps "$folder/start" --case "$case" --search --mean-force "$mean" >"$folder/search"
+    cat "$folder/search" >&2
+    chosen=$(tail -n 1 "$folder/search" |
+        python -c 'import json, sys; run = json.load(sys.stdin); print("--time-step", run["time_step"], "--tolerance", run["tolerance"])')
+    for _ in $(seq "$repeats"); do
+        for relaxer in fire staged; do
+            "$jamscope" "$from" --relaxer "$relaxer" | tee -a "$folder/runs" >&2
+        done
+        # shellcheck disable=SC2086
+        $lammps "$folder/start" --case "$case" $chosen | tee -a "$folder/runs" >&2
+    done
+    # shellcheck disable=SC2086
+    $lammps "$folder/start" --case "$case" $chosen --watch | tee -a "$folder/watched" >&2
+done
+python - "$folder" <<'PYTHON'
+import json
+import statistics
+import sys
+
+read = lambda name: [json.loads(line) for line in open(f"{sys.argv[1]}/{name}")]
+first_step = {run["case"]: run["first_step"] for run in read("watched")}
+runs = {}
+for run in read("runs"):
+    runs.setdefault(run["case"], {}).setdefault((run["code"], run["relaxer"]), []).append(run)
+print("| case | pressure | code | CPU seconds | evaluations | of them until the backbone is first below | factorisations | residual | over jamscope's FIRE | over its staged |")
+print("|---|---|---|---|---|---|---|---|---|---|")
+for case, codes in runs.items():
+    median = {code: statistics.median(run["cpu_seconds"] for run in of_code) for code, of_code in codes.items()}
+    fire, staged = median["jamscope", "fire"], median["jamscope", "staged"]
+    for (code, relaxer), of_code in codes.items():
+        run, seconds, first = of_code[0], median[code, relaxer], ""
+        what = f"{code.split()[0]}, {'FIRE' if relaxer == 'fire' else 'staged'}"
+        if "time_step" in run:
+            what += f", first step {run['time_step']}"
+            first = (first_step[case] or run["steps"]) + 1
+        evaluations = run.get("force_evaluations", run["steps"] + 1)
+        print(f"| {case} | {run['pressure']:.1f} | {what} | {seconds:.2f} | {evaluations} | {first} | {run.get('factorisations', 0)} "
+              f"| {run['residual']:.1e} | {seconds / fire:.2f} | {seconds / staged:.2f} |")
+PYTHON
