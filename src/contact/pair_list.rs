@@ -154,9 +154,10 @@ impl<const D: usize> PairList<D> {
             tile.incoming.clear();
         }
         self.arranger = arranger;
-        if let Some(pair) = self.distance.iter().position(|&distance| distance == 0.0) {
-            let (first, second) = (self.first[pair] as usize, self.second[pair] as usize);
-            return Err(PackingError::CoincidentCentres { first, second });
+        let together = self.distance.iter().enumerate().filter(|&(_, &distance)| distance == 0.0);
+        // The first two in the order of the disks, wherever they lie in the list.
+        if let Some((first, second)) = together.map(|(pair, _)| (self.first[pair], self.second[pair])).min() {
+            return Err(PackingError::CoincidentCentres { first: first as usize, second: second as usize });
         }
         for tile in 0..self.tiles.len() {
             for (place, pair) in self.tiles[tile].border_pairs.clone().enumerate() {
