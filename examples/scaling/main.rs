@@ -216,8 +216,14 @@ fn linear(packing: &Packing<2>, chosen: usize) -> Result<[f64; 6], Failure> {
         Ok(())
     })?;
     let mut analysis = Analysis::of(&hessian)?;
-    let order = least(3, || Ok(drop(Analysis::of(&hessian)?)))?;
-    let factor = least(3, || Ok(drop(analysis.cholesky(hessian.matrix())?)))?;
+    let order = least(3, || {
+        let _ = Analysis::of(&hessian)?;
+        Ok(())
+    })?;
+    let factor = least(3, || {
+        let _ = analysis.cholesky(hessian.matrix())?;
+        Ok(())
+    })?;
     let unknowns = hessian.matrix().dimension();
     let (right, mut solution) = (vec![1.0; unknowns], vec![0.0; unknowns]);
     let mut factorisation = analysis.cholesky(hessian.matrix())?;
@@ -287,7 +293,8 @@ fn print_row(row: &Row) {
 
 /// The exponents x of time ∼ N^x, least squares over all sizes on logarithmic axes.
 fn print_exponents(rows: &[Row]) {
-    let columns: [(&str, &dyn Fn(&Row) -> Option<f64>); 8] = [
+    type Column<'a> = (&'a str, &'a dyn Fn(&Row) -> Option<f64>);
+    let columns: [Column<'_>; 8] = [
         ("list", &|row| Some(row.list)),
         ("loop", &|row| Some(row.forces)),
         ("FIRE step", &|row| Some(row.step)),
