@@ -30,6 +30,7 @@ hand_over            table  hand_over
 protocol             table  protocol
 stability_map        table  stability_map
 excess_coordination  table  excess_coordination 1000 8
+scaling              table  scaling --out target/book/scaling
 angular_coverage     long   angular_coverage
 isostatic_collapse   long   isostatic_collapse 5548 10 0.1
 relaxers             long   relaxers

@@ -7,8 +7,8 @@ use plotters::prelude::*;
 use crate::{Failure, Row};
 
 /// Ranges of the axes: pairs a byte, pairs a second.
-const BYTES: (f64, f64) = (0.003, 0.1);
-const PAIRS: (f64, f64) = (5e7, 2e9);
+const BYTES: (f64, f64) = (0.003, 0.06);
+const PAIRS: (f64, f64) = (2e7, 2e9);
 
 /// Bytes the loop moves: indices, separation, distance, overlap and coefficient of a pair; displacement read, force cleared, read
 /// and written of a disk.
@@ -35,6 +35,8 @@ pub fn draw(path: &Path, rows: &[Row], bandwidths: &[(&str, f64)], roots: f64) -
             .y_desc("pairs per second, one thread")
             .axis_desc_style(("sans-serif", 15))
             .label_style(("sans-serif", 13))
+            .x_labels(5)
+            .y_labels(5)
             .light_line_style(TRANSPARENT)
             .x_label_formatter(&|x| format!("{x}"))
             .y_label_formatter(&|y| format!("{:.0} million", y * 1e-6))
@@ -56,7 +58,7 @@ pub fn draw(path: &Path, rows: &[Row], bandwidths: &[(&str, f64)], roots: f64) -
         let point =
             |row: &Row| (row.pairs as f64 / bytes(row), row.pairs as f64 / (row.forces * 1e-9 * row.disks as f64));
         // The same bytes a pair at every size: side by side they can be told apart.
-        let spread = |index: usize| 1.06f64.powf(index as f64 - 0.5 * rows.len() as f64);
+        let spread = |index: usize| 1.04f64.powf(index as f64 - 0.5 * rows.len() as f64);
         let points = rows.iter().enumerate().map(|(index, row)| {
             let (x, y) = point(row);
             Circle::new((x * spread(index), y), 4, RGBColor(204, 121, 167).filled())
