@@ -16,8 +16,8 @@
 
 use std::error::Error;
 
+use jamscope::contact::damped_forces::add_damping;
 use jamscope::contact::damping::{ConstantDamping, DampingLaw};
-use jamscope::contact::forces::add_damping;
 use jamscope::contact::{ContactNetwork, Hertzian, Hessian, Members, PairLaw, Prestress};
 use jamscope::inflation::{Centre, Circle, choose_centre};
 use jamscope::io::read_packing;

@@ -108,6 +108,7 @@ pub mod displacement;
 pub mod fit;
 pub mod inflation;
 pub mod io;
+mod lanes;
 pub mod lattice;
 #[cfg(feature = "linear")]
 pub mod linear;

@@ -8,14 +8,29 @@
 #[cfg(feature = "parallel")]
 const LEAST_PIECES: usize = 4;
 
+/// Disks of a piece of a long column that is not cut otherwise; fixed, so the bits do not depend on the number of threads.
+pub const PIECE: usize = 1 << 14;
+
+/// Whether so many pieces would be worked on by several threads.
+pub fn is_shared(piece_count: usize) -> bool {
+    #[cfg(feature = "parallel")]
+    {
+        piece_count >= LEAST_PIECES && rayon::current_thread_index().is_none() && rayon::current_num_threads() > 1
+    }
+    #[cfg(not(feature = "parallel"))]
+    {
+        let _ = piece_count;
+        false
+    }
+}
+
 /// Applies `work` to every piece; the results in the order of the pieces.
 pub fn each<T: Send, R: Send>(pieces: impl Iterator<Item = T>, work: impl Fn(T) -> R + Send + Sync) -> Vec<R> {
     #[cfg(feature = "parallel")]
     {
         use rayon::prelude::*;
         let pieces: Vec<T> = pieces.collect();
-        let alone = rayon::current_thread_index().is_some();
-        if pieces.len() < LEAST_PIECES || alone || rayon::current_num_threads() == 1 {
+        if !is_shared(pieces.len()) {
             return pieces.into_iter().map(work).collect();
         }
         pieces.into_par_iter().with_max_len(1).map(work).collect()

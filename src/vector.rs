@@ -60,6 +60,38 @@ pub fn larger(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }
 
+/// The largest `|a_k − b_k|²` of two columns of vectors, NaN if any is.
+pub fn longest_difference_squared<const D: usize>(a: &[Vector<D>], b: &[Vector<D>]) -> f64 {
+    pulp::Arch::new().dispatch(LongestDifference { a, b })
+}
+
+struct LongestDifference<'a, const D: usize> {
+    a: &'a [Vector<D>],
+    b: &'a [Vector<D>],
+}
+
+impl<const D: usize> pulp::WithSimd for LongestDifference<'_, D> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) -> f64 {
+        const PIECE: usize = 64;
+        let mut squares = [0.0; PIECE];
+        // A NaN is lost by the comparisons but not by the sums.
+        let (mut most, mut total) = ([0.0; PIECE], [0.0; PIECE]);
+        for (a, b) in self.a.chunks(PIECE).zip(self.b.chunks(PIECE)) {
+            for (square, (&a, &b)) in squares.iter_mut().zip(a.iter().zip(b)) {
+                *square = dot(difference(a, b), difference(a, b));
+            }
+            for ((most, total), &square) in most.iter_mut().zip(&mut total).zip(&squares[..a.len()]) {
+                *total += square;
+                *most = if square > *most { square } else { *most };
+            }
+        }
+        if total.iter().any(|total| total.is_nan()) { f64::NAN } else { most.into_iter().fold(0.0, larger) }
+    }
+}
+
 /// `a + b` without error: the rounded sum and what rounding took away.
 ///
 /// # Source

@@ -8,8 +8,8 @@ mod lammps_inflated;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use jamscope::contact::damped_forces::add_damping;
 use jamscope::contact::damping::{ConstantDamping, DampingChoice, DampingLaw};
-use jamscope::contact::forces::add_damping;
 use jamscope::contact::{Assembly, ContactNetwork, Hertzian, Hookean, PairLaw};
 use jamscope::inflation::Circle;
 use jamscope::io::read_packing;

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use jamscope::contact::damped_forces::add_damping;
 use jamscope::contact::damping::{ConstantDamping, DampingLaw};
-use jamscope::contact::forces::add_damping;
 use jamscope::contact::hessian::{Hessian, Members, Prestress};
 use jamscope::contact::{ContactNetwork, Hertzian, PairLaw};
 use jamscope::inflation::Circle;

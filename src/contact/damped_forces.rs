@@ -4,15 +4,14 @@
 //! f_i += (F(δ) − c v_n) n,  f_j −= the same        n = r_ij/|r_ij|,  v_n = n·(v_i − v_j),  c = 0 where δ ≤ 0
 //! ```
 //!
-//! Blocks, columns and order of sums as in [`super::forces`].
+//! Blocks, rows and columns as in [`super::forces`]; tiles play no part.
 
 use crate::contact::damping::DampingLaw;
+use crate::contact::forces::{gather, geometry, rows_of, scatter};
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, PairList};
-use crate::vector::{Vector, difference, scaled, sum};
-
-/// Lanes of the sum of powers; fixed, so the bits do not depend on the machine.
-const LANES: usize = 8;
+use crate::lanes;
+use crate::vector::{Vector, scaled, sum};
 
 /// Net forces of elastic and damping contacts on all disks; the power damping takes, Σ c v_n², is returned. `forces` is
 /// overwritten, whatever it held.
@@ -21,7 +20,7 @@ const LANES: usize = 8;
 /// `damping_coefficient` has one entry a pair; `displacements`, `velocities` and `forces` one a disk.
 ///
 /// # Accuracy
-/// That of [`forces`](super::forces::forces) with [`add_damping`](super::forces::add_damping), but for the order of sums.
+/// That of [`forces`](super::forces::forces) with [`add_damping`], but for the order of sums.
 pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
     (law, damping): (&L, &C),
     pairs: &PairList<D>,
@@ -30,133 +29,129 @@ pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
     velocities: &[Vector<D>],
     forces: &mut [Vector<D>],
 ) -> f64 {
-    let mut power = [0.0; LANES];
-    pulp::Arch::new().dispatch(Sweep {
-        law,
-        damping,
-        pairs,
-        damping_coefficient,
-        displacements,
-        velocities,
-        forces,
-        power: &mut power,
-    });
-    power.iter().sum()
-}
-
-struct Sweep<'a, const D: usize, L, C> {
-    law: &'a L,
-    damping: &'a C,
-    pairs: &'a PairList<D>,
-    damping_coefficient: &'a [f64],
-    displacements: &'a [Vector<D>],
-    velocities: &'a [Vector<D>],
-    forces: &'a mut [Vector<D>],
-    power: &'a mut [f64; LANES],
-}
-
-impl<const D: usize, L: PairLaw, C: DampingLaw> pulp::WithSimd for Sweep<'_, D, L, C> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        sweep(self);
-    }
-}
-
-/// One block of pairs, column by column.
-struct Block<const D: usize> {
-    moved: [Vector<D>; BLOCK],
-    apart: [Vector<D>; BLOCK],
-    /// Relative velocity.
-    apace: [Vector<D>; BLOCK],
-    /// Force over distance.
-    factor: [f64; BLOCK],
-    power: [f64; BLOCK],
-}
-
-#[inline(always)]
-fn sweep<const D: usize, L: PairLaw, C: DampingLaw>(job: Sweep<'_, D, L, C>) {
-    job.forces.fill([0.0; D]);
-    let mut block = Block::<D> {
-        moved: [[0.0; D]; BLOCK],
-        apart: [[0.0; D]; BLOCK],
-        apace: [[0.0; D]; BLOCK],
-        factor: [0.0; BLOCK],
-        power: [0.0; BLOCK],
-    };
-    let pairs = job.pairs;
-    let mut start = 0;
-    while start < pairs.len() {
-        let range = start..pairs.len().min(start + BLOCK);
-        let (first, second) = (&pairs.first[range.clone()], &pairs.second[range.clone()]);
-        for (k, ((&i, &j), &anchor)) in first.iter().zip(second).zip(&pairs.separation[range.clone()]).enumerate() {
-            let (i, j) = (i as usize, j as usize);
-            let moved = difference(job.displacements[i], job.displacements[j]);
-            block.moved[k] = moved;
-            block.apart[k] = sum(anchor, moved);
-            block.apace[k] = difference(job.velocities[i], job.velocities[j]);
-        }
-        let columns = Columns {
+    forces.fill([0.0; D]);
+    let mut power = 0.0;
+    let mut columns = Columns::<D> { pull: [[0.0; D]; BLOCK], apace: [[0.0; D]; BLOCK], power: [0.0; BLOCK] };
+    for block in &pairs.blocks {
+        let range = block.pairs..block.pairs + block.pair_count;
+        let (rows, second) = (rows_of(pairs, block), &pairs.second[range.clone()]);
+        gather(&mut columns.pull, block, rows, second, displacements);
+        gather(&mut columns.apace, block, rows, second, velocities);
+        let listed = Listed {
+            separation: &pairs.separation[range.clone()],
             distance: &pairs.distance[range.clone()],
             overlap: &pairs.overlap[range.clone()],
             coefficient: &pairs.coefficient[range.clone()],
-            damping: &job.damping_coefficient[range.clone()],
+            damping: &damping_coefficient[range],
         };
-        evaluate((job.law, job.damping), &mut block, &columns);
-        let count = range.len();
-        block.power[count..].fill(0.0);
-        for lanes in block.power.chunks_exact(LANES) {
-            for (total, &power) in job.power.iter_mut().zip(lanes) {
-                *total += power;
-            }
-        }
-        for (k, (&i, &j)) in first.iter().zip(second).enumerate() {
-            let force = scaled(block.factor[k], block.apart[k]);
-            job.forces[i as usize] = sum(job.forces[i as usize], force);
-            job.forces[j as usize] = difference(job.forces[j as usize], force);
-        }
-        start += count;
+        power += pulp::Arch::new().dispatch(Arithmetic { laws: (law, damping), columns: &mut columns, listed });
+        scatter(&columns.pull, block, (rows, second, 0), forces);
     }
+    power
+}
+
+/// One block of pairs, column by column.
+struct Columns<const D: usize> {
+    /// Relative displacement of the pair, then the force on its first disk.
+    pull: [Vector<D>; BLOCK],
+    /// Relative velocity.
+    apace: [Vector<D>; BLOCK],
+    power: [f64; BLOCK],
 }
 
 /// What the list has of each pair of a block.
-struct Columns<'a> {
+struct Listed<'a, const D: usize> {
+    separation: &'a [Vector<D>],
     distance: &'a [f64],
     overlap: &'a [f64],
     coefficient: &'a [f64],
     damping: &'a [f64],
 }
 
+/// The arithmetic of a block, which returns the power.
+struct Arithmetic<'a, const D: usize, L, C> {
+    laws: (&'a L, &'a C),
+    columns: &'a mut Columns<D>,
+    listed: Listed<'a, D>,
+}
+
+impl<const D: usize, L: PairLaw, C: DampingLaw> pulp::WithSimd for Arithmetic<'_, D, L, C> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> f64 {
+        evaluate(self.laws, self.columns, &self.listed);
+        lanes::sum(simd, &self.columns.power[..self.listed.distance.len()])
+    }
+}
+
 #[inline(always)]
 fn evaluate<const D: usize, L: PairLaw, C: DampingLaw>(
     (law, damping): (&L, &C),
-    block: &mut Block<D>,
-    columns: &Columns<'_>,
+    columns: &mut Columns<D>,
+    listed: &Listed<'_, D>,
 ) {
-    let of_pairs = columns.distance.iter().zip(columns.overlap).zip(columns.coefficient).zip(columns.damping);
-    for (k, (((&anchor_distance, &anchor_overlap), &coefficient), &damping_coefficient)) in of_pairs.enumerate() {
+    let count = listed.distance.len();
+    let (pulls, apaces, powers) = (&mut columns.pull[..count], &columns.apace[..count], &mut columns.power[..count]);
+    let (separations, overlaps) = (&listed.separation[..count], &listed.overlap[..count]);
+    let (coefficients, dampings) = (&listed.coefficient[..count], &listed.damping[..count]);
+    for k in 0..count {
+        let moved = pulls[k];
+        let apart = sum(separations[k], moved);
         let (mut squared, mut change, mut along) = (0.0, 0.0, 0.0);
         for d in 0..D {
-            let (apart, moved) = (block.apart[k][d], block.moved[k][d]);
-            squared += apart * apart;
-            change += moved * (2.0 * apart - moved);
-            along += block.apace[k][d] * apart;
+            squared += apart[d] * apart[d];
+            change += moved[d] * (2.0 * apart[d] - moved[d]);
+            along += apaces[k][d] * apart[d];
         }
         let distance = squared.sqrt();
-        let both = distance + anchor_distance;
+        let both = distance + listed.distance[k];
         // One division, as in the loop without damping.
         let inverse = 1.0 / (distance * both);
-        let gap = anchor_overlap - change * (distance * inverse);
+        let gap = overlaps[k] - change * (distance * inverse);
         // Written so that NaN stays NaN.
         let overlap = if gap < 0.0 { 0.0 } else { gap };
         let over_distance = both * inverse;
         let normal_velocity = along * over_distance;
-        let resistance = damping.damping(damping_coefficient, overlap);
+        let resistance = damping.damping(dampings[k], overlap);
         let resisted = if gap > 0.0 { resistance * normal_velocity } else { 0.0 };
-        block.power[k] = resisted * normal_velocity;
-        block.factor[k] = (law.force(coefficient, overlap) - resisted) * over_distance;
+        powers[k] = resisted * normal_velocity;
+        pulls[k] = scaled((law.force(coefficients[k], overlap) - resisted) * over_distance, apart);
     }
+}
+
+/// Adds the damping forces −c_ij v_n of all contacts to `forces`; the power they take, Σ c_ij v_n², is returned.
+///
+/// # Shape
+/// `damping_coefficient` has one entry a pair, `velocities` one a disk.
+pub fn add_damping<const D: usize, C: DampingLaw>(
+    law: &C,
+    pairs: &PairList<D>,
+    damping_coefficient: &[f64],
+    displacements: &[Vector<D>],
+    velocities: &[Vector<D>],
+    forces: &mut [Vector<D>],
+) -> f64 {
+    let mut dissipation = 0.0;
+    for k in 0..pairs.len() {
+        let (i, j) = (pairs.first[k] as usize, pairs.second[k] as usize);
+        let (apart, distance, overlap) = geometry(pairs, k, displacements);
+        if overlap > 0.0 {
+            let damping = law.damping(damping_coefficient[k], overlap);
+            let mut along = 0.0;
+            for d in 0..D {
+                along += (velocities[i][d] - velocities[j][d]) * apart[d];
+            }
+            let normal_velocity = along / distance;
+            dissipation += damping * normal_velocity * normal_velocity;
+            let factor = damping * normal_velocity / distance;
+            for d in 0..D {
+                forces[i][d] -= factor * apart[d];
+                forces[j][d] += factor * apart[d];
+            }
+        }
+    }
+    dissipation
 }
 
 #[cfg(test)]
@@ -167,7 +162,7 @@ mod tests {
     use crate::contact::damping::ConstantDamping;
     use crate::contact::forces;
     use crate::io::read_packing;
-    use crate::vector::norm;
+    use crate::vector::{difference, norm};
 
     /// Both passes give the same sums, of terms of up to 10⁴ and 10⁶, to their rounding.
     fn agree<C: DampingLaw>(damping: &C) {
@@ -182,7 +177,7 @@ mod tests {
         let velocities: Vec<Vector<2>> = (0..assembly.len()).map(wave).collect();
         let mut apart = vec![[0.0; 2]; assembly.len()];
         forces::forces(&law, pairs, at, &mut forces::Across::default(), &mut apart);
-        let power = forces::add_damping(damping, pairs, &coefficients, at, &velocities, &mut apart);
+        let power = add_damping(damping, pairs, &coefficients, at, &velocities, &mut apart);
         let mut together = vec![[1.0; 2]; assembly.len()];
         let found = damped_forces((&law, damping), pairs, &coefficients, at, &velocities, &mut together);
         assert!((found - power).abs() < 1e-13 * power, "{found} for {power}");

@@ -8,13 +8,14 @@
 //! D_ij is the separation of the anchors, u a displacement from them, δ⁰_ij the overlap at the anchors, known to full
 //! relative accuracy. The overlap follows from its change, so it carries the rounding of the displacements (10⁻¹⁶ w) and of
 //! itself, not that of the distance (10⁻¹⁶), nor that of positions in a box (10⁻¹⁴ and more). Pairs are taken in blocks of [`BLOCK`]: first the
-//! separations are gathered, then all arithmetic is done column by column (which the compiler turns into vector
-//! instructions), then the forces are scattered. The order of every sum is fixed, so the bits do not depend on the
-//! machine's vector width.
+//! relative displacements are gathered, then all arithmetic is done column by column (which the compiler turns into vector
+//! instructions) and puts the force of each pair in the place of its displacement, then the forces are scattered. So gathering and
+//! scattering, which know no vectors, move as little as they can. The order of every sum is fixed, so the bits do not
+//! depend on the machine's vector width.
 
-use crate::contact::damping::DampingLaw;
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, Block, LONGEST_ROW, PairList, Tile};
+use crate::lanes;
 use crate::side_by_side;
 use crate::vector::{Vector, difference, scaled, sum};
 
@@ -66,20 +67,22 @@ impl<const D: usize> Totals<D> {
 }
 
 /// One block of pairs, column by column.
-struct Columns<const D: usize> {
-    moved: [Vector<D>; BLOCK],
-    apart: [Vector<D>; BLOCK],
-    overlap: [f64; BLOCK],
-    force: [f64; BLOCK],
+pub(super) struct Columns<const D: usize> {
+    /// Relative displacement of the pair, then the force on its first disk.
+    pub pull: [Vector<D>; BLOCK],
+    // What is kept only for who asks.
+    pub apart: [Vector<D>; BLOCK],
+    pub overlap: [f64; BLOCK],
+    pub force: [f64; BLOCK],
     /// Force over distance.
-    factor: [f64; BLOCK],
+    pub factor: [f64; BLOCK],
 }
 
 impl<const D: usize> Columns<D> {
     #[inline(always)]
-    fn new() -> Self {
+    pub fn new() -> Self {
         Columns {
-            moved: [[0.0; D]; BLOCK],
+            pull: [[0.0; D]; BLOCK],
             apart: [[0.0; D]; BLOCK],
             overlap: [0.0; BLOCK],
             force: [0.0; BLOCK],
@@ -190,13 +193,13 @@ fn sweep<const D: usize, L: PairLaw, const TOTALS: bool>(
     let blocks = &task.pairs.blocks;
     for block in &blocks[task.tile.inner.clone()] {
         let seconds = evaluate_block(task, block, &mut columns, TOTALS.then_some(&mut *totals));
-        scatter(&columns, block, (rows_of(task.pairs, block), seconds, task.offset), forces);
+        scatter(&columns.pull, block, (rows_of(task.pairs, block), seconds, task.offset), forces);
     }
     for block in &blocks[task.tile.border.clone()] {
         let _ = evaluate_block(task, block, &mut columns, TOTALS.then_some(&mut *totals));
         let first = &task.pairs.first[block.pairs..block.pairs + block.pair_count];
         let room = &mut across[block.pairs - task.tile.border_pairs.start..];
-        scatter_to_border(&columns, (first, task.offset), room, forces);
+        scatter_to_border(&columns.pull, (first, task.offset), room, forces);
     }
 }
 
@@ -207,47 +210,74 @@ fn evaluate_block<'a, const D: usize, L: PairLaw>(
     columns: &mut Columns<D>,
     totals: Option<&mut Totals<D>>,
 ) -> &'a [u32] {
-    let (law, pairs) = (task.law, task.pairs);
+    let Task { law, pairs, displacements, .. } = *task;
+    let Some(totals) = totals else { return fill::<D, L, false>(law, pairs, displacements, block, columns) };
+    let second = fill::<D, L, true>(law, pairs, displacements, block, columns);
+    pulp::Arch::new().dispatch(Tally { law, columns, count: block.pair_count, totals });
+    second
+}
+
+/// Fills the columns of a block, all of them or only the forces of the pairs; its second disks are returned.
+pub(super) fn fill<'a, const D: usize, L: PairLaw, const KEEP: bool>(
+    law: &L,
+    pairs: &'a PairList<D>,
+    displacements: &[Vector<D>],
+    block: &Block,
+    columns: &mut Columns<D>,
+) -> &'a [u32] {
     let range = block.pairs..block.pairs + block.pair_count;
     let second = &pairs.second[range.clone()];
-    gather(columns, block, rows_of(pairs, block), second, &pairs.separation[range.clone()], task.displacements);
+    gather(&mut columns.pull, block, rows_of(pairs, block), second, displacements);
     let whole = block.pairs..block.pairs + BLOCK;
-    let anchors = (pairs.distance.get(whole.clone()), pairs.overlap.get(whole.clone()), pairs.coefficient.get(whole));
     let arch = pulp::Arch::new();
-    if let (Some(distance), Some(overlap), Some(coefficient)) = anchors {
+    let listed = (
+        pairs.separation.get(whole.clone()),
+        pairs.distance.get(whole.clone()),
+        pairs.overlap.get(whole.clone()),
+        pairs.coefficient.get(whole),
+    );
+    if let (Some(separation), Some(distance), Some(overlap), Some(coefficient)) = listed {
         // A block that is not full goes on into the next one; what comes of that is not used.
-        arch.dispatch(Arithmetic { law, columns, distance, overlap, coefficient });
+        let anchors = Anchors { separation, distance, overlap, coefficient };
+        arch.dispatch(Arithmetic::<D, L, KEEP> { law, columns, anchors });
     } else {
         let padded = |column: &[f64]| {
             let mut whole = [1.0; BLOCK];
             whole[..block.pair_count].copy_from_slice(&column[range.clone()]);
             whole
         };
+        let mut separation = [[1.0; D]; BLOCK];
+        separation[..block.pair_count].copy_from_slice(&pairs.separation[range.clone()]);
         let (distance, overlap) = (&padded(&pairs.distance), &padded(&pairs.overlap));
-        arch.dispatch(Arithmetic { law, columns, distance, overlap, coefficient: &padded(&pairs.coefficient) });
-    }
-    if let Some(totals) = totals {
-        arch.dispatch(Tally { law, columns, count: block.pair_count, totals });
+        let coefficient = &padded(&pairs.coefficient);
+        let anchors = Anchors { separation: &separation, distance, overlap, coefficient };
+        arch.dispatch(Arithmetic::<D, L, KEEP> { law, columns, anchors });
     }
     second
 }
 
-/// The arithmetic of a block as a job that is compiled for each vector width the machine may have, and started for the widest
-/// it has. What only moves numbers is compiled once.
-struct Arithmetic<'a, const D: usize, L> {
-    law: &'a L,
-    columns: &'a mut Columns<D>,
+/// What the list has of each pair of a block.
+struct Anchors<'a, const D: usize> {
+    separation: &'a [Vector<D>],
     distance: &'a [f64],
     overlap: &'a [f64],
     coefficient: &'a [f64],
 }
 
-impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
+/// The arithmetic of a block as a job that is compiled for each vector width the machine may have, and started for the widest
+/// it has. What only moves numbers is compiled once.
+struct Arithmetic<'a, const D: usize, L, const KEEP: bool> {
+    law: &'a L,
+    columns: &'a mut Columns<D>,
+    anchors: Anchors<'a, D>,
+}
+
+impl<const D: usize, L: PairLaw, const KEEP: bool> pulp::WithSimd for Arithmetic<'_, D, L, KEEP> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        evaluate(self.law, self.columns, self.distance, self.overlap, self.coefficient);
+        evaluate::<D, L, KEEP>(self.law, self.columns, &self.anchors);
     }
 }
 
@@ -263,14 +293,14 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Tally<'_, D, L> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        tally(self.law, self.columns, self.count, self.totals);
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        tally(simd, self.law, self.columns, self.count, self.totals);
     }
 }
 
 /// First disks of the rows of a block.
 #[inline(always)]
-fn rows_of<'a, const D: usize>(pairs: &'a PairList<D>, block: &Block) -> &'a [u32] {
+pub(super) fn rows_of<'a, const D: usize>(pairs: &'a PairList<D>, block: &Block) -> &'a [u32] {
     let count: usize = block.row_counts.iter().map(|&count| usize::from(count)).sum();
     &pairs.rows[block.rows..block.rows + count]
 }
@@ -299,68 +329,59 @@ macro_rules! for_each_length {
     }};
 }
 
-fn gather<const D: usize>(
-    columns: &mut Columns<D>,
+pub(super) fn gather<const D: usize>(
+    moved: &mut [Vector<D>; BLOCK],
     block: &Block,
     rows: &[u32],
     second: &[u32],
-    separation: &[Vector<D>],
     displacements: &[Vector<D>],
 ) {
     for_each_length!(block, |of_rows, of_pairs| gather_rows(
-        (&mut columns.moved[of_pairs.clone()], &mut columns.apart[of_pairs.clone()]),
+        &mut moved[of_pairs.clone()],
         &rows[of_rows],
         &second[of_pairs.clone()],
-        &separation[of_pairs.clone()],
         displacements
     ));
 }
 
 #[inline(always)]
 fn gather_rows<const D: usize, const LENGTH: usize>(
-    (moved, apart): (&mut [Vector<D>], &mut [Vector<D>]),
+    moved: &mut [Vector<D>],
     rows: &[u32],
     second: &[u32],
-    separation: &[Vector<D>],
     displacements: &[Vector<D>],
 ) {
     // Columns of one length and a plain index: of chained iterators some stay calls.
     let count = rows.len();
-    let (moved, apart) = (&mut moved.as_chunks_mut::<LENGTH>().0[..count], &mut apart.as_chunks_mut().0[..count]);
-    let (second, separation) = (&second.as_chunks::<LENGTH>().0[..count], &separation.as_chunks().0[..count]);
+    let moved = &mut moved.as_chunks_mut::<LENGTH>().0[..count];
+    let second = &second.as_chunks::<LENGTH>().0[..count];
     for row in 0..count {
         let a = displacements[rows[row] as usize];
-        let (moved, apart): (&mut [_; LENGTH], &mut [_; LENGTH]) = (&mut moved[row], &mut apart[row]);
-        let (second, separation): (&[_; LENGTH], &[_; LENGTH]) = (&second[row], &separation[row]);
+        let (moved, second): (&mut [_; LENGTH], &[_; LENGTH]) = (&mut moved[row], &second[row]);
         for k in 0..LENGTH {
             moved[k] = difference(a, displacements[second[k] as usize]);
-            apart[k] = sum(separation[k], moved[k]);
         }
     }
 }
 
 #[inline(always)]
-fn evaluate<const D: usize, L: PairLaw>(
-    law: &L,
-    columns: &mut Columns<D>,
-    anchor_distance: &[f64],
-    anchor_overlap: &[f64],
-    coefficient: &[f64],
-) {
+fn evaluate<const D: usize, L: PairLaw, const KEEP: bool>(law: &L, columns: &mut Columns<D>, anchors: &Anchors<'_, D>) {
     // As many turns as a column has places, known beforehand: whole vectors, and no check.
     let length = "columns as long as a block";
-    let anchor_distance: &[f64; BLOCK] = anchor_distance.try_into().expect(length);
-    let anchor_overlap: &[f64; BLOCK] = anchor_overlap.try_into().expect(length);
-    let coefficient: &[f64; BLOCK] = coefficient.try_into().expect(length);
-    let Columns { moved, apart, overlap: overlaps, force: forces, factor: factors } = columns;
+    let anchor_separation: &[Vector<D>; BLOCK] = anchors.separation.try_into().expect(length);
+    let anchor_distance: &[f64; BLOCK] = anchors.distance.try_into().expect(length);
+    let anchor_overlap: &[f64; BLOCK] = anchors.overlap.try_into().expect(length);
+    let coefficient: &[f64; BLOCK] = anchors.coefficient.try_into().expect(length);
+    let Columns { pull, apart: aparts, overlap: overlaps, force: forces, factor: factors } = columns;
     for k in 0..BLOCK {
+        let moved = pull[k];
+        let apart = sum(anchor_separation[k], moved);
         let mut squared = 0.0;
         let mut change = 0.0;
         for d in 0..D {
-            let (apart, moved) = (apart[k][d], moved[k][d]);
-            squared += apart * apart;
+            squared += apart[d] * apart[d];
             // 2 D + w = (D + w) + D = 2 apart − moved.
-            change += moved * (2.0 * apart - moved);
+            change += moved[d] * (2.0 * apart[d] - moved[d]);
         }
         let distance = squared.sqrt();
         let both = distance + anchor_distance[k];
@@ -370,20 +391,25 @@ fn evaluate<const D: usize, L: PairLaw>(
         // Written so that NaN stays NaN.
         let overlap = if gap < 0.0 { 0.0 } else { gap };
         let force = law.force(coefficient[k], overlap);
-        overlaps[k] = overlap;
-        forces[k] = force;
-        factors[k] = force * (both * inverse);
+        let factor = force * (both * inverse);
+        pull[k] = scaled(factor, apart);
+        if KEEP {
+            aparts[k] = apart;
+            overlaps[k] = overlap;
+            forces[k] = force;
+            factors[k] = factor;
+        }
     }
 }
 
-fn scatter<const D: usize>(
-    columns: &Columns<D>,
+pub(super) fn scatter<const D: usize>(
+    pull: &[Vector<D>; BLOCK],
     block: &Block,
     (rows, second, offset): (&[u32], &[u32], u32),
     forces: &mut [Vector<D>],
 ) {
     for_each_length!(block, |of_rows, of_pairs| scatter_rows(
-        (&columns.factor[of_pairs.clone()], &columns.apart[of_pairs.clone()]),
+        &pull[of_pairs.clone()],
         (&rows[of_rows], &second[of_pairs.clone()], offset),
         forces
     ));
@@ -391,21 +417,20 @@ fn scatter<const D: usize>(
 
 #[inline(always)]
 fn scatter_rows<const D: usize, const LENGTH: usize>(
-    (factor, apart): (&[f64], &[Vector<D>]),
+    pull: &[Vector<D>],
     (rows, second, offset): (&[u32], &[u32], u32),
     forces: &mut [Vector<D>],
 ) {
     let count = rows.len();
-    let (factor, apart) = (&factor.as_chunks::<LENGTH>().0[..count], &apart.as_chunks::<LENGTH>().0[..count]);
+    let pull = &pull.as_chunks::<LENGTH>().0[..count];
     let second = &second.as_chunks::<LENGTH>().0[..count];
     for row in 0..count {
         let first = (rows[row] - offset) as usize;
         let mut total = forces[first];
         for k in 0..LENGTH {
-            let force = scaled(factor[row][k], apart[row][k]);
-            total = sum(total, force);
+            total = sum(total, pull[row][k]);
             let other = &mut forces[(second[row][k] - offset) as usize];
-            *other = difference(*other, force);
+            *other = difference(*other, pull[row][k]);
         }
         forces[first] = total;
     }
@@ -413,13 +438,13 @@ fn scatter_rows<const D: usize, const LENGTH: usize>(
 
 /// Few pairs: no rows of fixed length here.
 fn scatter_to_border<const D: usize>(
-    columns: &Columns<D>,
+    pull: &[Vector<D>; BLOCK],
     (first, offset): (&[u32], u32),
     across: &mut [Vector<D>],
     forces: &mut [Vector<D>],
 ) {
     for (k, (&i, across)) in first.iter().zip(across).enumerate() {
-        *across = scaled(columns.factor[k], columns.apart[k]);
+        *across = pull[k];
         let total = &mut forces[(i - offset) as usize];
         *total = sum(*total, *across);
     }
@@ -448,110 +473,29 @@ pub fn geometry<const D: usize>(
 }
 
 #[inline(always)]
-fn tally<const D: usize, L: PairLaw>(law: &L, columns: &Columns<D>, count: usize, totals: &mut Totals<D>) {
-    let mut part = Totals::<D>::ZERO;
-    for k in 0..count {
-        part.energy += law.energy(columns.force[k], columns.overlap[k]);
-        part.force_sum += columns.force[k];
-        part.contact_count += usize::from(columns.overlap[k] > 0.0);
-        for a in 0..D {
-            for b in 0..=a {
-                part.virial[a][b] += columns.factor[k] * (columns.apart[k][a] * columns.apart[k][b]);
-                part.virial[b][a] = part.virial[a][b];
-            }
-        }
-    }
-    totals.add(&part);
-}
-
-/// Adds the damping forces −c_ij v_n of all contacts to `forces`; the power they take, Σ c_ij v_n², is returned.
-///
-/// # Shape
-/// `damping_coefficient` has one entry a pair, `velocities` one a disk.
-pub fn add_damping<const D: usize, C: DampingLaw>(
-    law: &C,
-    pairs: &PairList<D>,
-    damping_coefficient: &[f64],
-    displacements: &[Vector<D>],
-    velocities: &[Vector<D>],
-    forces: &mut [Vector<D>],
-) -> f64 {
-    let mut dissipation = 0.0;
-    for k in 0..pairs.len() {
-        let (i, j) = (pairs.first[k] as usize, pairs.second[k] as usize);
-        let (apart, distance, overlap) = geometry(pairs, k, displacements);
-        if overlap > 0.0 {
-            let damping = law.damping(damping_coefficient[k], overlap);
-            let mut along = 0.0;
-            for d in 0..D {
-                along += (velocities[i][d] - velocities[j][d]) * apart[d];
-            }
-            let normal_velocity = along / distance;
-            dissipation += damping * normal_velocity * normal_velocity;
-            let factor = damping * normal_velocity / distance;
-            for d in 0..D {
-                forces[i][d] -= factor * apart[d];
-                forces[j][d] += factor * apart[d];
-            }
-        }
-    }
-    dissipation
-}
-
-/// Sums over the contacts of each disk: of the stiffness, or of what `weight` makes of (overlap, stiffness).
-///
-/// The largest row sum bounds the largest eigenvalue of the stiffness matrix from above (Gershgorin): with masses 1,
-/// `λ ≤ max_i Σ_j 2 F'(δ_ij)`, the prestress part being negative. A contact with a held disk counts once.
-///
-/// # Shape
-/// `row` has one entry a disk and is overwritten.
-pub fn stiffness_rows<const D: usize, L: PairLaw>(
+fn tally<S: pulp::Simd, const D: usize, L: PairLaw>(
+    simd: S,
     law: &L,
-    pairs: &PairList<D>,
-    displacements: &[Vector<D>],
-    mobile_count: usize,
-    weight: impl Fn(usize, f64, f64) -> f64,
-    row: &mut [f64],
+    columns: &Columns<D>,
+    count: usize,
+    totals: &mut Totals<D>,
 ) {
-    row.fill(0.0);
-    let stiffness = &mut [0.0; BLOCK];
-    let mut columns = Columns::<D>::new();
-    for tile in &pairs.tiles {
-        let task = Task { law, pairs, displacements, tile, offset: 0 };
-        for block in &pairs.blocks[tile.inner.start..tile.border.end] {
-            let _ = evaluate_block(&task, block, &mut columns, None);
-            pulp::Arch::new().dispatch(Stiffnesses { law, columns: &columns, stiffness });
-            for (k, &stiffness) in stiffness[..block.pair_count].iter().enumerate() {
-                if columns.overlap[k] > 0.0 {
-                    let pair = block.pairs + k;
-                    let (i, j) = (pairs.first[pair] as usize, pairs.second[pair] as usize);
-                    let value = weight(pair, columns.overlap[k], stiffness);
-                    if j < mobile_count {
-                        row[i] += 2.0 * value;
-                        row[j] += 2.0 * value;
-                    } else {
-                        row[i] += value;
-                    }
-                }
-            }
-        }
+    let Columns { apart, overlap, force, factor, .. } = columns;
+    // Each sum first term by term, as many as a column has places, then the terms that count.
+    let mut terms = [0.0; BLOCK];
+    for k in 0..BLOCK {
+        terms[k] = law.energy(force[k], overlap[k]);
     }
-}
-
-/// Stiffness of the pairs of a block, of any value where they do not touch.
-struct Stiffnesses<'a, const D: usize, L> {
-    law: &'a L,
-    columns: &'a Columns<D>,
-    stiffness: &'a mut [f64; BLOCK],
-}
-
-impl<const D: usize, L: PairLaw> pulp::WithSimd for Stiffnesses<'_, D, L> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        for k in 0..BLOCK {
-            self.stiffness[k] = self.law.stiffness(self.columns.force[k], self.columns.overlap[k]);
+    totals.energy += lanes::sum(simd, &terms[..count]);
+    totals.force_sum += lanes::sum(simd, &force[..count]);
+    totals.contact_count += overlap[..count].iter().filter(|&&overlap| overlap > 0.0).count();
+    for a in 0..D {
+        for b in 0..=a {
+            for k in 0..BLOCK {
+                terms[k] = factor[k] * (apart[k][a] * apart[k][b]);
+            }
+            totals.virial[a][b] += lanes::sum(simd, &terms[..count]);
+            totals.virial[b][a] = totals.virial[a][b];
         }
     }
 }

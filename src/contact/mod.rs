@@ -13,6 +13,7 @@ pub mod neighbours;
 pub mod network;
 pub mod on_site;
 pub mod pair_list;
+pub mod stiffness;
 
 pub use assembly::Assembly;
 #[cfg(feature = "linear")]

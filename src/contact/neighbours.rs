@@ -6,6 +6,7 @@
 
 use crate::contact::pair_list::{Pair, PairList};
 use crate::packing::{Domain, PackingError};
+use crate::side_by_side::{self, PIECE};
 use crate::vector::{Vector, difference, dot, sum};
 
 /// The disks as the list builder sees them: mobile ones first, then the held ones.
@@ -53,14 +54,17 @@ impl CellGrid {
         let scale: Vector<D> = std::array::from_fn(|d| counts[d] as f64 / lengths[d]);
         self.counts.clear();
         self.counts.extend_from_slice(&counts);
-        self.cell_of.clear();
-        self.cell_of.extend(points.iter().map(|point| {
-            let mut cell = 0;
-            for d in (0..D).rev() {
-                cell = cell * counts[d] + (((point[d] - corner[d]) * scale[d]).max(0.0) as usize).min(counts[d] - 1);
+        self.cell_of.resize(points.len(), 0);
+        side_by_side::each(self.cell_of.chunks_mut(PIECE).zip(points.chunks(PIECE)), |(cells, points)| {
+            for (cell_of, point) in cells.iter_mut().zip(points) {
+                let mut cell = 0;
+                for d in (0..D).rev() {
+                    let index = ((point[d] - corner[d]) * scale[d]).max(0.0) as usize;
+                    cell = cell * counts[d] + index.min(counts[d] - 1);
+                }
+                *cell_of = cell as u32;
             }
-            cell as u32
-        }));
+        });
         // Counted one cell further on, so that filling a cell moves its start to where it belongs.
         self.starts.clear();
         self.starts.resize(cell_count + 2, 0);
@@ -128,7 +132,6 @@ pub struct ListRoom<const D: usize> {
     points: Vec<Vector<D>>,
     /// Centres and radii in the order of the cells, so that the disks of a run lie side by side.
     sorted: Vec<(Vector<D>, f64)>,
-    runs: Vec<Run<D>>,
 }
 
 fn bounding_box<const D: usize>(points: &[Vector<D>]) -> (Vector<D>, Vector<D>) {
@@ -169,7 +172,7 @@ pub fn spatial_order<const D: usize>(
 pub fn build_pairs<const D: usize>(
     disks: &Disks<'_, D>,
     skin: f64,
-    coefficient: impl Fn(f64, f64) -> f64,
+    coefficient: impl Fn(f64, f64) -> f64 + Sync,
     room: &mut ListRoom<D>,
     pairs: &mut PairList<D>,
 ) -> Result<(), PackingError> {
@@ -181,35 +184,53 @@ pub fn build_pairs<const D: usize>(
             return Err(PackingError::BoxTooSmall { axis, length: lengths[axis], range: 2.0 * largest });
         }
     }
-    let ListRoom { grid, points, sorted, runs } = room;
-    points.clear();
-    let centres = disks.anchors.iter().zip(disks.displacements);
-    points.extend(centres.map(|(&a, &u)| disks.domain.wrapped(sum(a, u))));
-    grid.fill(disks.domain, points, 2.0 * largest + skin);
-    sorted.clear();
-    sorted.extend(grid.members.iter().map(|&disk| (points[disk as usize], disks.radii[disk as usize])));
-    let mut current = usize::MAX;
-    pairs.fill(points.len(), disks.mobile_count, |first, row| {
-        let cell = grid.cell_of[first] as usize;
-        if cell != current {
-            grid.neighbourhood(cell, lengths, runs);
-            current = cell;
+    let ListRoom { grid, points, sorted } = room;
+    points.resize(disks.anchors.len(), [0.0; D]);
+    let centres = disks.anchors.chunks(PIECE).zip(disks.displacements.chunks(PIECE));
+    side_by_side::each(points.chunks_mut(PIECE).zip(centres), |(points, (anchors, displacements))| {
+        for ((point, &anchor), &displacement) in points.iter_mut().zip(anchors).zip(displacements) {
+            *point = disks.domain.wrapped(sum(anchor, displacement));
         }
-        let (point, radius) = (points[first], disks.radii[first]);
-        for run in &*runs {
-            let from: Vector<D> = difference(point, run.shift);
-            let (start, end) = (grid.starts[run.cells.start] as usize, grid.starts[run.cells.end] as usize);
-            for (&second, &(other, other_radius)) in grid.members[start..end].iter().zip(&sorted[start..end]) {
-                let range = radius + other_radius + skin;
-                let apart = difference(from, other);
-                // Rounding of the coordinates moves this edge by far less than the skin can spare. One branch, not two: which
-                // of the two conditions fails cannot be guessed.
-                if (second as usize <= first) | (dot(apart, apart) >= range * range) {
-                    continue;
+    });
+    grid.fill(disks.domain, points, 2.0 * largest + skin);
+    sorted.resize(points.len(), ([0.0; D], 0.0));
+    side_by_side::each(sorted.chunks_mut(PIECE).zip(grid.members.chunks(PIECE)), |(sorted, members)| {
+        for (place, &disk) in sorted.iter_mut().zip(members) {
+            *place = (points[disk as usize], disks.radii[disk as usize]);
+        }
+    });
+    let (grid, points, sorted) = (&*grid, &*points, &*sorted);
+    pairs.fill(points.len(), disks.mobile_count, || {
+        let (mut current, mut runs, mut near) = (usize::MAX, Vec::new(), Vec::new());
+        let coefficient = &coefficient;
+        move |first: usize, row: &mut Vec<Pair<D>>| {
+            let cell = grid.cell_of[first] as usize;
+            if cell != current {
+                grid.neighbourhood(cell, lengths, &mut runs);
+                current = cell;
+            }
+            let (point, radius) = (points[first], disks.radii[first]);
+            for run in &runs {
+                let from: Vector<D> = difference(point, run.shift);
+                let (start, end) = (grid.starts[run.cells.start] as usize, grid.starts[run.cells.end] as usize);
+                // Which of the disks of a run are near cannot be guessed: they are picked without a branch.
+                near.resize(near.len().max(end - start), 0);
+                let mut count = 0;
+                for (place, (&second, &(other, other_radius))) in
+                    grid.members[start..end].iter().zip(&sorted[start..end]).enumerate()
+                {
+                    let range = radius + other_radius + skin;
+                    let apart = difference(from, other);
+                    near[count] = place;
+                    // Rounding of the coordinates moves this edge by far less than the skin can spare. NaN counts as near.
+                    count += usize::from((second as usize > first) & !(dot(apart, apart) >= range * range));
                 }
-                let separation = anchor_separation(disks, first, second as usize, apart);
-                let (reach, coefficient) = (radius + other_radius, coefficient(radius, other_radius));
-                row.push(Pair { second, separation, reach, coefficient });
+                for &place in &near[..count] {
+                    let (second, other_radius) = (grid.members[start + place] as usize, sorted[start + place].1);
+                    let separation = anchor_separation(disks, first, second, difference(from, sorted[start + place].0));
+                    let (reach, coefficient) = (radius + other_radius, coefficient(radius, other_radius));
+                    row.push(Pair { second: second as u32, separation, reach, coefficient });
+                }
             }
         }
     })

@@ -14,6 +14,7 @@
 use std::ops::Range;
 
 use crate::packing::PackingError;
+use crate::side_by_side;
 use crate::vector::{Vector, extended_norm, two_sum};
 
 /// Most pairs of a block; its columns stay in the nearest cache.
@@ -47,6 +48,8 @@ pub struct PairList<const D: usize> {
     /// Disks of a tile.
     pub(super) tile_size: usize,
     arranger: Arranger<D>,
+    /// Tiles made side by side, until they are put one after the other.
+    parts: Vec<PairList<D>>,
 }
 
 /// A block: where its pairs and rows begin, and how many rows of each length it has.
@@ -87,7 +90,28 @@ pub(super) struct Pair<const D: usize> {
 struct Arranger<const D: usize> {
     block: Waiting<D>,
     border: Waiting<D>,
-    row: Vec<Pair<D>>,
+}
+
+impl<const D: usize> Arranger<D> {
+    /// Of the pairs of a first disk, which wait from `begin` on, sets those apart whose second disk is in another tile.
+    fn set_border_apart(&mut self, first: u32, begin: usize, disks: &Range<usize>) {
+        let Arranger { block: Waiting { pairs, .. }, border } = self;
+        let inside = |pair: &Pair<D>| disks.contains(&(pair.second as usize));
+        if pairs[begin..].iter().all(inside) {
+            return;
+        }
+        let begin_across = border.pairs.len();
+        border.pairs.extend(pairs[begin..].iter().filter(|pair| !inside(pair)));
+        let mut kept = begin;
+        for place in begin..pairs.len() {
+            pairs[kept] = pairs[place];
+            kept += usize::from(inside(&pairs[place]));
+        }
+        pairs.truncate(kept);
+        for part in (begin_across..border.pairs.len()).step_by(LONGEST_ROW) {
+            border.rows.push((first, part, LONGEST_ROW.min(border.pairs.len() - part)));
+        }
+    }
 }
 
 #[derive(Debug, Clone, Default)]
@@ -115,45 +139,40 @@ impl<const D: usize> PairList<D> {
         self.first.is_empty()
     }
 
-    /// Empties the list and fills it: `pairs_of` writes the pairs of one first disk, each pair named by one of its disks
-    /// only. Disks from `first_count` on are never first.
+    /// Empties the list and fills it: what `search` makes for each tile writes the pairs of one first disk, each pair named by one
+    /// of its disks only. Disks from `first_count` on are never first.
     ///
     /// # Errors
     /// Two disks with the same centre.
-    pub(super) fn fill(
+    pub(super) fn fill<S: FnMut(usize, &mut Vec<Pair<D>>)>(
         &mut self,
         disk_count: usize,
         first_count: usize,
-        mut pairs_of: impl FnMut(usize, &mut Vec<Pair<D>>),
+        search: impl Fn() -> S + Sync,
     ) -> Result<(), PackingError> {
         self.clear();
         // Sixteen layers of disks: few pairs cross its border.
         let layer = (disk_count as f64).powf(1.0 - 1.0 / D as f64);
         self.tile_size = LEAST_TILE.max(16 * layer as usize);
-        let mut arranger = std::mem::take(&mut self.arranger);
-        self.tiles.resize(disk_count.div_ceil(self.tile_size), Tile::default());
-        for place in 0..self.tiles.len() {
-            let start = place * self.tile_size;
-            let disks = start..disk_count.min(start + self.tile_size);
-            let inner = self.blocks.len();
-            for first in disks.start..disks.end.min(first_count) {
-                arranger.row.clear();
-                pairs_of(first, &mut arranger.row);
-                self.add_row(first as u32, &disks, &mut arranger);
+        let tile_size = self.tile_size;
+        self.tiles.resize(disk_count.div_ceil(tile_size), Tile::default());
+        let mut tiles = std::mem::take(&mut self.tiles);
+        let disks = |place: usize| place * tile_size..disk_count.min((place + 1) * tile_size);
+        if side_by_side::is_shared(tiles.len()) {
+            let mut parts = std::mem::take(&mut self.parts);
+            parts.resize(tiles.len(), PairList::default());
+            side_by_side::each(tiles.iter_mut().zip(&mut parts).enumerate(), |(place, (tile, part))| {
+                part.clear();
+                part.add_tile(disks(place), first_count, search(), tile);
+            });
+            self.join(&parts, &mut tiles);
+            self.parts = parts;
+        } else {
+            for (place, tile) in tiles.iter_mut().enumerate() {
+                self.add_tile(disks(place), first_count, search(), tile);
             }
-            self.close_block(&mut arranger.block);
-            let (border, border_pairs) = (self.blocks.len(), self.len());
-            for &(first, begin, count) in &arranger.border.rows {
-                self.add_to_block(first, &arranger.border.pairs[begin..begin + count], &mut arranger.block);
-            }
-            self.close_block(&mut arranger.block);
-            arranger.border.clear();
-            let tile = &mut self.tiles[place];
-            (tile.inner, tile.border) = (inner..border, border..self.blocks.len());
-            tile.border_pairs = border_pairs..self.first.len();
-            tile.incoming.clear();
         }
-        self.arranger = arranger;
+        self.tiles = tiles;
         let together = self.distance.iter().enumerate().filter(|&(_, &distance)| distance == 0.0);
         // The first two in the order of the disks, wherever they lie in the list.
         if let Some((first, second)) = together.map(|(pair, _)| (self.first[pair], self.second[pair])).min() {
@@ -166,6 +185,60 @@ impl<const D: usize> PairList<D> {
             }
         }
         Ok(())
+    }
+
+    /// Adds the blocks of the next tile.
+    fn add_tile(
+        &mut self,
+        disks: Range<usize>,
+        first_count: usize,
+        mut pairs_of: impl FnMut(usize, &mut Vec<Pair<D>>),
+        tile: &mut Tile,
+    ) {
+        let mut arranger = std::mem::take(&mut self.arranger);
+        let inner = self.blocks.len();
+        for first in disks.start..disks.end.min(first_count) {
+            let begin = arranger.block.pairs.len();
+            pairs_of(first, &mut arranger.block.pairs);
+            arranger.set_border_apart(first as u32, begin, &disks);
+            self.add_rows(first as u32, begin, &mut arranger.block);
+        }
+        let waiting = arranger.block.pairs.len();
+        self.close_block(&mut arranger.block, waiting);
+        let (border, border_pairs) = (self.blocks.len(), self.len());
+        for &(first, begin, count) in &arranger.border.rows {
+            let place = arranger.block.pairs.len();
+            arranger.block.pairs.extend_from_slice(&arranger.border.pairs[begin..begin + count]);
+            self.add_rows(first, place, &mut arranger.block);
+        }
+        let waiting = arranger.block.pairs.len();
+        self.close_block(&mut arranger.block, waiting);
+        arranger.border.clear();
+        (tile.inner, tile.border) = (inner..border, border..self.blocks.len());
+        tile.border_pairs = border_pairs..self.first.len();
+        tile.incoming.clear();
+        self.arranger = arranger;
+    }
+
+    /// Puts lists of one tile each one after the other.
+    fn join(&mut self, parts: &[PairList<D>], tiles: &mut [Tile]) {
+        let (mut pairs, mut blocks) = (0, 0);
+        for (part, tile) in parts.iter().zip(tiles) {
+            let rows = self.rows.len();
+            self.rows.extend_from_slice(&part.rows);
+            let moved = |block: &Block| Block { pairs: block.pairs + pairs, rows: block.rows + rows, ..*block };
+            self.blocks.extend(part.blocks.iter().map(moved));
+            let moved = |range: &Range<usize>, by: usize| range.start + by..range.end + by;
+            (tile.inner, tile.border) = (moved(&tile.inner, blocks), moved(&tile.border, blocks));
+            tile.border_pairs = moved(&tile.border_pairs, pairs);
+            (pairs, blocks) = (pairs + part.len(), self.blocks.len());
+        }
+        join_column(&mut self.first, 0, parts, |part| &part.first);
+        join_column(&mut self.second, 0, parts, |part| &part.second);
+        join_column(&mut self.separation, [0.0; D], parts, |part| &part.separation);
+        join_column(&mut self.distance, 0.0, parts, |part| &part.distance);
+        join_column(&mut self.overlap, 0.0, parts, |part| &part.overlap);
+        join_column(&mut self.coefficient, 0.0, parts, |part| &part.coefficient);
     }
 
     fn clear(&mut self) {
@@ -181,35 +254,22 @@ impl<const D: usize> PairList<D> {
         self.arranger.border.clear();
     }
 
-    /// Rows of the pairs of a first disk: those within the tile to the block, the others to the border.
-    fn add_row(&mut self, first: u32, disks: &Range<usize>, arranger: &mut Arranger<D>) {
-        let Arranger { block, border, row } = arranger;
-        let begin = border.pairs.len();
-        row.retain(|pair| {
-            let inside = disks.contains(&(pair.second as usize));
-            if !inside {
-                border.pairs.push(*pair);
+    /// Makes rows of the pairs of a first disk, which wait from `begin` on; a block that has no place for one is closed before it.
+    fn add_rows(&mut self, first: u32, begin: usize, block: &mut Waiting<D>) {
+        let mut begin = begin;
+        while begin < block.pairs.len() {
+            let mut end = block.pairs.len().min(begin + LONGEST_ROW);
+            if end > BLOCK {
+                self.close_block(block, begin);
+                (begin, end) = (0, end - begin);
             }
-            inside
-        });
-        for part in (begin..border.pairs.len()).step_by(LONGEST_ROW) {
-            border.rows.push((first, part, LONGEST_ROW.min(border.pairs.len() - part)));
-        }
-        for part in row.chunks(LONGEST_ROW) {
-            self.add_to_block(first, part, block);
+            block.rows.push((first, begin, end - begin));
+            begin = end;
         }
     }
 
-    fn add_to_block(&mut self, first: u32, pairs: &[Pair<D>], block: &mut Waiting<D>) {
-        if block.pairs.len() + pairs.len() > BLOCK {
-            self.close_block(block);
-        }
-        block.rows.push((first, block.pairs.len(), pairs.len()));
-        block.pairs.extend_from_slice(pairs);
-    }
-
-    /// Writes the rows that wait as a block, the short ones first.
-    fn close_block(&mut self, block: &mut Waiting<D>) {
+    /// Writes the rows that wait, with their `count` pairs, as a block, the short ones first.
+    fn close_block(&mut self, block: &mut Waiting<D>, count: usize) {
         if block.rows.is_empty() {
             return;
         }
@@ -217,7 +277,7 @@ impl<const D: usize> PairList<D> {
         for &(_, _, count) in &block.rows {
             row_counts[count - 1] += 1;
         }
-        self.blocks.push(Block { pairs: self.len(), pair_count: block.pairs.len(), rows: self.rows.len(), row_counts });
+        self.blocks.push(Block { pairs: self.len(), pair_count: count, rows: self.rows.len(), row_counts });
         let mut measured = Measured { rest: [[0.0; D]; BLOCK], reach: [1.0; BLOCK], distance: [0.0; BLOCK] };
         let mut place = 0;
         let lengths = (1..=LONGEST_ROW).filter(|length| row_counts[length - 1] > 0);
@@ -240,8 +300,27 @@ impl<const D: usize> PairList<D> {
         pulp::Arch::new().dispatch(Measure { separation, measured: &mut measured });
         self.distance.extend_from_slice(&measured.distance[..place]);
         self.overlap.extend_from_slice(&measured.reach[..place]);
-        block.clear();
+        block.rows.clear();
+        block.pairs.drain(..count);
     }
+}
+
+/// The column of every part, one after the other.
+fn join_column<const D: usize, T: Copy + Send + Sync>(
+    column: &mut Vec<T>,
+    filler: T,
+    parts: &[PairList<D>],
+    of_part: impl Fn(&PairList<D>) -> &Vec<T>,
+) {
+    column.resize(parts.iter().map(PairList::len).sum(), filler);
+    let mut rest = column.as_mut_slice();
+    let pieces = parts.iter().map(|part| {
+        let source = of_part(part);
+        let (piece, after) = std::mem::take(&mut rest).split_at_mut(source.len());
+        rest = after;
+        (piece, source)
+    });
+    side_by_side::each(pieces, |(piece, source)| piece.copy_from_slice(source));
 }
 
 /// What a block is measured by, column by column.

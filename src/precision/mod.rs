@@ -63,7 +63,7 @@ impl Progress for () {}
 pub fn measure(
     scene: &Scene,
     settings: &PrecisionSettings,
-    progress: &impl Progress,
+    progress: &dyn Progress,
 ) -> Result<PrecisionReport, PrecisionError> {
     scene.check()?;
     settings.check()?;
@@ -80,7 +80,7 @@ fn of_scene<L: PairLaw>(
     scene: &Scene,
     law: &L,
     settings: &PrecisionSettings,
-    progress: &impl Progress,
+    progress: &dyn Progress,
 ) -> Result<Vec<SamplePrecision>, PrecisionError> {
     let of_one = |(sample, packing): (&Sample, Result<Packing<2>, RunError>)| {
         let measured = packing.and_then(|packing| of_sample(scene, sample, &packing, law, settings, progress));

@@ -21,7 +21,7 @@ pub(super) fn of_sample<L: PairLaw>(
     packing: &Packing<2>,
     law: &L,
     settings: &PrecisionSettings,
-    progress: &impl Progress,
+    progress: &dyn Progress,
 ) -> Result<SamplePrecision, RunError> {
     match scene.inflation.on_site_coupling {
         None => with_law(scene, sample, packing, law, settings, progress),
@@ -38,7 +38,7 @@ fn with_law<L: PairLaw>(
     packing: &Packing<2>,
     law: &L,
     settings: &PrecisionSettings,
-    progress: &impl Progress,
+    progress: &dyn Progress,
 ) -> Result<SamplePrecision, RunError> {
     let damping = damping_of(&sample.relaxer);
     let grown = Grown::new(&scene.inflation, packing, law, &sample.relaxer, sample.seed, &mut ())?;

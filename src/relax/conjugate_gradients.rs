@@ -56,6 +56,10 @@ impl Relaxer for NonlinearConjugateGradients {
         let descent = Descent { limit, step_limit, largest_step, flat };
         descent.relax(Conjugate { last: None }, packing, law, trace)
     }
+
+    fn passing(&self, limit: f64) -> Option<Self> {
+        self.limit.loosened(limit).map(|limit| NonlinearConjugateGradients { limit, ..*self })
+    }
 }
 
 /// What the next direction takes from the last step.

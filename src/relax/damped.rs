@@ -24,8 +24,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
+use crate::contact::damped_forces::add_damping;
 use crate::contact::damping::{DampingChoice, DampingLaw};
-use crate::contact::forces::add_damping;
 use crate::packing::{Packing, PackingError};
 use crate::relax::flat::products;
 use crate::relax::monitor::{LOOK_EVERY, Monitor};
@@ -111,6 +111,10 @@ impl Relaxer for DampedDynamics {
                 self.relax_with(packing, law, &law.viscoelastic(damping.rate), trace)
             }
         }
+    }
+
+    fn passing(&self, limit: f64) -> Option<Self> {
+        self.limit.loosened(limit).map(|limit| DampedDynamics { limit, ..*self })
     }
 }
 

@@ -130,6 +130,10 @@ impl Relaxer for Fire {
         let (stop, cost) = self.run(&mut assembly, &mut monitor, trace)?;
         Ok(monitor.outcome(assembly, packing, (stop, cost), start))
     }
+
+    fn passing(&self, limit: f64) -> Option<Self> {
+        self.limit.loosened(limit).map(|limit| Fire { limit, ..*self })
+    }
 }
 
 impl Fire {

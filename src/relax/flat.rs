@@ -1,13 +1,11 @@
 //! Sums over flat columns in a fixed order, in lanes the compiler can turn into vector instructions. Long columns are cut into
 //! pieces of a fixed length, which may be worked on side by side; their sums are added in order.
 
+use crate::lanes;
 use crate::side_by_side;
 
 /// Length of a piece of a long column; fixed, so the bits do not depend on the number of threads.
 const PIECE: usize = 1 << 15;
-
-/// Lanes of a sum; fixed, so the bits do not depend on the machine.
-const LANES: usize = 8;
 
 /// The products a step of FIRE needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,35 +42,10 @@ impl pulp::WithSimd for ProductsOf<'_> {
     type Output = Products;
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) -> Products {
-        products_in_lanes(self.force, self.velocity)
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> Products {
+        let [power, force_squared, speed_squared] = lanes::products(simd, self.force, self.velocity);
+        Products { power, force_squared, speed_squared }
     }
-}
-
-#[inline(always)]
-fn products_in_lanes(force: &[f64], velocity: &[f64]) -> Products {
-    // A loop for each sum: of one loop over all three the compiler makes a patchwork.
-    let (mut power, mut force_squared, mut speed_squared) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-    let (forces, force_rest) = force.as_chunks::<LANES>();
-    let (velocities, velocity_rest) = velocity.as_chunks::<LANES>();
-    for (f, v) in forces.iter().zip(velocities) {
-        for k in 0..LANES {
-            power[k] += f[k] * v[k];
-        }
-        for k in 0..LANES {
-            force_squared[k] += f[k] * f[k];
-        }
-        for k in 0..LANES {
-            speed_squared[k] += v[k] * v[k];
-        }
-    }
-    for (k, (&f, &v)) in force_rest.iter().zip(velocity_rest).enumerate() {
-        power[k] += f * v;
-        force_squared[k] += f * f;
-        speed_squared[k] += v * v;
-    }
-    let [power, force_squared, speed_squared] = [power, force_squared, speed_squared].map(|lanes| lanes.iter().sum());
-    Products { power, force_squared, speed_squared }
 }
 
 /// `v ← keep·v + push·F`, then `u ← u + dt·v`.
@@ -117,33 +90,42 @@ impl pulp::WithSimd for KickAndDrift<'_> {
 
 /// a·b.
 pub fn dot_product(a: &[f64], b: &[f64]) -> f64 {
-    pulp::Arch::new().dispatch(
-        #[inline(always)]
-        || {
-            let mut lanes = [0.0; LANES];
-            let (left, right) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
-            let rest = (left.remainder(), right.remainder());
-            for (x, y) in left.zip(right) {
-                for k in 0..LANES {
-                    lanes[k] += x[k] * y[k];
-                }
-            }
-            for (k, (&x, &y)) in rest.0.iter().zip(rest.1).enumerate() {
-                lanes[k] += x * y;
-            }
-            lanes.iter().sum()
-        },
-    )
+    pulp::Arch::new().dispatch(DotProduct { a, b })
+}
+
+struct DotProduct<'a> {
+    a: &'a [f64],
+    b: &'a [f64],
+}
+
+impl pulp::WithSimd for DotProduct<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> f64 {
+        lanes::dot_product(simd, self.a, self.b)
+    }
 }
 
 /// `y ← keep·y + factor·x`.
 pub fn combine(keep: f64, y: &mut [f64], factor: f64, x: &[f64]) {
-    pulp::Arch::new().dispatch(
-        #[inline(always)]
-        || {
-            for (y, x) in y.iter_mut().zip(x) {
-                *y = keep * *y + factor * x;
-            }
-        },
-    );
+    pulp::Arch::new().dispatch(Combine { keep, y, factor, x });
+}
+
+struct Combine<'a> {
+    keep: f64,
+    y: &'a mut [f64],
+    factor: f64,
+    x: &'a [f64],
+}
+
+impl pulp::WithSimd for Combine<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        for (y, x) in self.y.iter_mut().zip(self.x) {
+            *y = self.keep * *y + self.factor * x;
+        }
+    }
 }

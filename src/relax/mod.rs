@@ -63,6 +63,11 @@ impl ForceLimit {
             ForceLimit::Relative(value) | ForceLimit::Absolute(value) => value,
         }
     }
+
+    /// A relative limit in place of this one, unless this is a relative one that asks for no less.
+    fn loosened(self, limit: f64) -> Option<ForceLimit> {
+        (!matches!(self, ForceLimit::Relative(own) if own >= limit)).then_some(ForceLimit::Relative(limit))
+    }
 }
 
 /// Contact forces below this share of the force at an overlap of one radius count as none: the packing is unjammed.
@@ -288,6 +293,16 @@ pub trait Relaxer {
         law: &L,
         trace: &mut impl Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError>;
+
+    /// The same relaxer for states that are only passed through: at rest at a relative residual of `limit` \[1\]. None where it
+    /// asks for no less itself, or has no such limit.
+    fn passing(&self, limit: f64) -> Option<Self>
+    where
+        Self: Sized,
+    {
+        let _ = limit;
+        None
+    }
 }
 
 /// A relaxer chosen at run time, as a scene names it.
@@ -387,5 +402,22 @@ impl Relaxer for RelaxerChoice {
             #[cfg(feature = "linear")]
             RelaxerChoice::Staged(staged) => staged.relax(packing, law, trace),
         }
+    }
+
+    fn passing(&self, limit: f64) -> Option<Self> {
+        Some(match self {
+            RelaxerChoice::Fire(fire) => RelaxerChoice::Fire(fire.passing(limit)?),
+            RelaxerChoice::Damped(damped) => RelaxerChoice::Damped(damped.passing(limit)?),
+            RelaxerChoice::ConjugateGradients(relaxer) => RelaxerChoice::ConjugateGradients(relaxer.passing(limit)?),
+            RelaxerChoice::QuasiNewton(relaxer) => RelaxerChoice::QuasiNewton(relaxer.passing(limit)?),
+            #[cfg(feature = "linear")]
+            RelaxerChoice::Implicit(dynamics) => RelaxerChoice::Implicit(dynamics.passing(limit)?),
+            #[cfg(feature = "linear")]
+            RelaxerChoice::GradientFlow(flow) => RelaxerChoice::GradientFlow(flow.passing(limit)?),
+            #[cfg(feature = "linear")]
+            RelaxerChoice::Newton(newton) => RelaxerChoice::Newton(newton.passing(limit)?),
+            #[cfg(feature = "linear")]
+            RelaxerChoice::Staged(staged) => RelaxerChoice::Staged(staged.passing(limit)?),
+        })
     }
 }

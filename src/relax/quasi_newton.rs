@@ -54,6 +54,10 @@ impl Relaxer for QuasiNewton {
         let descent = Descent { limit, step_limit, largest_step, flat };
         descent.relax(Memory::new(memory), packing, law, trace)
     }
+
+    fn passing(&self, limit: f64) -> Option<Self> {
+        self.limit.loosened(limit).map(|limit| QuasiNewton { limit, ..*self })
+    }
 }
 
 /// One step remembered.

@@ -16,9 +16,9 @@
 //! not run into its neighbours. No entry of S is below 10⁻¹² of the largest k_i.
 
 use crate::contact::assembly::Assembly;
-use crate::contact::forces::stiffness_rows;
 use crate::contact::hessian::{Hessian, Members, Prestress, StiffContact};
 use crate::contact::law::PairLaw;
+use crate::contact::stiffness::stiffness_rows;
 use crate::linear::{Analysis, LinearError};
 use crate::sparse::SymmetricMatrix;
 use crate::vector::{Vector, larger, norm, scaled};

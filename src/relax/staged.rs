@@ -59,6 +59,10 @@ impl Relaxer for Staged {
         let (stop, cost, monitor) = self.run(&mut assembly, trace)?;
         Ok(monitor.outcome(assembly, packing, (stop, cost), start))
     }
+
+    fn passing(&self, limit: f64) -> Option<Self> {
+        self.limit.loosened(limit).map(|limit| Staged { limit, ..*self })
+    }
 }
 
 impl Staged {

@@ -92,14 +92,14 @@ pub trait Progress: Sync {
 impl Progress for () {}
 
 /// Passes the residual of one sample on.
-struct Watch<'a, P> {
-    progress: &'a P,
+struct Watch<'a> {
+    progress: &'a dyn Progress,
     sample: usize,
     stage: &'static str,
     limit: f64,
 }
 
-impl<P: Progress> Trace for Watch<'_, P> {
+impl Trace for Watch<'_> {
     fn look(&mut self, look: &Look) {
         if look.step_count == 0 {
             self.progress.stage(self.sample, self.stage, self.limit);
@@ -118,7 +118,7 @@ impl<P: Progress> Trace for Watch<'_, P> {
 ///
 /// # Errors
 /// A scene that makes no sense. What fails in one sample is told in its place in the report.
-pub fn run(scene: &Scene, progress: &impl Progress) -> Result<Report, RunError> {
+pub fn run(scene: &Scene, progress: &dyn Progress) -> Result<Report, RunError> {
     scene.check()?;
     let one = |(index, sample): (usize, &Sample)| {
         let result = match run_sample(scene, sample, index, progress) {
@@ -174,7 +174,7 @@ pub fn run_sample(
     scene: &Scene,
     sample: &Sample,
     index: usize,
-    progress: &impl Progress,
+    progress: &dyn Progress,
 ) -> Result<SampleResult, RunError> {
     match scene.law {
         LawChoice::Hertzian(law) => run_with(scene, sample, &law, index, progress),
@@ -188,7 +188,7 @@ fn run_with<L: PairLaw>(
     sample: &Sample,
     law: &L,
     index: usize,
-    progress: &impl Progress,
+    progress: &dyn Progress,
 ) -> Result<SampleResult, RunError> {
     let (prepared, packing) = prepared(scene, sample, law, index, progress)?;
     measure(scene, sample, (prepared, packing), law, index, progress)
@@ -200,7 +200,7 @@ pub(crate) fn prepared<L: PairLaw>(
     sample: &Sample,
     law: &L,
     index: usize,
-    progress: &impl Progress,
+    progress: &dyn Progress,
 ) -> Result<(Packing<2>, PackingSummary), RunError> {
     let relaxer = &scene.preparation.relaxer;
     let trace = &mut Watch { progress, sample: index, stage: "preparation", limit: relaxer.limit().value() };
@@ -214,7 +214,7 @@ pub(crate) fn measure<L: PairLaw>(
     (prepared, packing): (Packing<2>, PackingSummary),
     law: &L,
     index: usize,
-    progress: &impl Progress,
+    progress: &dyn Progress,
 ) -> Result<SampleResult, RunError> {
     let watch =
         |stage, relaxer: &RelaxerChoice| Watch { progress, sample: index, stage, limit: relaxer.limit().value() };

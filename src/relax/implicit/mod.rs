@@ -133,6 +133,10 @@ impl Relaxer for ImplicitDynamics {
             }
         }
     }
+
+    fn passing(&self, limit: f64) -> Option<Self> {
+        self.limit.loosened(limit).map(|limit| ImplicitDynamics { limit, ..*self })
+    }
 }
 
 impl Relaxer for GradientFlow {
@@ -151,5 +155,9 @@ impl Relaxer for GradientFlow {
         };
         // The unit of time is that of the friction: 1 is as good as any.
         run.relax(packing, law, &ConstantDamping { rate: 0.0 }, Inertia::Friction(1.0), trace)
+    }
+
+    fn passing(&self, limit: f64) -> Option<Self> {
+        self.limit.loosened(limit).map(|limit| GradientFlow { limit, ..*self })
     }
 }

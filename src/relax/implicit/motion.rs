@@ -16,8 +16,9 @@ mod stabilised;
 
 use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
+use crate::contact::damped_forces::add_damping;
 use crate::contact::damping::DampingLaw;
-use crate::contact::forces::{Totals, add_damping};
+use crate::contact::forces::Totals;
 use crate::packing::{Packing, PackingError};
 use crate::relax::flat::products;
 use crate::relax::implicit::matrix::StepMatrix;

@@ -246,8 +246,8 @@ fn largest_eigenvalue<const D: usize>(matrix: &[Vector<D>; D]) -> f64 {
 mod tests {
     use super::*;
     use crate::contact::Hertzian;
+    use crate::contact::damped_forces::add_damping;
     use crate::contact::damping::ConstantDamping;
-    use crate::contact::forces::add_damping;
     use crate::io::read_packing;
 
     fn stored() -> ImplicitMotion<2, Hertzian, ConstantDamping> {
