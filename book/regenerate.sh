@@ -55,7 +55,7 @@ os.replace(path + ".new", path)
 PYTHON
 }
 
-example() { cargo run --release --quiet --example "$@"; }
+example() { cargo run --release --quiet --features measurements --example "$@"; }
 
 # A picture that a program wrote takes the place of the old one.
 take() { cp "$1" "$2.new" && mv "$2.new" "$2"; }
@@ -71,7 +71,7 @@ angular() {
     example angular_study -- --out "$work/angular_$disks" --disks "$disks" --samples "$samples" --reduced "$reduced"
     take "$work/angular_$disks/spectrum.svg" "$images/angular_spectrum_$disks.svg"
     take "$work/angular_$disks/correlation.svg" "$images/angular_correlation_$disks.svg"
-    record "angular_*_$disks.svg" "cargo run --release --example angular_study -- --out DIR --disks $disks --samples $samples --reduced $reduced" "1 to $samples"
+    record "angular_*_$disks.svg" "cargo run --release --features measurements --example angular_study -- --out DIR --disks $disks --samples $samples --reduced $reduced" "1 to $samples"
 }
 angular_5548() { angular 5548 40 1e6,1e7,3e7,1e8,3e8,1e9,3e9; }
 angular_22184() { angular 22184 10 1e7,1e8,1e9; }
@@ -87,7 +87,7 @@ table() {
     local name=$1 command=$2
     mkdir -p book/tables
     {
-        echo "# cargo run --release --example ${command/ / -- }"
+        echo "# cargo run --release --features measurements --example ${command/ / -- }"
         echo "# jamscope $(version), $(date -u +%F), seeds in the example, $(nproc) cores, $(uname -m)"
         # shellcheck disable=SC2086
         set -- $command

@@ -1,7 +1,7 @@
 //! How often the stated intervals of slope and crossover hold the truth.
 //!
 //! ```text
-//! cargo run --release --example angular_coverage -- [TRIALS [DISK_COUNT ...]]
+//! cargo run --release --features measurements --example angular_coverage -- [TRIALS [DISK_COUNT ...]]
 //! ```
 //!
 //! Gaussian rings of 60, 1000 and 4000 disks, anywhere and jittered, 1000 of each unless told otherwise. Two standard errors hold

@@ -1,7 +1,7 @@
 //! Error against run time of estimators of S(f) and G(θ) from values at irregular angles.
 //!
 //! ```text
-//! cargo run --release --example angular_estimators [FILE.svg]
+//! cargo run --release --features measurements --example angular_estimators [FILE.svg]
 //! ```
 //!
 //! Gaussian rings with S ∝ f^(−1.5) up to f = 16 n at n random angles, 60, 1000 and 4000 disks, without noise and with noise of

@@ -1,7 +1,7 @@
 //! The minimisers of argmin on the energy of a packing, beside the ones here: work, allocations, and how deep they get.
 //!
 //! ```text
-//! cargo run --release --example argmin_minimisers
+//! cargo run --release --features measurements --example argmin_minimisers
 //! ```
 //!
 //! A stored packing inflated by 0.1 in a circle. Lengths are measured so that Gershgorin's bound on the stiffness is 1, since

@@ -2,7 +2,7 @@
 //! `benches/peers/lammps/dynamics.sh`.
 //!
 //! ```text
-//! cargo run --release --example dynamics_speed -- PACKING [--limit R] [--start FILE] [--motion]
+//! cargo run --release --features measurements --example dynamics_speed -- PACKING [--limit R] [--start FILE] [--motion]
 //! ```
 //!
 //! The smallest backbone disk of seed 1 becomes the middle of a circle with a held rim, grows by 0.1 and is held; constant

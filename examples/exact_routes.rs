@@ -1,7 +1,7 @@
 //! Error against run time of the ways to evaluate the screened profile, as tables in markdown.
 //!
 //! ```text
-//! cargo run --release --example exact_routes
+//! cargo run --release --features measurements --example exact_routes
 //! ```
 //!
 //! d/d_0 in two dimensions at the points of `fixtures/reference/bessel_profile.json`, whose values have 25 digits. Errors are

@@ -1,7 +1,7 @@
 //! How ΔZ of the backbone grows with the pressure, and with what prefactor.
 //!
 //! ```text
-//! cargo run --release --example excess_coordination -- [DISK_COUNT [SEED_COUNT [scaled | quenched [fire | damped]]]]
+//! cargo run --release --features measurements --example excess_coordination -- [DISK_COUNT [SEED_COUNT [scaled | quenched [fire | damped]]]]
 //! ```
 //!
 //! Hertzian packings made from random points: `scaled` (default) to p = 1, 3, 10, 30, 100, 300, 800 by scaling the box after

@@ -1,7 +1,7 @@
 //! Which settings of FIRE take the fewest force evaluations: each changed alone, and those named.
 //!
 //! ```text
-//! cargo run --release --example fire_settings -- [--limit 1e-8] [KEY=VALUE[,KEY=VALUE]...] ...
+//! cargo run --release --features measurements --example fire_settings -- [--limit 1e-8] [KEY=VALUE[,KEY=VALUE]...] ...
 //! ```
 //!
 //! KEY is one of time_step_fraction, delay, step_growth, step_cut, mixing, mixing_decay. Starts: random points of 1000 disks at four

@@ -1,7 +1,7 @@
 //! Time of a particle step of FIRE, printed as one JSON line; jamscope's side of `benches/peers/lammps/compare.sh`.
 //!
 //! ```text
-//! cargo run --release --example fire_speed -- PACKING [--steps N] [--replicate K] [--law hertz|hooke]
+//! cargo run --release --features measurements --example fire_speed -- PACKING [--steps N] [--replicate K] [--law hertz|hooke]
 //! ```
 //!
 //! The packing (extended XYZ, periodic) is tiled K × K, the smallest disk nearest to the middle of the box grows by 0.1

@@ -2,7 +2,7 @@
 //! `benches/peers/scipy/compare.sh`.
 //!
 //! ```text
-//! cargo run --release --example fit_cost -- [--write FOLDER]
+//! cargo run --release --features measurements --example fit_cost -- [--write FOLDER]
 //! ```
 //!
 //! Rings one diameter wide of a screened profile, a = 0.5, R = 42, d_0 = 0.1, with Gaussian errors of 2 % of the displacement at a

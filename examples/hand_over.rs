@@ -1,8 +1,8 @@
 //! When FIRE should hand a packing over to Newton: work and time of the staged relaxer over those of FIRE alone.
 //!
 //! ```text
-//! cargo run --release --example hand_over -- [NAME] ...          (stored Hertzian packings, four centres each)
-//! cargo run --release --example hand_over -- [--keep FOLDER] DISKS PRESSURE ...  (packings prepared first, one centre each)
+//! cargo run --release --features measurements --example hand_over -- [NAME] ...          (stored Hertzian packings, four centres each)
+//! cargo run --release --features measurements --example hand_over -- [--keep FOLDER] DISKS PRESSURE ...  (packings prepared first, one centre each)
 //! ```
 //!
 //! The centre of each packing is inflated by 0.1 in a circle with a held rim and the rest relaxed to 10⁻¹² of the mean contact

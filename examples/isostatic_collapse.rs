@@ -1,7 +1,7 @@
 //! Whether h_∥(r) of different pressures is one function of r ΔZ, with ℓ_iso ΔZ = C; and that h_r(r) is not.
 //!
 //! ```text
-//! cargo run --release --example isostatic_collapse -- [DISK_COUNT [SAMPLE_COUNT [INCREASE]]]      (5548 Hertzian disks, 10 samples, d_0 = 0.1)
+//! cargo run --release --features measurements --example isostatic_collapse -- [DISK_COUNT [SAMPLE_COUNT [INCREASE]]]      (5548 Hertzian disks, 10 samples, d_0 = 0.1)
 //! ```
 //!
 //! Packings at p = 100, 300, 1000 and 3000, everything relaxed by FIRE and Newton in turn. h of a pressure is the root of the mean of h²

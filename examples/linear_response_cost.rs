@@ -1,7 +1,7 @@
 //! What the linear response of the largest packing of the study costs: seconds of each stage, and memory.
 //!
 //! ```text
-//! cargo run --release --example linear_response_cost -- FILE
+//! cargo run --release --features measurements --example linear_response_cost -- FILE
 //! ```
 //!
 //! 88776 disks at p = 100, to 20 %, are read from FILE; if there is none they are prepared (some minutes) and written there first. The

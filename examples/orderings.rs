@@ -2,8 +2,8 @@
 //! conjugate gradients with an incomplete factor once.
 //!
 //! ```sh
-//! cargo run --release --example orderings                      # 5548 to 88768 disks, 2000 and 8000 balls
-//! cargo run --release --example orderings -- --write FOLDER    # the matrices as well, for benches/peers/cholmod
+//! cargo run --release --features measurements --example orderings                      # 5548 to 88768 disks, 2000 and 8000 balls
+//! cargo run --release --features measurements --example orderings -- --write FOLDER    # the matrices as well, for benches/peers/cholmod
 //! ```
 
 use std::error::Error;

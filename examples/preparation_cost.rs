@@ -1,7 +1,7 @@
 //! What preparing a packing at a pressure costs, with every state of the search brought to rest and with states passed through.
 //!
 //! ```text
-//! cargo run --release --example preparation_cost -- [--disks N] [--seeds N] [PRESSURE] ...
+//! cargo run --release --features measurements --example preparation_cost -- [--disks N] [--seeds N] [PRESSURE] ...
 //! ```
 //!
 //! Sums over the seeds, for FIRE and for the staged relaxer: relaxations, force evaluations, factorisations, seconds.

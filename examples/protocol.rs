@@ -1,7 +1,7 @@
 //! In how many minima the relaxers end from one inflated start, and which of them share one.
 //!
 //! ```text
-//! cargo run --example protocol -- [NAME] ...          (stored Hertzian packings, four centres each)
+//! cargo run --release --features measurements --example protocol -- [NAME] ...          (stored Hertzian packings, four centres each)
 //! ```
 //!
 //! The centre of each packing is inflated by 0.1 in a circle with a held rim. A row is a centre: how many protocols came to

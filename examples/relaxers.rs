@@ -1,7 +1,7 @@
 //! What each relaxer needs from the same start, and whether it ends in the same minimum.
 //!
 //! ```text
-//! cargo run --release --example relaxers -- [NAME] ...          (stored Hertzian packings, four centres each)
+//! cargo run --release --features measurements --example relaxers -- [NAME] ...          (stored Hertzian packings, four centres each)
 //! ```
 //!
 //! The centre of each packing is inflated by 0.1 in a circle with a held rim and the rest relaxed to 10⁻⁸ and to 10⁻¹² of the

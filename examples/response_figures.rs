@@ -1,7 +1,7 @@
 //! Contact changes, stretching of bonds, isostatic length and angular modes of one inflation, in numbers and figures.
 //!
 //! ```text
-//! cargo run --release --example response_figures -- FOLDER [DISK_COUNT [PRESSURE [SEED]]]      (5548 Hertzian disks, p = 100)
+//! cargo run --release --features measurements --example response_figures -- FOLDER [DISK_COUNT [PRESSURE [SEED]]]      (5548 Hertzian disks, p = 100)
 //! ```
 //!
 //! A packing is prepared, its disk inflated by 0.1 in a circle with a held rim and deflated again. FOLDER gets one SVG a

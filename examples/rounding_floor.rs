@@ -1,7 +1,7 @@
 //! How far the residual can fall: FIRE with no limit at all, until it fluctuates at the rounding floor.
 //!
 //! ```text
-//! cargo run --release --example rounding_floor -- [DISKS] [PRESSURE] ...      (5548 disks at p = 1, 100, 1000)
+//! cargo run --release --features measurements --example rounding_floor -- [DISKS] [PRESSURE] ...      (5548 disks at p = 1, 100, 1000)
 //! ```
 //!
 //! Beside the floor reached stand the library's own estimate and what positions kept as one number a coordinate would

@@ -1,7 +1,7 @@
 //! Whether implicit dynamics end in the minimum that explicit damped dynamics end in, and whether those do so themselves.
 //!
 //! ```text
-//! cargo run --release --example same_minimum -- [--centres N] [--tolerances A,B,...] [NAME] ...   (stored packings)
+//! cargo run --release --features measurements --example same_minimum -- [--centres N] [--tolerances A,B,...] [NAME] ...   (stored packings)
 //! ```
 //!
 //! The centre of each packing is inflated by 0.1 in a circle with a held rim, and the rest moves with either damping law:

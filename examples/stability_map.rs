@@ -1,7 +1,7 @@
 //! How long a step of damped dynamics may be, explicit and implicit, from p = 0.01 to 3000; and the energy balance on the way.
 //!
 //! ```text
-//! cargo run --release --example stability_map
+//! cargo run --release --features measurements --example stability_map
 //! ```
 //!
 //! Stored Hertzian packings of 1000 disks and two of 400 prepared at p = 0.01 and 3000, cut to a circle with a held rim, at

@@ -1,7 +1,7 @@
 //! How long the three kinds of steps of implicit dynamics take, by which [`ImplicitDynamics`] chooses among them.
 //!
 //! ```text
-//! cargo run --release --example step_cost -- PACKING ...
+//! cargo run --release --features measurements --example step_cost -- PACKING ...
 //! ```
 //!
 //! The smallest backbone disk of seed 1 becomes the middle of a circle with a held rim, grows by 0.1 and is held; constant

@@ -1,8 +1,8 @@
 //! A packing in any format as LAMMPS data, and for comparisons what we compute of it:
 //!
 //! ```sh
-//! cargo run --release --example to_lammps -- PACKING OUT.data
-//! cargo run --release --example to_lammps -- PACKING OUT.data FORCES.xyz [JITTER] [hookean]
+//! cargo run --release --features measurements --example to_lammps -- PACKING OUT.data
+//! cargo run --release --features measurements --example to_lammps -- PACKING OUT.data FORCES.xyz [JITTER] [hookean]
 //! ```
 //!
 //! FORCES.xyz has the net force on every disk as a column, energy and pressure in its comment line. JITTER moves every coordinate by

@@ -2,7 +2,7 @@
 //! `benches/peers/lammps/to_residual.sh`.
 //!
 //! ```text
-//! cargo run --release --example to_residual -- random[-SEED]|PACKING [--limit R] [--relaxer fire|staged] [--write FILE]
+//! cargo run --release --features measurements --example to_residual -- random[-SEED]|PACKING [--limit R] [--relaxer fire|staged] [--write FILE]
 //! ```
 //!
 //! `random`: 5548 bidisperse disks at random points (seed 1 unless given) of a periodic box, packing fraction 0.852, which relaxes to

@@ -1,7 +1,7 @@
 //! The angular part of the study on real packings: S(f), G(θ), G*, θ*, f† and the shares of angular modes against p̂ = p N^(3/2).
 //!
 //! ```text
-//! cargo run --release --example angular_study -- --out DIR [--disks 5548] [--samples 20] [--reduced 1e6,1e7,1e8,1e9] [--seed 1]
+//! cargo run --release --features measurements --example angular_study -- --out DIR [--disks 5548] [--samples 20] [--reduced 1e6,1e7,1e8,1e9] [--seed 1]
 //! ```
 //!
 //! Hertzian disks from random points, brought to the pressure p = p̂/N^(3/2), N = n π (R/L)² those inside the circle of R/L = 0.480

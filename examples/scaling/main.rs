@@ -2,7 +2,7 @@
 //! performance.
 //!
 //! ```text
-//! cargo run --release --example scaling -- [--most DISKS] [--threads N] [--out FOLDER]
+//! cargo run --release --features measurements --example scaling -- [--most DISKS] [--threads N] [--out FOLDER]
 //! ```
 //!
 //! The packings are `hertz_N1000_p100` and `hertz_N5548_p100` of the fixtures, tiled to up to `--most` disks (10⁶), the

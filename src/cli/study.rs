@@ -316,16 +316,16 @@ mod cost {
             let first = cell.first;
             let (target, value) = first.target.name_and_value();
             text += &format!(
-                "{} {} disks, {} {value}: {} packings, {} inflations each, {} done, {:.1} s each {}, {:.0} s left on one core\n",
+                "{} {} disks, {} {value}: {} packings, {} inflations each, {} done, {} each {}, {} left on one core\n",
                 first.law.name(),
                 first.disk_count,
                 target.replace('_', " "),
                 cell.count,
                 first.scene_count(),
                 cell.done,
-                cell.each,
+                words(cell.each),
                 if cell.done > 0 { "measured" } else { "expected" },
-                cell.left(),
+                words(cell.left()),
             );
         }
         text + &summary(plan, folder, shard)
@@ -381,6 +381,7 @@ mod cost {
     /// A time in the unit it is read in.
     fn words(seconds: f64) -> String {
         match seconds {
+            s if s > 0.0 && s < 1.0 => format!("{s:.2} s"),
             s if s < 120.0 => format!("{s:.0} s"),
             s if s < 7200.0 => format!("{:.0} min", s / 60.0),
             s => format!("{:.1} h", s / 3600.0),

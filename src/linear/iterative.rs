@@ -7,7 +7,7 @@
 //! The incomplete factor may not exist although A is positive definite; α is then raised until it does. Where the factor fits,
 //! [`Analysis`](crate::linear::Analysis) is faster by far in two dimensions: jammed packings of 5465, 21863 and 87455 disks
 //! take 379, 740 and 1433 iterations. 1999 and 7998 balls take 85 and 128, and there the matrix has a 60th of the values of the
-//! factor (`cargo run --release --example orderings`).
+//! factor (`cargo run --release --features measurements --example orderings`).
 //!
 //! # Source
 //! Hestenes, Stiefel (1952), J. Res. Natl. Bur. Stand. 49, 409; Meijerink, van der Vorst (1977), Math. Comput. 31, 148

@@ -20,7 +20,7 @@ use crate::linear::{LinearError, dissection};
 ///
 /// In two dimensions both take the same time to factorise to 12 %, and dissection leaves 11 to 20 % more values (jammed
 /// packings of 5548 to 88768 disks). In three it takes a half to two thirds of the time and 72 to 79 % of the values (2000
-/// and 8000 balls). `cargo run --release --example orderings`.
+/// and 8000 balls). `cargo run --release --features measurements --example orderings`.
 ///
 /// # Errors
 /// Not enough memory.

@@ -75,7 +75,7 @@ fn slopes_of_1000_disks_lie_within_two_standard_errors() {
 
 #[test]
 fn slopes_of_4000_disks_lie_within_two_standard_errors() {
-    // 1000 trials take half a minute: `cargo run --release --example angular_coverage` has them.
+    // 1000 trials take half a minute: `cargo run --release --features measurements --example angular_coverage` has them.
     slopes(4000, 200);
 }
 

@@ -6,6 +6,6 @@ cd "$(dirname "$0")/../../.."
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cc -O2 benches/peers/cholmod/factorise.c -lcholmod -lm -o "$folder/factorise"
-cargo build --release --quiet --example orderings
+cargo build --release --quiet --features measurements --example orderings
 target/release/examples/orderings --write "$folder"
 (cd "$folder" && OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 ./factorise ./*.mtx)

@@ -10,8 +10,8 @@ repeats=${3:-5}
 replicate=${4:-1}
 export RAYON_NUM_THREADS=1
 
-cargo build --quiet --release --example fire_speed
+cargo build --quiet --release --features measurements --example fire_speed
 for _ in $(seq "$repeats"); do
-    cargo run --quiet --release --example fire_speed -- "$packing" --steps "$steps" --replicate "$replicate"
+    cargo run --quiet --release --features measurements --example fire_speed -- "$packing" --steps "$steps" --replicate "$replicate"
     python benches/peers/jax_md/fire_speed.py "$packing" --steps "$steps" --replicate "$replicate"
 done

@@ -14,8 +14,8 @@ replicate=${4:-1}
 law=${5:-hertz}
 export OMP_NUM_THREADS=1 RAYON_NUM_THREADS=1
 
-cargo build --quiet --release --example fire_speed
+cargo build --quiet --release --features measurements --example fire_speed
 for _ in $(seq "$repeats"); do
-    cargo run --quiet --release --example fire_speed -- "$packing" --steps "$steps" --replicate "$replicate" --law "$law"
+    cargo run --quiet --release --features measurements --example fire_speed -- "$packing" --steps "$steps" --replicate "$replicate" --law "$law"
     python benches/peers/lammps/fire_speed.py "$packing" --steps "$steps" --replicate "$replicate" --law "$law"
 done

@@ -19,7 +19,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 here=$(dirname "$0")
 
-cargo build --quiet --release --example dynamics_speed
+cargo build --quiet --release --features measurements --example dynamics_speed
 jamscope=${CARGO_TARGET_DIR:-target}/release/examples/dynamics_speed
 "$jamscope" "$packing" --start "$folder/start"
 for _ in $(seq "$repeats"); do

@@ -17,7 +17,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 lammps="python $(dirname "$0")/to_residual.py"
 
-cargo build --quiet --release --example to_residual
+cargo build --quiet --release --features measurements --example to_residual
 jamscope=${CARGO_TARGET_DIR:-target}/release/examples/to_residual
 for from in "$@"; do
     case=$(basename "$from" .xyz)

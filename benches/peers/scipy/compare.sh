@@ -6,10 +6,10 @@
 #     benches/peers/scipy/compare.sh
 set -eu
 export RAYON_NUM_THREADS=1 OMP_NUM_THREADS=1
-cargo run --quiet --release --example exact_routes | sed -n '1,2p;/`Screened`/p'
+cargo run --quiet --release --features measurements --example exact_routes | sed -n '1,2p;/`Screened`/p'
 python3 benches/peers/scipy/profile.py
 echo
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-cargo run --quiet --release --example fit_cost -- --write "$folder"
+cargo run --quiet --release --features measurements --example fit_cost -- --write "$folder"
 python3 benches/peers/scipy/fit.py "$folder"

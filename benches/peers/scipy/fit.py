@@ -1,4 +1,4 @@
-"""κ by `scipy.optimize.curve_fit`, from the profiles that `cargo run --example fit_cost -- --write FOLDER` wrote.
+"""κ by `scipy.optimize.curve_fit`, from the profiles that `cargo run --release --features measurements --example fit_cost -- --write FOLDER` wrote.
 
 Amplitude and κ are free. One start, in the middle of the range (κR = 7), and the best of many, 16 a branch of the profile, which
 is how densely jamscope looks before it polishes.

@@ -1,4 +1,4 @@
-"""The screened profile by SciPy's Bessel functions: error and ns a point, in the rows of `cargo run --example exact_routes`.
+"""The screened profile by SciPy's Bessel functions: error and ns a point, in the rows of `cargo run --release --features measurements --example exact_routes`.
 
 d/d_0 = [Y1(kr) J1(kR) - J1(kr) Y1(kR)] / [Y1(ka) J1(kR) - J1(ka) Y1(kR)] at the points of
 fixtures/reference/bessel_profile.json (25 digits), whole arrays at once, the least of several passes.

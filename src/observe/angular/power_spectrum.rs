@@ -6,7 +6,7 @@
 //! ```
 //!
 //! What the estimators err by is derived in the chapter "Power spectrum" of the book and measured by
-//! `cargo run --release --example angular_estimators`.
+//! `cargo run --release --features measurements --example angular_estimators`.
 
 use serde::{Deserialize, Serialize};
 
