@@ -223,7 +223,8 @@ pub fn build_pairs<const D: usize>(
                     let apart = difference(from, other);
                     near[count] = place;
                     // Rounding of the coordinates moves this edge by far less than the skin can spare. NaN counts as near.
-                    count += usize::from((second as usize > first) & !(dot(apart, apart) >= range * range));
+                    let far = dot(apart, apart) >= range * range;
+                    count += usize::from((second as usize > first) & !far);
                 }
                 for &place in &near[..count] {
                     let (second, other_radius) = (grid.members[start + place] as usize, sorted[start + place].1);
