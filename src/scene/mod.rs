@@ -118,7 +118,7 @@ impl Default for Scene {
                 },
                 Sample {
                     name: "plastic".into(),
-                    seed: 48,
+                    seed: 2,
                     source: Source::Pressure(10.0),
                     relaxer: RelaxerChoice::Fire(Fire::default()),
                 },
