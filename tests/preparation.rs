@@ -1,11 +1,13 @@
 //! Preparation: targets met, unjammed packings, and what is refused.
 
+use std::cell::RefCell;
+
 use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw};
 use jamscope::displacement::DisplacementField;
 use jamscope::inflation::{Boundary, Inflation, inflate};
-use jamscope::packing::{Component, Mixture, PackingError};
+use jamscope::packing::{Component, Mixture, Packing, PackingError};
 use jamscope::preparation::{Preparation, PreparationError, Prepared, Target, prepare, random_points};
-use jamscope::relax::{Criterion, Fire, Stop};
+use jamscope::relax::{Criterion, Fire, ForceLimit, Outcome, Relaxer, Stop, Trace};
 use jamscope::vector::{larger, norm};
 
 fn preparation(disk_count: usize, target: Target, seed: u64) -> Preparation {
@@ -43,6 +45,45 @@ fn meets_pressures<L: PairLaw>(law: L, seed: u64) {
         assert!(contacts > 2 * disks - 2, "{contacts} contacts of {disks} disks bear no pressure");
         assert_eq!(packing.radii().iter().filter(|&&radius| radius == 0.5).count(), 128);
     }
+}
+
+/// FIRE that writes down the limit of every relaxation.
+struct Recorded<'a>(Fire, &'a RefCell<Vec<f64>>);
+
+impl Relaxer for Recorded<'_> {
+    fn relax<const D: usize, L: PairLaw>(
+        &self,
+        packing: Packing<D>,
+        law: &L,
+        trace: &mut impl Trace,
+    ) -> Result<Outcome<Packing<D>>, PackingError> {
+        self.1.borrow_mut().push(self.0.limit.value());
+        self.0.relax(packing, law, trace)
+    }
+
+    fn passing(&self, limit: f64) -> Option<Self> {
+        self.0.passing(limit).map(|fire| Recorded(fire, self.1))
+    }
+}
+
+#[test]
+fn states_on_the_way_to_a_pressure_are_passed_through_and_the_last_is_at_rest() {
+    // A tolerance that the quench misses, and one so narrow that it rules the limit: a tenth of it.
+    for (tolerance, passing) in [(0.02, 1e-3), (1e-4, 1e-5)] {
+        let limits = RefCell::new(Vec::new());
+        let wanted = Preparation { tolerance, ..preparation(128, Target::Pressure(100.0), 7) };
+        let fire = Recorded(Fire::default(), &limits);
+        let prepared = prepare::<2, _>(&wanted, &Hertzian::default(), &fire, &mut ()).expect("a packing");
+        let limits = limits.into_inner();
+        assert_eq!(limits.len(), prepared.relaxation_count);
+        // Passed through first, at rest from the first that met the pressure on, and no way back.
+        let passed = limits.iter().filter(|&&limit| limit == passing).count();
+        assert!(passed >= 1 && limits[..passed].iter().all(|&limit| limit == passing), "{limits:?}");
+        assert!(passed < limits.len() && limits[passed..].iter().all(|&limit| limit == 1e-8), "{limits:?}");
+        assert!((prepared.pressure / 100.0 - 1.0).abs() <= tolerance && prepared.residual.relative() <= 1e-8);
+    }
+    // Who asks for no less has nothing to pass through.
+    assert!(Fire { limit: ForceLimit::Relative(1e-3), ..Fire::default() }.passing(1e-3).is_none());
 }
 
 #[test]
