@@ -97,7 +97,7 @@ impl<const D: usize> VibrationalModes<D> {
     ///
     /// # Cost
     /// Ten modes of 1000 disks: 2 factorisations and 54 to 62 solutions, as many vectors in memory
-    /// (`cargo test --test modes -- --nocapture`). From a quarter of all modes on dense algebra, time by the third power.
+    /// (`cargo test modes:: -- --nocapture`). From a quarter of all modes on dense algebra, time by the third power.
     pub fn lowest<L: PairLaw>(
         packing: &Packing<D>,
         law: &L,

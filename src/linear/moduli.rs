@@ -63,7 +63,7 @@ pub struct Shear {
 ///
 /// # Accuracy
 /// The 40 published packings of `fixtures/goodrich`: every constant within 8·10⁻¹⁵ of the published one, constants up to 1
-/// (asserted to 10⁻¹², `cargo test --test moduli -- --nocapture`).
+/// (asserted to 10⁻¹², `cargo test moduli:: -- --nocapture`).
 ///
 /// # Cost
 /// One analysis, one factorisation and D(D+1)/2 solutions of the Hessian.

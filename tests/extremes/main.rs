@@ -10,6 +10,9 @@ mod geometry;
 mod inflations;
 mod preparations;
 mod scales;
+mod small_systems;
+#[path = "../scenes/square_lattice.rs"]
+mod square_lattice;
 
 use jamscope::contact::PairLaw;
 use jamscope::packing::{Domain, Mixture, Packing};

@@ -98,7 +98,7 @@ impl LikelihoodSlope {
 /// The mean is of what is handed in. Powers over the variance of their sample have a mean that is too flat where few f carry the
 /// variance: s = 1.42 for 1.5, f = 1 to 15. Spectra whose leakage was removed up to the end of the window alone are too steep,
 /// because what lies above is taken as white: 1.58 for 1.5 with window and spectrum up to n/8 of 240 disks, 1.51 with the spectrum up
-/// to 0.42 n and the window to n/16 (`cargo test --test ensemble_fits rings -- --nocapture`).
+/// to 0.42 n and the window to n/16 (`cargo test ensemble_fits::rings -- --nocapture`).
 ///
 /// # Errors
 /// No sample, samples of different lengths, a power that is not finite, a window of fewer than three powers or beyond them.

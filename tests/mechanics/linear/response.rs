@@ -1,0 +1,177 @@
+//! The linear response as the limit of relaxations.
+
+use jamscope::contact::{ContactNetwork, Hertzian, Hookean, OnSite, PairLaw, PowerLaw, Prestress};
+use jamscope::displacement::{DisplacementField, MeasuredOn};
+use jamscope::inflation::{Boundary, Centre, Circle, Inflation, inflate};
+use jamscope::lattice::Lattice;
+use jamscope::linear::LinearResponse;
+use jamscope::packing::Packing;
+use jamscope::preparation::random_points;
+use jamscope::relax::Relaxer;
+use jamscope::vector::{difference, larger, norm};
+
+use super::{fire, fixture};
+
+/// Largest difference of two fields of displacements, and the largest displacement.
+fn compare<const D: usize>(nonlinear: &DisplacementField<D>, linear: &DisplacementField<D>) -> (f64, f64) {
+    assert_eq!(nonlinear.disks.len(), linear.disks.len());
+    nonlinear.disks.iter().zip(&linear.disks).filter(|(a, _)| a.counted).fold((0.0, 0.0), |(off, most), (a, b)| {
+        assert!(a.disk == b.disk && b.counted);
+        (larger(off, norm(difference(a.displacement, b.displacement))), larger(most, norm(a.displacement)))
+    })
+}
+
+/// Nonlinear minus linear for these d_0: (d_0, largest difference, largest displacement, contacts of the backbone as before).
+fn departures<const D: usize, L: PairLaw>(
+    packing: &Packing<D>,
+    law: &L,
+    base: &Inflation,
+    increases: impl Iterator<Item = f64>,
+) -> Vec<(f64, f64, f64, bool)> {
+    increases
+        .map(|asked| {
+            // What the radius really grows by.
+            let label = base.centre;
+            let inflation = Inflation { increase: asked, centre: label, ..*base };
+            let run = inflate(&inflation, packing, law, &fire(2e-14), 1, &mut ()).expect("at rest");
+            let (before, after) = (run.before.packing.get(), run.after.packing.get());
+            let increase = after.radii()[run.centre] - run.inner_radius;
+            let response =
+                LinearResponse::of_inflation(before, run.centre, law, Prestress::Included).expect("a response");
+            assert_eq!(response.negative_eigenvalue_count, 0);
+            let linear = DisplacementField::of_linear_response(&response, before, increase, run.outer_radius);
+            assert_eq!(linear.measured_on, MeasuredOn::Backbone);
+            let (off, most) = compare(&DisplacementField::of_inflation(&run), &linear);
+            let links = |packing| -> Vec<(u32, u32)> {
+                let network = ContactNetwork::new(packing, law).expect("apart");
+                network.backbone_contacts().map(|contact| (contact.first, contact.second)).collect()
+            };
+            (increase, off, most, links(before) == links(after))
+        })
+        .collect()
+}
+
+/// Over so many decades the difference falls by the square of d_0: at their end it is 10⁻¹⁴ to 10⁻¹³, not far
+/// above what the states at rest are known to.
+fn falls_as_the_square(what: &str, departures: &[(f64, f64, f64, bool)], decades: f64) {
+    for &(increase, off, most, same) in departures {
+        println!(
+            "{what}: d_0 = {increase:.3e}, moved {most:.3e}, nonlinear − linear {off:.3e}, {:.4e} d_0²",
+            off / increase.powi(2)
+        );
+        assert!(same, "{what}: contacts changed at d_0 = {increase}");
+    }
+    for pair in departures.windows(2) {
+        let order = (pair[1].1 / pair[0].1).log2() / (pair[1].0 / pair[0].0).log2();
+        assert!((order - 2.0).abs() < 0.1, "{what}: order {order} between {} and {}", pair[0].0, pair[1].0);
+    }
+    let (first, last) = (departures[0].0, departures[departures.len() - 1].0);
+    assert!((first / last).log10() >= decades, "{what}: {first} to {last}");
+}
+
+/// d_0 = 2^−from, 2^−(from + 3), …
+fn powers(from: i32, count: i32) -> impl Iterator<Item = f64> {
+    (0..count).map(move |k| (-f64::from(from + 3 * k)).exp2())
+}
+
+#[test]
+fn on_a_lattice_nonlinear_minus_linear_falls_as_the_square_of_the_inflation() {
+    let packing = Lattice::triangular(0.5, 0.0625).expect("valid").periodic([16, 9]).expect("a lattice");
+    let rim = Inflation {
+        boundary: Boundary::HeldRim { outer_radius_over_side: 0.45 },
+        centre: Centre::Label(100),
+        ..Default::default()
+    };
+    let hertzian = departures(&packing, &Hertzian::default(), &rim, powers(7, 6));
+    falls_as_the_square("Hertzian, held rim", &hertzian, 4.5);
+    // A Hookean lattice is nonlinear by its geometry alone: 30 times less, so the floor is met earlier.
+    falls_as_the_square("Hookean, held rim", &departures(&packing, &Hookean::default(), &rim, powers(5, 6)), 4.5);
+    let periodic = Inflation { boundary: Boundary::Periodic, ..rim };
+    falls_as_the_square(
+        "Hertzian, periodic",
+        &departures(&packing, &Hertzian::default(), &periodic, powers(7, 6)),
+        4.5,
+    );
+    // Tied to its sites the packing is held by them, and nothing has to be held for the solution.
+    let law = OnSite { law: Hertzian::default(), coupling: -5e3 };
+    falls_as_the_square("tied, periodic", &departures(&packing, &law, &periodic, powers(7, 6)), 4.5);
+    let law = PowerLaw { energy_scale: 1.0, exponent: 3.0 };
+    falls_as_the_square("power law, held rim", &departures(&packing, &law, &rim, powers(7, 6)), 4.5);
+}
+
+#[test]
+fn on_a_jammed_packing_nonlinear_minus_linear_falls_as_the_square_of_the_inflation() {
+    let packing = fixture("hertz_N1000_p800");
+    // Disks whose inflation by 2⁻⁸ opens and closes no contact anywhere in the circle; that of most does.
+    let of = |label, outer_radius_over_side| {
+        let boundary = Boundary::HeldRim { outer_radius_over_side };
+        Inflation { boundary, centre: Centre::Label(label), ..Default::default() }
+    };
+    falls_as_the_square("p = 800", &departures(&packing, &Hertzian::default(), &of(71, 0.45), powers(8, 6)), 4.5);
+    let packing = fixture("hooke_N1000_p5000");
+    falls_as_the_square(
+        "Hookean, p = 5000",
+        &departures(&packing, &Hookean::default(), &of(7, 0.3), powers(8, 6)),
+        4.5,
+    );
+}
+
+/// Random centres, d_0 from 2⁻¹⁹ up by eights until a contact changes, which happens within eight of the last that counts.
+/// Where a contact would open at d_c its force, (d_c − d_0)^(α−1), has powers of d_0/d_c with factors of size one, and the
+/// difference as well: b d_0² (1 + c d_0/d_c), |c| ≤ 1. Between d_0 = x d_c and an eighth of it the order is then off 2 by up to
+/// |log₈((1 − x)/(1 − x/8))|. Both states are at rest to 2·10⁻¹⁴ ⟨F⟩, over F' = (α − 1) F/δ and δ ≈ 0.03 a way of 10⁻¹⁵, along
+/// soft modes ten times that: 10⁻¹⁴ over the smaller difference is what is left of digits.
+#[test]
+fn on_random_packings_the_responses_agree_to_first_order_until_the_first_contact_changes() {
+    fn check<L: PairLaw>(law: L, name: &str) {
+        let packing = fixture(name);
+        let network = ContactNetwork::new(&packing, &law).expect("apart");
+        let small = (0..packing.len()).filter(|&disk| packing.radii()[disk] == 0.5 && network.backbone[disk]);
+        for label in small.skip(11).step_by(97).take(4) {
+            let boundary = Boundary::HeldRim { outer_radius_over_side: 0.45 };
+            let inflation = Inflation { boundary, centre: Centre::Label(label as u64), ..Default::default() };
+            let mut found: Vec<(f64, f64, f64, bool)> = Vec::new();
+            for power in [-19, -16, -13, -10, -7] {
+                found.extend(departures(&packing, &law, &inflation, std::iter::once(f64::from(power).exp2())));
+                if !found[found.len() - 1].3 {
+                    found.pop();
+                    break;
+                }
+            }
+            assert!(found.len() >= 3, "{name}, {label}: a contact changed within the first {} inflations", found.len());
+            for (below, pair) in (0..found.len() - 1).rev().zip(found.windows(2)) {
+                let order = (pair[1].1 / pair[0].1).ln() / (pair[1].0 / pair[0].0).ln();
+                println!("{name}, {label}: d_0 = {:.2e}, {:.3e} off, order {order:.4}", pair[1].0, pair[1].1);
+                let x = 0.9 * 0.125f64.powi(below as i32);
+                let allowed = (((1.0 - x) / (1.0 - x / 8.0)).ln().abs() + 1e-14 / pair[0].1) / 8f64.ln();
+                assert!((order - 2.0).abs() <= allowed, "{name}, {label}: order {order} at {}", pair[1].0);
+            }
+        }
+    }
+    check(Hertzian::default(), "hertz_N1000_p800");
+    check(Hertzian::default(), "hertz_N1000_p100");
+    check(Hookean::default(), "hooke_N1000_p5000");
+}
+
+#[test]
+fn balls_answer_in_the_same_way() {
+    let packing = random_points::<3>(200, &Default::default(), 1.0, 4).expect("possible");
+    let packing = fire(1e-12).relax(packing, &Hertzian::default(), &mut ()).expect("apart");
+    let packing = packing.converged().expect("at rest").into_inner();
+    let inflation = Inflation { boundary: Boundary::Periodic, ..Default::default() };
+    falls_as_the_square("balls", &departures(&packing, &Hertzian::default(), &inflation, powers(12, 5)), 3.6);
+}
+
+#[test]
+fn a_hessian_without_prestress_answers_otherwise() {
+    let circle: Circle<2> = Lattice::triangular(0.5, 0.0625).expect("valid").circle(8.0).expect("a circle");
+    let law = Hertzian::default();
+    let [with, without] = [Prestress::Included, Prestress::LeftOut].map(|prestress| {
+        LinearResponse::of_inflation(&circle.packing, circle.centre, &law, prestress).expect("a response")
+    });
+    let largest = with.displacements.iter().map(|&u| norm(u)).fold(0.0, larger);
+    let off = with.displacements.iter().zip(&without.displacements).map(|(&a, &b)| norm(difference(a, b)));
+    // F/(r F') = δ/(1.5 r) = 0.044 of the stiffness.
+    let off = off.fold(0.0, larger) / largest;
+    assert!(off > 0.005 && off < 0.2, "{off}");
+}

@@ -1,0 +1,68 @@
+//! The way down: the energy only falls, no step is too long.
+
+use jamscope::contact::{Hertzian, Hookean, PairLaw};
+use jamscope::packing::{Domain, Packing};
+use jamscope::relax::{Fire, ForceLimit, Look, NonlinearConjugateGradients, QuasiNewton, Relaxer, RelaxerChoice, Stop};
+use jamscope::vector::norm;
+
+use super::{minimisers, step_back};
+use crate::claims::only_falls::only_falls;
+use crate::scenes::rest::relax;
+use crate::scenes::starts::{inflated, points};
+
+#[test]
+fn the_energy_never_increases() {
+    fn check<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) {
+        for choice in minimisers(1e-10) {
+            let mut looks = Vec::new();
+            let trace = &mut |look: &Look| looks.push(*look);
+            let outcome = choice.relax(packing.clone(), law, trace).expect("no coincidence");
+            assert!(matches!(outcome.stop, Stop::Converged(_)), "{law:?}, {}: {:?}", choice.name(), outcome.stop);
+            only_falls(&looks, 10.0, &format!("{law:?}, {}", choice.name()));
+        }
+    }
+    for seed in [1, 2, 3] {
+        for fraction in [0.86, 0.95, 1.2] {
+            check(&points::<2>(100, fraction, seed), &Hertzian::default());
+            check(&points::<2>(100, fraction, seed), &Hookean::default());
+        }
+        check(&points::<3>(60, 0.9, seed), &Hertzian::default());
+        check(&inflated("hertz_N1000_p1", seed as usize), &Hertzian::default());
+    }
+}
+
+/// With half steps back FIRE still starts again only where it is not higher than before.
+#[test]
+fn energies_at_the_restarts_of_fire_with_steps_back_never_increase() {
+    for time_step_fraction in [1.0, 1.9] {
+        let RelaxerChoice::Fire(fire) = step_back(ForceLimit::Relative(1e-8)) else { unreachable!("it is FIRE") };
+        let fire = Fire { time_step_fraction, step_limit: 20_000, ..fire };
+        let mut looks: Vec<Look> = Vec::new();
+        let trace = &mut |look: &Look| looks.push(*look);
+        let _ = fire.relax(points::<2>(200, 0.9, 1), &Hertzian::default(), trace).expect("no coincidence");
+        let restarts: Vec<f64> = looks.iter().filter(|look| look.restart).map(|look| look.energy).collect();
+        assert!(restarts.len() > 3, "{} restarts", restarts.len());
+        assert!(restarts.is_sorted_by(|&before, &after| after <= before * (1.0 + 1e-13)), "{restarts:?}");
+    }
+}
+
+/// No disk moves farther in a step than it may: not even out of a heap of disks at nearly one point.
+#[test]
+fn no_step_is_longer_than_a_share_of_a_radius() {
+    let packing = Packing::new(Domain::<2>::Open, vec![[0.0; 2], [1e-9, 0.0]], vec![0.5, 0.7]).expect("valid");
+    for choice in minimisers(1e-8) {
+        for step_limit in [1, 2] {
+            let limited = match choice {
+                RelaxerChoice::ConjugateGradients(it) => {
+                    RelaxerChoice::ConjugateGradients(NonlinearConjugateGradients { step_limit, ..it })
+                }
+                RelaxerChoice::QuasiNewton(it) => RelaxerChoice::QuasiNewton(QuasiNewton { step_limit, ..it }),
+                other => other,
+            };
+            let outcome = relax(&limited, packing.clone(), &Hertzian::default());
+            let way = norm(outcome.state.separation(0, 1));
+            // Both move alike, the smaller one by a tenth of 1/2 at most.
+            assert!(way <= 0.1 * step_limit as f64 * (1.0 + 1e-12) + 1e-9, "{}: {way}", choice.name());
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! Files, runs, reports and studies, in the library and from the command line.
+
+mod analysis;
+#[cfg(feature = "cli")]
+mod command_line;
+#[cfg(feature = "cli")]
+mod exact_command;
+mod io;
+#[cfg(feature = "linear")]
+mod precision;
+mod report;
+mod study;
+#[cfg(feature = "cli")]
+mod study_command;
+#[cfg(feature = "fit")]
+mod transition;
