@@ -1,13 +1,14 @@
 //! Whether h_∥(r) of different pressures is one function of r ΔZ, with ℓ_iso ΔZ = C; and that h_r(r) is not.
 //!
 //! ```text
-//! cargo run --release --features measurements --example isostatic_collapse -- [DISK_COUNT [SAMPLE_COUNT [INCREASE]]]      (5548 Hertzian disks, 10 samples, d_0 = 0.1)
+//! cargo run --release --features measurements --example isostatic_collapse -- [DISK_COUNT [SAMPLE_COUNT [INCREASE [PRESSURE …]]]]      (5548 Hertzian disks, 10 samples, d_0 = 0.1)
 //! ```
 //!
-//! Packings at p = 100, 300, 1000 and 3000, everything relaxed by FIRE and Newton in turn. h of a pressure is the root of the mean of h²
+//! Packings at p = 100, 300, 1000 and 3000 or the pressures given, everything relaxed by FIRE and Newton in turn. h of a pressure is the root of the mean of h²
 //! over samples: of bonds under the relaxed inflation, of bonds under the linear response to one, and of d_r. Printed for each: y/y_plateau
 //! at some x = r ΔZ, and C by the plateau rule: ℓ_iso is where y has risen to a share of its plateau, the median of y between two
-//! radii. Then how far the pressures lie apart: the standard deviation of ln y between them, rms over x = 3 to 6, y as it is (h over d_0)
+//! radii; the first such radius, and the one from which on y stays there up to the plateau's own radii (of rings next to the centre few
+//! bonds say anything, and one of them is soon above). Then how far the pressures lie apart: the standard deviation of ln y between them, rms over x = 3 to 6, y as it is (h over d_0)
 //! and y over h_0 near the centre.
 
 use std::error::Error;
@@ -19,7 +20,7 @@ use jamscope::linear::LinearResponse;
 use jamscope::observe::bond_changes::{BondChanges, BondSet};
 use jamscope::observe::fluctuations::{BondMeasure, FluctuationRing, Fluctuations};
 use jamscope::observe::isostatic::{
-    IsostaticLength, IsostaticOutcome, IsostaticRule, IsostaticSettings, Normalisation,
+    IsostaticLength, IsostaticOutcome, IsostaticPoint, IsostaticRule, IsostaticSettings, Normalisation,
 };
 use jamscope::observe::{ExcessCoordination, State};
 use jamscope::packing::Mixture;
@@ -27,7 +28,7 @@ use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::Staged;
 use rayon::prelude::*;
 
-/// Pressures \[force / length\]: R is at least three times 75 p^(−1/3) at 5548 disks.
+/// Pressures, unless others are given \[force / length\]: R is at least three times 75 p^(−1/3) at 5548 disks.
 const PRESSURES: [f64; 4] = [100.0, 300.0, 1000.0, 3000.0];
 
 /// What is measured, in this order.
@@ -35,6 +36,9 @@ const KINDS: [&str; 3] = ["h_∥ relaxed", "h_∥ linear", "h_r relaxed"];
 
 /// Where curves are compared.
 const SCALED_RADII: [f64; 4] = [3.0, 4.0, 5.0, 6.0];
+
+/// Where y is printed beside them.
+const MORE_RADII: [f64; 8] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
 
 /// The plateau: between these shares of R.
 const PLATEAU: [f64; 2] = [0.3, 0.6];
@@ -54,7 +58,10 @@ fn sample(disk_count: usize, pressure: f64, increase: f64, seed: u64) -> Result<
     let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
     let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed };
     let packing = prepare::<2, _>(&preparation, &law, &staged, &mut ())?.packing.into_inner();
-    let boundary = Boundary::HeldRim { outer_radius_over_side: if disk_count < 10_000 { 0.480 } else { 0.486 } };
+    // Of the study, for its 5548, 22184 and 88776 disks.
+    let outer_radius_over_side =
+        [0.480, 0.486, 0.491][usize::from(disk_count > 10_000) + usize::from(disk_count > 40_000)];
+    let boundary = Boundary::HeldRim { outer_radius_over_side };
     let inflation = Inflation { increase, boundary, ..Inflation::default() };
     let inflated = inflate(&inflation, &packing, &law, &staged, seed, &mut ())?;
     let before = State::new(inflated.before.packing.get(), &law)?;
@@ -103,16 +110,25 @@ fn at(length: &IsostaticLength, x: f64) -> f64 {
     a.scaled_fluctuation + share * (b.scaled_fluctuation - a.scaled_fluctuation)
 }
 
+/// x from which on y is no more below a threshold, up to a radius.
+fn settled(length: &IsostaticLength, threshold: f64, until: f64) -> f64 {
+    let below = |point: &IsostaticPoint| point.radius < until && point.scaled_fluctuation < threshold;
+    let Some(last) = length.curve.iter().rposition(below) else { return f64::NAN };
+    let (a, b) = (&length.curve[last], &length.curve[last + 1]);
+    let share = (threshold - a.scaled_fluctuation) / (b.scaled_fluctuation - a.scaled_fluctuation);
+    a.scaled_radius + share * (b.scaled_radius - a.scaled_radius)
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let number = |index: usize, default: f64| arguments.get(index).map_or(Ok(default), |text| text.parse::<f64>());
     let (disk_count, sample_count, increase) = (number(0, 5548.0)? as usize, number(1, 10.0)? as u64, number(2, 0.1)?);
-    println!(
-        "{disk_count} disks, {sample_count} samples, d_0 = {increase}; y over its plateau at x = {SCALED_RADII:?}"
-    );
+    let given: Vec<f64> = arguments.iter().skip(3).map(|text| text.parse()).collect::<Result<_, _>>()?;
+    let pressures = if given.is_empty() { PRESSURES.to_vec() } else { given };
+    println!("{disk_count} disks, {sample_count} samples, d_0 = {increase}; y over its plateau at x = {MORE_RADII:?}");
     // y at the x above of every pressure: over d_0, and over h_0.
     let mut curves: [[Vec<[f64; 4]>; 2]; 3] = Default::default();
-    for pressure in PRESSURES {
+    for pressure in pressures {
         let samples: Vec<Sample> = (1..=sample_count)
             .into_par_iter()
             .map(|seed| sample(disk_count, pressure, increase, seed).map_err(|error| error.to_string()))
@@ -135,7 +151,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
             let plateau = plain.threshold.ok_or("no plateau")?;
             print!("  {name:<12} plateau {plateau:.4} d_0 = {:.3} h_0;", near.threshold.unwrap_or(f64::NAN));
-            SCALED_RADII.iter().for_each(|&x| print!(" {:.2}", at(&plain, x) / plateau));
+            MORE_RADII.iter().for_each(|&x| print!(" {:.2}", at(&plain, x) / plateau));
             print!("; C at shares {SHARES:?}:");
             for share in SHARES {
                 match length(Normalisation::Increase, share)?.outcome {
@@ -143,6 +159,10 @@ fn main() -> Result<(), Box<dyn Error>> {
                     other => print!(" {other:?}"),
                 }
             }
+            print!("; for good:");
+            SHARES
+                .iter()
+                .for_each(|share| print!(" {:.2}", settled(&plain, share * plateau, PLATEAU[0] * outer_radius)));
             println!();
         }
     }

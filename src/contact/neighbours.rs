@@ -4,10 +4,10 @@
 //! disk has moved by half the skin. Each pair carries its separation at the anchors, so the box and its images are
 //! looked at only while the list is built.
 
-use crate::contact::pair_list::{Pair, PairList};
+use crate::contact::pair_list::{BLOCK, Measured, PairList, Search};
 use crate::packing::{Domain, PackingError};
 use crate::side_by_side::{self, PIECE};
-use crate::vector::{Vector, difference, dot, sum};
+use crate::vector::{Vector, difference, dot, extended_norm, extended_sum, sum, two_sum};
 
 /// The disks as the list builder sees them: mobile ones first, then the held ones.
 pub struct Disks<'a, const D: usize> {
@@ -81,6 +81,12 @@ impl CellGrid {
             self.members[*next as usize] = disk as u32;
             *next += 1;
         }
+    }
+
+    /// The last of the disks of a cell.
+    fn last_of(&self, cell: usize) -> Option<usize> {
+        let (start, end) = (self.starts[cell] as usize, self.starts[cell + 1] as usize);
+        self.members[start..end].last().map(|&disk| disk as usize)
     }
 
     /// The cell and its neighbours as runs along the first axis, each cell once with each shift that can matter.
@@ -200,56 +206,127 @@ pub fn build_pairs<const D: usize>(
         }
     });
     let (grid, points, sorted) = (&*grid, &*points, &*sorted);
-    pairs.fill(points.len(), disks.mobile_count, || {
-        let (mut current, mut runs, mut near) = (usize::MAX, Vec::new(), Vec::new());
-        let coefficient = &coefficient;
-        move |first: usize, row: &mut Vec<Pair<D>>| {
-            let cell = grid.cell_of[first] as usize;
-            if cell != current {
-                grid.neighbourhood(cell, lengths, &mut runs);
-                current = cell;
+    let nearby = Nearby { disks, skin, lengths, grid, points, sorted, coefficient: &coefficient };
+    pairs.fill(points.len(), disks.mobile_count, || TileSearch { nearby, cell: usize::MAX, runs: Vec::new() })
+}
+
+/// What every tile is searched in.
+struct Nearby<'a, const D: usize, C> {
+    disks: &'a Disks<'a, D>,
+    skin: f64,
+    lengths: Option<Vector<D>>,
+    grid: &'a CellGrid,
+    points: &'a [Vector<D>],
+    sorted: &'a [(Vector<D>, f64)],
+    coefficient: &'a C,
+}
+
+impl<const D: usize, C> Clone for Nearby<'_, D, C> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<const D: usize, C> Copy for Nearby<'_, D, C> {}
+
+/// The search of one tile: the cell of the last disk looked at, and the cells around it.
+struct TileSearch<'a, const D: usize, C> {
+    nearby: Nearby<'a, D, C>,
+    cell: usize,
+    runs: Vec<Run<D>>,
+}
+
+impl<const D: usize, C: Fn(f64, f64) -> f64> Search<D> for TileSearch<'_, D, C> {
+    fn find(&mut self, first: usize, seconds: &mut Vec<u32>) {
+        let Nearby { disks, skin, lengths, grid, points, sorted, .. } = self.nearby;
+        let cell = grid.cell_of[first] as usize;
+        if cell != self.cell {
+            grid.neighbourhood(cell, lengths, &mut self.runs);
+            self.cell = cell;
+        }
+        let (point, radius) = (points[first], disks.radii[first]);
+        for run in &self.runs {
+            let from: Vector<D> = difference(point, run.shift);
+            let mut cells = run.cells.clone();
+            // The disks of a cell are in ascending order: a cell with none after the first disk has no second one.
+            while cells.start < cells.end && grid.last_of(cells.start).is_none_or(|last| last <= first) {
+                cells.start += 1;
             }
-            let (point, radius) = (points[first], disks.radii[first]);
-            for run in &runs {
-                let from: Vector<D> = difference(point, run.shift);
-                let (start, end) = (grid.starts[run.cells.start] as usize, grid.starts[run.cells.end] as usize);
-                // Which of the disks of a run are near cannot be guessed: they are picked without a branch.
-                near.resize(near.len().max(end - start), 0);
-                let mut count = 0;
-                for (place, (&second, &(other, other_radius))) in
-                    grid.members[start..end].iter().zip(&sorted[start..end]).enumerate()
-                {
-                    let range = radius + other_radius + skin;
-                    let apart = difference(from, other);
-                    near[count] = place;
-                    // Rounding of the coordinates moves this edge by far less than the skin can spare. NaN counts as near.
-                    let far = dot(apart, apart) >= range * range;
-                    count += usize::from((second as usize > first) & !far);
-                }
-                for &place in &near[..count] {
-                    let (second, other_radius) = (grid.members[start + place] as usize, sorted[start + place].1);
-                    let separation = anchor_separation(disks, first, second, difference(from, sorted[start + place].0));
-                    let (reach, coefficient) = (radius + other_radius, coefficient(radius, other_radius));
-                    row.push(Pair { second: second as u32, separation, reach, coefficient });
+            let (start, end) = (grid.starts[cells.start] as usize, grid.starts[cells.end] as usize);
+            // Which of the disks of a run are near cannot be guessed: they are picked without a branch.
+            let mut count = seconds.len();
+            seconds.resize(count + end - start, 0);
+            for (&second, &(other, other_radius)) in grid.members[start..end].iter().zip(&sorted[start..end]) {
+                let range = radius + other_radius + skin;
+                let apart = difference(from, other);
+                seconds[count] = second;
+                // Rounding of the coordinates moves this edge by far less than the skin can spare. NaN counts as near.
+                let far = dot(apart, apart) >= range * range;
+                count += usize::from((second as usize > first) & !far);
+            }
+            seconds.truncate(count);
+        }
+    }
+
+    fn measure(&self, first: &[u32], second: &[u32], measured: &mut Measured<D>) {
+        let Nearby { disks, lengths, coefficient, .. } = self.nearby;
+        // As long as a block whatever it holds, so that no pair is left over for a loop without vectors.
+        let mut ends = Ends { anchors: [([1.0; D], [0.0; D]); BLOCK], radii: [(1.0, 1.0); BLOCK] };
+        for (place, (&first, &second)) in first.iter().zip(second).enumerate() {
+            let (first, second) = (first as usize, second as usize);
+            ends.anchors[place] = (disks.anchors[first], disks.anchors[second]);
+            ends.radii[place] = (disks.radii[first], disks.radii[second]);
+        }
+        pulp::Arch::new().dispatch(Measure { ends: &ends, lengths, coefficient, measured });
+    }
+}
+
+/// Anchors and radii of both disks of the pairs of a block.
+struct Ends<const D: usize> {
+    anchors: [(Vector<D>, Vector<D>); BLOCK],
+    radii: [(f64, f64); BLOCK],
+}
+
+/// Separations, distances and overlaps of a block to full accuracy, some eighty operations a pair, in vectors.
+struct Measure<'a, const D: usize, C> {
+    ends: &'a Ends<D>,
+    /// Sides of a periodic box.
+    lengths: Option<Vector<D>>,
+    coefficient: &'a C,
+    measured: &'a mut Measured<D>,
+}
+
+impl<const D: usize, C: Fn(f64, f64) -> f64> pulp::WithSimd for Measure<'_, D, C> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        let Measure { ends: Ends { anchors, radii }, lengths, coefficient, measured } = self;
+        let Measured { separation, distance, overlap, coefficient: coefficients } = measured;
+        for k in 0..BLOCK {
+            coefficients[k] = coefficient(radii[k].0, radii[k].1);
+        }
+        let mut rest = [[0.0; D]; BLOCK];
+        for k in 0..BLOCK {
+            for d in 0..D {
+                (separation[k][d], rest[k][d]) = two_sum(anchors[k].0[d], -anchors[k].1[d]);
+            }
+        }
+        if let Some(lengths) = lengths {
+            // Displacements within half a box keep the image; the caller re-anchors at every rebuild, so they are tiny here.
+            for k in 0..BLOCK {
+                for d in 0..D {
+                    // The image is nowhere near halfway: pairs are closer than half a side.
+                    let shift = -(separation[k][d] / lengths[d]).round_ties_even() * lengths[d];
+                    (separation[k][d], rest[k][d]) = extended_sum((separation[k][d], rest[k][d]), shift);
                 }
             }
         }
-    })
-}
-
-/// Separation of the anchors along the image that is nearest for the centres.
-fn anchor_separation<const D: usize>(
-    disks: &Disks<'_, D>,
-    first: usize,
-    second: usize,
-    apart: Vector<D>,
-) -> (Vector<D>, Vector<D>) {
-    let zero = [0.0; D];
-    let (anchors, rest) = disks.domain.separation_extended((disks.anchors[first], zero), (disks.anchors[second], zero));
-    // Displacements within half a box keep the image; the caller re-anchors at every rebuild, so they are tiny here.
-    debug_assert!({
-        let moved = difference(disks.displacements[first], disks.displacements[second]);
-        (0..D).all(|d| (anchors[d] + moved[d] - apart[d]).abs() < 1e-9 * (1.0 + apart[d].abs()))
-    });
-    (anchors, rest)
+        for k in 0..BLOCK {
+            let (rounded, of_distance) = extended_norm(separation[k], rest[k]);
+            let (gap, of_gap) = two_sum(radii[k].0 + radii[k].1, -rounded);
+            distance[k] = rounded;
+            overlap[k] = gap + (of_gap - of_distance);
+        }
+    }
 }

@@ -15,7 +15,7 @@ use std::ops::Range;
 
 use crate::packing::PackingError;
 use crate::side_by_side;
-use crate::vector::{Vector, extended_norm, two_sum};
+use crate::vector::Vector;
 
 /// Most pairs of a block; its columns stay in the nearest cache.
 pub const BLOCK: usize = 128;
@@ -47,7 +47,7 @@ pub struct PairList<const D: usize> {
     pub(super) tiles: Vec<Tile>,
     /// Disks of a tile.
     pub(super) tile_size: usize,
-    arranger: Arranger<D>,
+    arranger: Arranger,
     /// Tiles made side by side, until they are put one after the other.
     parts: Vec<PairList<D>>,
 }
@@ -74,56 +74,62 @@ pub(super) struct Tile {
     pub incoming: Vec<(u32, u32, u32)>,
 }
 
-/// One pair on its way into the columns.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Pair<const D: usize> {
-    pub second: u32,
-    /// Separation of the anchors, and what its rounding took away.
-    pub separation: (Vector<D>, Vector<D>),
-    /// Sum of the radii.
-    pub reach: f64,
-    pub coefficient: f64,
+/// What finds the pairs of a tile, disk by disk, and measures them, block by block.
+pub(super) trait Search<const D: usize> {
+    /// Adds the second disks of the pairs of a first one.
+    fn find(&mut self, first: usize, seconds: &mut Vec<u32>);
+
+    /// Measures the pairs of a block; columns beyond them are not used.
+    fn measure(&self, first: &[u32], second: &[u32], measured: &mut Measured<D>);
+}
+
+/// What a block of pairs has at the anchors, column by column; see [`PairList`].
+pub(super) struct Measured<const D: usize> {
+    pub separation: [Vector<D>; BLOCK],
+    pub distance: [f64; BLOCK],
+    pub overlap: [f64; BLOCK],
+    pub coefficient: [f64; BLOCK],
 }
 
 /// Rows waiting for their block or for the end of their tile.
 #[derive(Debug, Clone, Default)]
-struct Arranger<const D: usize> {
-    block: Waiting<D>,
-    border: Waiting<D>,
+struct Arranger {
+    block: Waiting,
+    border: Waiting,
 }
 
-impl<const D: usize> Arranger<D> {
+impl Arranger {
     /// Of the pairs of a first disk, which wait from `begin` on, sets those apart whose second disk is in another tile.
     fn set_border_apart(&mut self, first: u32, begin: usize, disks: &Range<usize>) {
-        let Arranger { block: Waiting { pairs, .. }, border } = self;
-        let inside = |pair: &Pair<D>| disks.contains(&(pair.second as usize));
-        if pairs[begin..].iter().all(inside) {
+        let Arranger { block: Waiting { seconds, .. }, border } = self;
+        let inside = |second: u32| disks.contains(&(second as usize));
+        if seconds[begin..].iter().all(|&second| inside(second)) {
             return;
         }
-        let begin_across = border.pairs.len();
-        border.pairs.extend(pairs[begin..].iter().filter(|pair| !inside(pair)));
+        let begin_across = border.seconds.len();
+        border.seconds.extend(seconds[begin..].iter().filter(|&&second| !inside(second)));
         let mut kept = begin;
-        for place in begin..pairs.len() {
-            pairs[kept] = pairs[place];
-            kept += usize::from(inside(&pairs[place]));
+        for place in begin..seconds.len() {
+            seconds[kept] = seconds[place];
+            kept += usize::from(inside(seconds[place]));
         }
-        pairs.truncate(kept);
-        for part in (begin_across..border.pairs.len()).step_by(LONGEST_ROW) {
-            border.rows.push((first, part, LONGEST_ROW.min(border.pairs.len() - part)));
+        seconds.truncate(kept);
+        for part in (begin_across..border.seconds.len()).step_by(LONGEST_ROW) {
+            border.rows.push((first, part, LONGEST_ROW.min(border.seconds.len() - part)));
         }
     }
 }
 
 #[derive(Debug, Clone, Default)]
-struct Waiting<const D: usize> {
-    pairs: Vec<Pair<D>>,
+struct Waiting {
+    seconds: Vec<u32>,
     /// First disk, where its pairs begin, and how many there are.
     rows: Vec<(u32, usize, usize)>,
 }
 
-impl<const D: usize> Waiting<D> {
+impl Waiting {
     fn clear(&mut self) {
-        self.pairs.clear();
+        self.seconds.clear();
         self.rows.clear();
     }
 }
@@ -139,12 +145,12 @@ impl<const D: usize> PairList<D> {
         self.first.is_empty()
     }
 
-    /// Empties the list and fills it: what `search` makes for each tile writes the pairs of one first disk, each pair named by one
-    /// of its disks only. Disks from `first_count` on are never first.
+    /// Empties the list and fills it with what `search`, made anew for each tile, finds: each pair is named by one of its disks only.
+    /// Disks from `first_count` on are never first.
     ///
     /// # Errors
     /// Two disks with the same centre.
-    pub(super) fn fill<S: FnMut(usize, &mut Vec<Pair<D>>)>(
+    pub(super) fn fill<S: Search<D>>(
         &mut self,
         disk_count: usize,
         first_count: usize,
@@ -188,31 +194,25 @@ impl<const D: usize> PairList<D> {
     }
 
     /// Adds the blocks of the next tile.
-    fn add_tile(
-        &mut self,
-        disks: Range<usize>,
-        first_count: usize,
-        mut pairs_of: impl FnMut(usize, &mut Vec<Pair<D>>),
-        tile: &mut Tile,
-    ) {
+    fn add_tile(&mut self, disks: Range<usize>, first_count: usize, mut search: impl Search<D>, tile: &mut Tile) {
         let mut arranger = std::mem::take(&mut self.arranger);
         let inner = self.blocks.len();
         for first in disks.start..disks.end.min(first_count) {
-            let begin = arranger.block.pairs.len();
-            pairs_of(first, &mut arranger.block.pairs);
+            let begin = arranger.block.seconds.len();
+            search.find(first, &mut arranger.block.seconds);
             arranger.set_border_apart(first as u32, begin, &disks);
-            self.add_rows(first as u32, begin, &mut arranger.block);
+            self.add_rows(first as u32, begin, &mut arranger.block, &search);
         }
-        let waiting = arranger.block.pairs.len();
-        self.close_block(&mut arranger.block, waiting);
+        let waiting = arranger.block.seconds.len();
+        self.close_block(&mut arranger.block, waiting, &search);
         let (border, border_pairs) = (self.blocks.len(), self.len());
         for &(first, begin, count) in &arranger.border.rows {
-            let place = arranger.block.pairs.len();
-            arranger.block.pairs.extend_from_slice(&arranger.border.pairs[begin..begin + count]);
-            self.add_rows(first, place, &mut arranger.block);
+            let place = arranger.block.seconds.len();
+            arranger.block.seconds.extend_from_slice(&arranger.border.seconds[begin..begin + count]);
+            self.add_rows(first, place, &mut arranger.block, &search);
         }
-        let waiting = arranger.block.pairs.len();
-        self.close_block(&mut arranger.block, waiting);
+        let waiting = arranger.block.seconds.len();
+        self.close_block(&mut arranger.block, waiting, &search);
         arranger.border.clear();
         (tile.inner, tile.border) = (inner..border, border..self.blocks.len());
         tile.border_pairs = border_pairs..self.first.len();
@@ -255,12 +255,12 @@ impl<const D: usize> PairList<D> {
     }
 
     /// Makes rows of the pairs of a first disk, which wait from `begin` on; a block that has no place for one is closed before it.
-    fn add_rows(&mut self, first: u32, begin: usize, block: &mut Waiting<D>) {
+    fn add_rows(&mut self, first: u32, begin: usize, block: &mut Waiting, search: &impl Search<D>) {
         let mut begin = begin;
-        while begin < block.pairs.len() {
-            let mut end = block.pairs.len().min(begin + LONGEST_ROW);
+        while begin < block.seconds.len() {
+            let mut end = block.seconds.len().min(begin + LONGEST_ROW);
             if end > BLOCK {
-                self.close_block(block, begin);
+                self.close_block(block, begin, search);
                 (begin, end) = (0, end - begin);
             }
             block.rows.push((first, begin, end - begin));
@@ -269,39 +269,51 @@ impl<const D: usize> PairList<D> {
     }
 
     /// Writes the rows that wait, with their `count` pairs, as a block, the short ones first.
-    fn close_block(&mut self, block: &mut Waiting<D>, count: usize) {
+    fn close_block(&mut self, block: &mut Waiting, count: usize, search: &impl Search<D>) {
         if block.rows.is_empty() {
             return;
         }
         let mut row_counts = [0u8; LONGEST_ROW];
-        for &(_, _, count) in &block.rows {
-            row_counts[count - 1] += 1;
+        for &(_, _, length) in &block.rows {
+            row_counts[length - 1] += 1;
         }
-        self.blocks.push(Block { pairs: self.len(), pair_count: count, rows: self.rows.len(), row_counts });
-        let mut measured = Measured { rest: [[0.0; D]; BLOCK], reach: [1.0; BLOCK], distance: [0.0; BLOCK] };
-        let mut place = 0;
-        let lengths = (1..=LONGEST_ROW).filter(|length| row_counts[length - 1] > 0);
-        for length in lengths {
-            for &(first, begin, count) in &block.rows {
-                if count == length {
-                    self.rows.push(first);
-                    for pair in &block.pairs[begin..begin + count] {
-                        self.first.push(first);
-                        self.second.push(pair.second);
-                        self.separation.push(pair.separation.0);
-                        self.coefficient.push(pair.coefficient);
-                        (measured.rest[place], measured.reach[place]) = (pair.separation.1, pair.reach);
-                        place += 1;
-                    }
-                }
+        let (rows, pairs) = (self.rows.len(), self.len());
+        self.blocks.push(Block { pairs, pair_count: count, rows, row_counts });
+        // Where the next row of each length goes, and its pairs.
+        let (mut row, mut pair) = ([0; LONGEST_ROW], [0; LONGEST_ROW]);
+        for length in 1..LONGEST_ROW {
+            let shorter = usize::from(row_counts[length - 1]);
+            row[length] = row[length - 1] + shorter;
+            pair[length] = pair[length - 1] + shorter * length;
+        }
+        self.rows.resize(rows + block.rows.len(), 0);
+        self.first.resize(pairs + count, 0);
+        self.second.resize(pairs + count, 0);
+        let (of_rows, first, second) = (&mut self.rows[rows..], &mut self.first[pairs..], &mut self.second[pairs..]);
+        for &(disk, begin, length) in &block.rows {
+            let (row, pair) = (&mut row[length - 1], &mut pair[length - 1]);
+            of_rows[*row] = disk;
+            *row += 1;
+            // Three pairs in the mean: a copy by a call takes longer.
+            for place in 0..length {
+                first[*pair + place] = disk;
+                second[*pair + place] = block.seconds[begin + place];
             }
+            *pair += length;
         }
-        let separation = &self.separation[self.distance.len()..];
-        pulp::Arch::new().dispatch(Measure { separation, measured: &mut measured });
-        self.distance.extend_from_slice(&measured.distance[..place]);
-        self.overlap.extend_from_slice(&measured.reach[..place]);
+        let mut measured = Measured {
+            separation: [[0.0; D]; BLOCK],
+            distance: [0.0; BLOCK],
+            overlap: [0.0; BLOCK],
+            coefficient: [0.0; BLOCK],
+        };
+        search.measure(first, second, &mut measured);
+        self.separation.extend_from_slice(&measured.separation[..count]);
+        self.distance.extend_from_slice(&measured.distance[..count]);
+        self.overlap.extend_from_slice(&measured.overlap[..count]);
+        self.coefficient.extend_from_slice(&measured.coefficient[..count]);
         block.rows.clear();
-        block.pairs.drain(..count);
+        block.seconds.drain(..count);
     }
 }
 
@@ -321,36 +333,4 @@ fn join_column<const D: usize, T: Copy + Send + Sync>(
         (piece, source)
     });
     side_by_side::each(pieces, |(piece, source)| piece.copy_from_slice(source));
-}
-
-/// What a block is measured by, column by column.
-struct Measured<const D: usize> {
-    rest: [Vector<D>; BLOCK],
-    /// Sum of the radii, then the overlap.
-    reach: [f64; BLOCK],
-    distance: [f64; BLOCK],
-}
-
-/// Distances and overlaps of a block to full accuracy: some sixty operations a pair, in vectors.
-struct Measure<'a, const D: usize> {
-    separation: &'a [Vector<D>],
-    measured: &'a mut Measured<D>,
-}
-
-impl<const D: usize> pulp::WithSimd for Measure<'_, D> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        // As long as a block whatever it holds, so that no pair is left over for a loop without vectors.
-        let mut separation = [[1.0; D]; BLOCK];
-        separation[..self.separation.len()].copy_from_slice(self.separation);
-        let Measured { rest, reach, distance } = self.measured;
-        for k in 0..BLOCK {
-            let (rounded, of_distance) = extended_norm(separation[k], rest[k]);
-            let (gap, of_gap) = two_sum(reach[k], -rounded);
-            distance[k] = rounded;
-            reach[k] = gap + (of_gap - of_distance);
-        }
-    }
 }
