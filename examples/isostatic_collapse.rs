@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Packings at p = 100, 300, 1000 and 3000 or the pressures given, everything relaxed by FIRE and Newton in turn. h of a pressure is the root of the mean of h²
-//! over samples: of bonds under the relaxed inflation, of bonds under the linear response to one, and of d_r. Printed for each: y/y_plateau
+//! over samples, which one sample with a large plastic event rules, and the geometric mean, which none does: of bonds under the relaxed inflation, of bonds under the linear response to one, and of d_r. Printed for each: y/y_plateau
 //! at some x = r ΔZ, and C by the plateau rule: ℓ_iso is where y has risen to a share of its plateau, the median of y between two
 //! radii; the first such radius, and the one from which on y stays there up to the plateau's own radii (of rings next to the centre few
 //! bonds say anything, and one of them is soon above). Then how far the pressures lie apart: the standard deviation of ln y between them, rms over x = 3 to 6, y as it is (h over d_0)
@@ -31,8 +31,14 @@ use rayon::prelude::*;
 /// Pressures, unless others are given \[force / length\]: R is at least three times 75 p^(−1/3) at 5548 disks.
 const PRESSURES: [f64; 4] = [100.0, 300.0, 1000.0, 3000.0];
 
-/// What is measured, in this order.
-const KINDS: [&str; 3] = ["h_∥ relaxed", "h_∥ linear", "h_r relaxed"];
+/// Which of a sample's fluctuations are averaged, how, and their name.
+const CURVES: [(usize, Average, &str); 5] = [
+    (0, Average::Squares, "h_∥ relaxed, squares"),
+    (0, Average::Logarithms, "h_∥ relaxed, logarithms"),
+    (1, Average::Squares, "h_∥ linear, squares"),
+    (2, Average::Squares, "h_r relaxed, squares"),
+    (2, Average::Logarithms, "h_r relaxed, logarithms"),
+];
 
 /// Where curves are compared.
 const SCALED_RADII: [f64; 4] = [3.0, 4.0, 5.0, 6.0];
@@ -46,7 +52,7 @@ const PLATEAU: [f64; 2] = [0.3, 0.6];
 /// Shares of the plateau that end the disordered region.
 const SHARES: [f64; 3] = [0.8, 0.9, 1.0];
 
-/// One sample: ΔZ, R, the three fluctuations.
+/// One sample: ΔZ, R, and h_∥ relaxed, h_∥ of the linear response, h_r relaxed.
 struct Sample {
     excess: f64,
     outer_radius: f64,
@@ -75,8 +81,15 @@ fn sample(disk_count: usize, pressure: f64, increase: f64, seed: u64) -> Result<
     Ok(Sample { excess, outer_radius, fluctuations: [of_bonds(&relaxed), of_bonds(&linear), radial] })
 }
 
-/// Root of the mean square over samples, ring by ring; the error from the scatter of the squares.
-fn mean_fluctuation(samples: &[Sample], kind: usize) -> Fluctuations {
+/// What is averaged over samples.
+#[derive(Clone, Copy)]
+enum Average {
+    Squares,
+    Logarithms,
+}
+
+/// Mean over samples, ring by ring; the error from the scatter of what is averaged.
+fn mean_fluctuation(samples: &[Sample], kind: usize, average: Average) -> Fluctuations {
     let ring_of = |ring: &FluctuationRing| ring.radius.floor() as usize;
     let outermost = samples[0].outer_radius as usize;
     let rings = (0..outermost).filter_map(|place| {
@@ -88,14 +101,22 @@ fn mean_fluctuation(samples: &[Sample], kind: usize) -> Fluctuations {
             return None;
         }
         let count = here.len() as f64;
-        let mean = here.iter().map(|ring| ring.fluctuation.powi(2)).sum::<f64>() / count;
-        let scatter = here.iter().map(|ring| (ring.fluctuation.powi(2) - mean).powi(2)).sum::<f64>() / (count - 1.0);
+        let averaged = |ring: &FluctuationRing| match average {
+            Average::Squares => ring.fluctuation.powi(2),
+            Average::Logarithms => ring.fluctuation.ln(),
+        };
+        let mean = here.iter().map(averaged).sum::<f64>() / count;
+        let scatter = here.iter().map(|ring| (averaged(ring) - mean).powi(2)).sum::<f64>() / (count - 1.0);
+        let (fluctuation, slope) = match average {
+            Average::Squares => (mean.sqrt(), 0.5 / mean.sqrt()),
+            Average::Logarithms => (mean.exp(), mean.exp()),
+        };
         Some(FluctuationRing {
             radius: here.iter().map(|ring| ring.radius).sum::<f64>() / count,
             count: here.iter().map(|ring| ring.count).sum(),
             mean: 0.0,
-            fluctuation: mean.sqrt(),
-            standard_error: 0.5 * (scatter / count / mean).sqrt(),
+            fluctuation,
+            standard_error: slope * (scatter / count).sqrt(),
         })
     });
     Fluctuations { rings: rings.collect() }
@@ -127,7 +148,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let pressures = if given.is_empty() { PRESSURES.to_vec() } else { given };
     println!("{disk_count} disks, {sample_count} samples, d_0 = {increase}; y over its plateau at x = {MORE_RADII:?}");
     // y at the x above of every pressure: over d_0, and over h_0.
-    let mut curves: [[Vec<[f64; 4]>; 2]; 3] = Default::default();
+    let mut curves: [[Vec<[f64; 4]>; 2]; CURVES.len()] = Default::default();
     for pressure in pressures {
         let samples: Vec<Sample> = (1..=sample_count)
             .into_par_iter()
@@ -137,8 +158,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let excess = samples.iter().map(|sample| sample.excess).sum::<f64>() / count;
         let outer_radius = samples.iter().map(|sample| sample.outer_radius).sum::<f64>() / count;
         println!("p = {pressure}: ΔZ = {excess:.4}, R = {outer_radius:.1}");
-        for (kind, name) in KINDS.iter().enumerate() {
-            let fluctuations = mean_fluctuation(&samples, kind);
+        for (curve, (kind, average, name)) in CURVES.into_iter().enumerate() {
+            let fluctuations = mean_fluctuation(&samples, kind, average);
             let length = |normalisation, share| {
                 let rule = IsostaticRule::Plateau { from: PLATEAU[0], to: PLATEAU[1], share };
                 let settings = IsostaticSettings { normalisation, rule, ..IsostaticSettings::default() };
@@ -147,10 +168,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             let plain = length(Normalisation::Increase, 1.0)?;
             let near = length(Normalisation::NearCentre { radius: 1.5 }, 1.0)?;
             for (which, found) in [&plain, &near].into_iter().enumerate() {
-                curves[kind][which].push(SCALED_RADII.map(|x| at(found, x)));
+                curves[curve][which].push(SCALED_RADII.map(|x| at(found, x)));
             }
             let plateau = plain.threshold.ok_or("no plateau")?;
-            print!("  {name:<12} plateau {plateau:.4} d_0 = {:.3} h_0;", near.threshold.unwrap_or(f64::NAN));
+            print!("  {name:<23} plateau {plateau:.4} d_0 = {:.3} h_0;", near.threshold.unwrap_or(f64::NAN));
             MORE_RADII.iter().for_each(|&x| print!(" {:.2}", at(&plain, x) / plateau));
             print!("; C at shares {SHARES:?}:");
             for share in SHARES {
@@ -166,9 +187,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             println!();
         }
     }
-    for (name, [plain, near]) in KINDS.iter().zip(&curves) {
+    for ((_, _, name), [plain, near]) in CURVES.iter().zip(&curves) {
         println!(
-            "{name:<12} pressures apart by {:.3} (over d_0), {:.3} (over h_0) in ln y",
+            "{name:<23} pressures apart by {:.3} (over d_0), {:.3} (over h_0) in ln y",
             spread(plain),
             spread(near)
         );

@@ -8,11 +8,12 @@
 
 use std::iter::repeat_with;
 
-use crate::contact::forces::{self, Across, Totals};
+use crate::contact::forces::{self, Across};
 use crate::contact::law::PairLaw;
 use crate::contact::neighbours::{Disks, ListRoom, build_pairs, spatial_order};
 use crate::contact::pair_list::PairList;
 use crate::contact::stiffness::stiffness_rows;
+use crate::contact::totals::Totals;
 use crate::packing::{Domain, Packing, PackingError};
 use crate::side_by_side::{self, PIECE};
 use crate::vector::{Vector, dot, extended_sum, larger, longest_difference_squared, sum, two_sum};

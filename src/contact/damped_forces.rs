@@ -7,9 +7,10 @@
 //! Blocks, rows and columns as in [`super::forces`]; tiles play no part.
 
 use crate::contact::damping::DampingLaw;
-use crate::contact::forces::{gather, geometry, rows_of, scatter};
+use crate::contact::forces::geometry;
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, PairList};
+use crate::contact::rows::{gather, rows_of, scatter};
 use crate::lanes;
 use crate::vector::{Vector, scaled, sum};
 

@@ -14,57 +14,11 @@
 //! depend on the machine's vector width.
 
 use crate::contact::law::PairLaw;
-use crate::contact::pair_list::{BLOCK, Block, LONGEST_ROW, PairList, Tile};
-use crate::lanes;
+use crate::contact::pair_list::{BLOCK, Block, PairList, Tile};
+use crate::contact::rows::{gather, rows_of, scatter};
+use crate::contact::totals::{Tally, Totals};
 use crate::side_by_side;
 use crate::vector::{Vector, difference, scaled, sum};
-
-/// What the loop sums beside the forces.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Totals<const D: usize> {
-    /// Energy Σ u(δ), with that of the sites where the law has one \[energy\].
-    pub energy: f64,
-    /// The part of it that sites have, −(Γ/2) Σ u²; 0 without them \[energy\].
-    pub on_site_energy: f64,
-    /// Virial tensor Σ F r_a r_b / |r| \[energy\]; its trace over D V is the pressure.
-    pub virial: [[f64; D]; D],
-    /// Number of pairs with δ > 0.
-    pub contact_count: usize,
-    /// Sum of the contact forces ΣF \[force\].
-    pub force_sum: f64,
-}
-
-impl<const D: usize> Totals<D> {
-    const ZERO: Self =
-        Totals { energy: 0.0, on_site_energy: 0.0, virial: [[0.0; D]; D], contact_count: 0, force_sum: 0.0 };
-
-    fn add(&mut self, part: &Self) {
-        self.energy += part.energy;
-        self.on_site_energy += part.on_site_energy;
-        self.force_sum += part.force_sum;
-        self.contact_count += part.contact_count;
-        for (row, of_part) in self.virial.iter_mut().zip(&part.virial) {
-            for (total, more) in row.iter_mut().zip(of_part) {
-                *total += more;
-            }
-        }
-    }
-
-    /// Mean contact force, 0 where there is no contact \[force\].
-    pub fn mean_contact_force(&self) -> f64 {
-        if self.contact_count == 0 { 0.0 } else { self.force_sum / self.contact_count as f64 }
-    }
-
-    /// Contact energy plus the size of that of the sites: what the rounding of the energy is relative to \[energy\].
-    pub fn energy_scale(&self) -> f64 {
-        (self.energy - self.on_site_energy).abs() + self.on_site_energy.abs()
-    }
-
-    /// Trace of the virial tensor Σ F r \[energy\].
-    pub fn virial_trace(&self) -> f64 {
-        (0..D).map(|d| self.virial[d][d]).sum()
-    }
-}
 
 /// One block of pairs, column by column.
 pub(super) struct Columns<const D: usize> {
@@ -281,89 +235,6 @@ impl<const D: usize, L: PairLaw, const KEEP: bool> pulp::WithSimd for Arithmetic
     }
 }
 
-/// The sums over a block.
-struct Tally<'a, const D: usize, L> {
-    law: &'a L,
-    columns: &'a Columns<D>,
-    count: usize,
-    totals: &'a mut Totals<D>,
-}
-
-impl<const D: usize, L: PairLaw> pulp::WithSimd for Tally<'_, D, L> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) {
-        tally(simd, self.law, self.columns, self.count, self.totals);
-    }
-}
-
-/// First disks of the rows of a block.
-#[inline(always)]
-pub(super) fn rows_of<'a, const D: usize>(pairs: &'a PairList<D>, block: &Block) -> &'a [u32] {
-    let count: usize = block.row_counts.iter().map(|&count| usize::from(count)).sum();
-    &pairs.rows[block.rows..block.rows + count]
-}
-
-/// Calls a function of the length of rows, as a constant, for the rows of each length: `$rows` and `$pairs` are where they are
-/// in their block.
-macro_rules! for_each_length {
-    ($block:expr, |$rows:ident, $pairs:ident| $call:ident($($argument:expr),*)) => {{
-        let (mut row, mut pair) = (0, 0);
-        for (index, &count) in $block.row_counts.iter().enumerate() {
-            let (count, length) = (usize::from(count), index + 1);
-            let ($rows, $pairs) = (row..row + count, pair..pair + count * length);
-            (row, pair) = ($rows.end, $pairs.end);
-            match length {
-                _ if count == 0 => {}
-                1 => $call::<D, 1>($($argument),*),
-                2 => $call::<D, 2>($($argument),*),
-                3 => $call::<D, 3>($($argument),*),
-                4 => $call::<D, 4>($($argument),*),
-                5 => $call::<D, 5>($($argument),*),
-                6 => $call::<D, 6>($($argument),*),
-                7 => $call::<D, 7>($($argument),*),
-                _ => $call::<D, LONGEST_ROW>($($argument),*),
-            }
-        }
-    }};
-}
-
-pub(super) fn gather<const D: usize>(
-    moved: &mut [Vector<D>; BLOCK],
-    block: &Block,
-    rows: &[u32],
-    second: &[u32],
-    displacements: &[Vector<D>],
-) {
-    for_each_length!(block, |of_rows, of_pairs| gather_rows(
-        &mut moved[of_pairs.clone()],
-        &rows[of_rows],
-        &second[of_pairs.clone()],
-        displacements
-    ));
-}
-
-#[inline(always)]
-fn gather_rows<const D: usize, const LENGTH: usize>(
-    moved: &mut [Vector<D>],
-    rows: &[u32],
-    second: &[u32],
-    displacements: &[Vector<D>],
-) {
-    // Columns of one length and a plain index: of chained iterators some stay calls.
-    let count = rows.len();
-    let moved = &mut moved.as_chunks_mut::<LENGTH>().0[..count];
-    let second = &second.as_chunks::<LENGTH>().0[..count];
-    for row in 0..count {
-        let a = displacements[rows[row] as usize];
-        let (moved, second): (&mut [_; LENGTH], &[_; LENGTH]) = (&mut moved[row], &second[row]);
-        for k in 0..LENGTH {
-            moved[k] = difference(a, displacements[second[k] as usize]);
-        }
-    }
-}
-
 #[inline(always)]
 fn evaluate<const D: usize, L: PairLaw, const KEEP: bool>(law: &L, columns: &mut Columns<D>, anchors: &Anchors<'_, D>) {
     // As many turns as a column has places, known beforehand: whole vectors, and no check.
@@ -402,40 +273,6 @@ fn evaluate<const D: usize, L: PairLaw, const KEEP: bool>(law: &L, columns: &mut
     }
 }
 
-pub(super) fn scatter<const D: usize>(
-    pull: &[Vector<D>; BLOCK],
-    block: &Block,
-    (rows, second, offset): (&[u32], &[u32], u32),
-    forces: &mut [Vector<D>],
-) {
-    for_each_length!(block, |of_rows, of_pairs| scatter_rows(
-        &pull[of_pairs.clone()],
-        (&rows[of_rows], &second[of_pairs.clone()], offset),
-        forces
-    ));
-}
-
-#[inline(always)]
-fn scatter_rows<const D: usize, const LENGTH: usize>(
-    pull: &[Vector<D>],
-    (rows, second, offset): (&[u32], &[u32], u32),
-    forces: &mut [Vector<D>],
-) {
-    let count = rows.len();
-    let pull = &pull.as_chunks::<LENGTH>().0[..count];
-    let second = &second.as_chunks::<LENGTH>().0[..count];
-    for row in 0..count {
-        let first = (rows[row] - offset) as usize;
-        let mut total = forces[first];
-        for k in 0..LENGTH {
-            total = sum(total, pull[row][k]);
-            let other = &mut forces[(second[row][k] - offset) as usize];
-            *other = difference(*other, pull[row][k]);
-        }
-        forces[first] = total;
-    }
-}
-
 /// Few pairs: no rows of fixed length here.
 fn scatter_to_border<const D: usize>(
     pull: &[Vector<D>; BLOCK],
@@ -470,32 +307,4 @@ pub fn geometry<const D: usize>(
     let distance = squared.sqrt();
     let inverse = 1.0 / (distance * (distance + pairs.distance[pair]));
     (apart, distance, pairs.overlap[pair] - change * (distance * inverse))
-}
-
-#[inline(always)]
-fn tally<S: pulp::Simd, const D: usize, L: PairLaw>(
-    simd: S,
-    law: &L,
-    columns: &Columns<D>,
-    count: usize,
-    totals: &mut Totals<D>,
-) {
-    let Columns { apart, overlap, force, factor, .. } = columns;
-    // Each sum first term by term, as many as a column has places, then the terms that count.
-    let mut terms = [0.0; BLOCK];
-    for k in 0..BLOCK {
-        terms[k] = law.energy(force[k], overlap[k]);
-    }
-    totals.energy += lanes::sum(simd, &terms[..count]);
-    totals.force_sum += lanes::sum(simd, &force[..count]);
-    totals.contact_count += overlap[..count].iter().filter(|&&overlap| overlap > 0.0).count();
-    for a in 0..D {
-        for b in 0..=a {
-            for k in 0..BLOCK {
-                terms[k] = factor[k] * (apart[k][a] * apart[k][b]);
-            }
-            totals.virial[a][b] += lanes::sum(simd, &terms[..count]);
-            totals.virial[b][a] = totals.virial[a][b];
-        }
-    }
 }

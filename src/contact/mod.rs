@@ -13,7 +13,9 @@ pub mod neighbours;
 pub mod network;
 pub mod on_site;
 pub mod pair_list;
+mod rows;
 pub mod stiffness;
+pub mod totals;
 
 pub use assembly::Assembly;
 #[cfg(feature = "linear")]

@@ -13,8 +13,8 @@
 //! Hager, Zhang (2005), SIAM J. Optim. 16, 170, §4 (Wolfe's conditions by slopes alone where energies cannot tell).
 
 use crate::contact::assembly::Assembly;
-use crate::contact::forces::Totals;
 use crate::contact::law::PairLaw;
+use crate::contact::totals::Totals;
 use crate::packing::PackingError;
 use crate::relax::fire::ENERGY_ROUNDING;
 use crate::relax::flat::{combine, dot_product};

@@ -3,9 +3,9 @@
 use std::time::Instant;
 
 use crate::contact::assembly::Assembly;
-use crate::contact::forces::Totals;
 use crate::contact::law::PairLaw;
 use crate::contact::network::{backbone, working_contacts};
+use crate::contact::totals::Totals;
 use crate::packing::Packing;
 use crate::relax::{Cost, Criterion, ForceLimit, Look, Outcome, RUNAWAY, Residual, Stop, Trace, UNJAMMED_FORCE};
 use crate::vector::{Vector, dot, larger};

@@ -5,7 +5,7 @@ use std::time::Instant;
 use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
 use crate::contact::damping::DampingLaw;
-use crate::contact::forces::Totals;
+use crate::contact::totals::Totals;
 use crate::packing::{Packing, PackingError};
 use crate::relax::implicit::Finish;
 use crate::relax::implicit::motion::{ImplicitMotion, Inertia, Stepped};

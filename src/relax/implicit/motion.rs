@@ -18,7 +18,7 @@ use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
 use crate::contact::damped_forces::add_damping;
 use crate::contact::damping::DampingLaw;
-use crate::contact::forces::Totals;
+use crate::contact::totals::Totals;
 use crate::packing::{Packing, PackingError};
 use crate::relax::flat::products;
 use crate::relax::implicit::matrix::StepMatrix;

@@ -3,7 +3,7 @@
 
 use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
-use crate::contact::forces::Totals;
+use crate::contact::totals::Totals;
 use crate::packing::PackingError;
 use crate::relax::line_search::acceptance;
 use crate::relax::monitor::Monitor;

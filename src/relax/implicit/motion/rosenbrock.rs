@@ -2,7 +2,7 @@
 
 use crate::contact::PairLaw;
 use crate::contact::damping::DampingLaw;
-use crate::contact::forces::Totals;
+use crate::contact::totals::Totals;
 use crate::linear::LinearError;
 use crate::packing::PackingError;
 use crate::relax::implicit::matrix::{Ready, StepMatrix, StepTerms};

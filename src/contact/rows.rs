@@ -1,0 +1,108 @@
+//! Rows of pairs of one length: relative displacements are gathered and forces scattered with a fixed number of turns a row.
+//!
+//! Both know no vectors; a row reads and writes its first disk once.
+
+use crate::contact::pair_list::{BLOCK, Block, LONGEST_ROW, PairList};
+use crate::vector::{Vector, difference, sum};
+
+/// First disks of the rows of a block.
+#[inline(always)]
+pub(super) fn rows_of<'a, const D: usize>(pairs: &'a PairList<D>, block: &Block) -> &'a [u32] {
+    let count: usize = block.row_counts.iter().map(|&count| usize::from(count)).sum();
+    &pairs.rows[block.rows..block.rows + count]
+}
+
+/// Calls a function of the length of rows, as a constant, for the rows of each length: `$rows` and `$pairs` are where they are
+/// in their block.
+macro_rules! for_each_length {
+    ($block:expr, |$rows:ident, $pairs:ident| $call:ident($($argument:expr),*)) => {{
+        let (mut row, mut pair) = (0, 0);
+        for (index, &count) in $block.row_counts.iter().enumerate() {
+            let (count, length) = (usize::from(count), index + 1);
+            let ($rows, $pairs) = (row..row + count, pair..pair + count * length);
+            (row, pair) = ($rows.end, $pairs.end);
+            match length {
+                _ if count == 0 => {}
+                1 => $call::<D, 1>($($argument),*),
+                2 => $call::<D, 2>($($argument),*),
+                3 => $call::<D, 3>($($argument),*),
+                4 => $call::<D, 4>($($argument),*),
+                5 => $call::<D, 5>($($argument),*),
+                6 => $call::<D, 6>($($argument),*),
+                7 => $call::<D, 7>($($argument),*),
+                _ => $call::<D, LONGEST_ROW>($($argument),*),
+            }
+        }
+    }};
+}
+
+/// Relative displacements of the pairs of a block.
+pub(super) fn gather<const D: usize>(
+    moved: &mut [Vector<D>; BLOCK],
+    block: &Block,
+    rows: &[u32],
+    second: &[u32],
+    displacements: &[Vector<D>],
+) {
+    for_each_length!(block, |of_rows, of_pairs| gather_rows(
+        &mut moved[of_pairs.clone()],
+        &rows[of_rows],
+        &second[of_pairs.clone()],
+        displacements
+    ));
+}
+
+#[inline(always)]
+fn gather_rows<const D: usize, const LENGTH: usize>(
+    moved: &mut [Vector<D>],
+    rows: &[u32],
+    second: &[u32],
+    displacements: &[Vector<D>],
+) {
+    // Columns of one length and a plain index: of chained iterators some stay calls.
+    let count = rows.len();
+    let moved = &mut moved.as_chunks_mut::<LENGTH>().0[..count];
+    let second = &second.as_chunks::<LENGTH>().0[..count];
+    for row in 0..count {
+        let a = displacements[rows[row] as usize];
+        let (moved, second): (&mut [_; LENGTH], &[_; LENGTH]) = (&mut moved[row], &second[row]);
+        for k in 0..LENGTH {
+            moved[k] = difference(a, displacements[second[k] as usize]);
+        }
+    }
+}
+
+/// Adds the force of each pair of a block to its first disk and takes it from the second; disks are counted from `offset`.
+pub(super) fn scatter<const D: usize>(
+    pull: &[Vector<D>; BLOCK],
+    block: &Block,
+    (rows, second, offset): (&[u32], &[u32], u32),
+    forces: &mut [Vector<D>],
+) {
+    for_each_length!(block, |of_rows, of_pairs| scatter_rows(
+        &pull[of_pairs.clone()],
+        (&rows[of_rows], &second[of_pairs.clone()], offset),
+        forces
+    ));
+}
+
+#[inline(always)]
+fn scatter_rows<const D: usize, const LENGTH: usize>(
+    pull: &[Vector<D>],
+    (rows, second, offset): (&[u32], &[u32], u32),
+    forces: &mut [Vector<D>],
+) {
+    let count = rows.len();
+    let pull = &pull.as_chunks::<LENGTH>().0[..count];
+    let second = &second.as_chunks::<LENGTH>().0[..count];
+    for row in 0..count {
+        let first = (rows[row] - offset) as usize;
+        let mut total = forces[first];
+        for k in 0..LENGTH {
+            total = sum(total, pull[row][k]);
+            let other = &mut forces[(second[row][k] - offset) as usize];
+            *other = difference(*other, pull[row][k]);
+        }
+        forces[first] = total;
+    }
+}
