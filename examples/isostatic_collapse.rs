@@ -8,7 +8,7 @@
 //! over samples, which one sample with a large plastic event rules, and the geometric mean, which none does: of bonds under the relaxed inflation, of bonds under the linear response to one, and of d_r. Printed for each: y/y_plateau
 //! at some x = r ΔZ, and C by the plateau rule: ℓ_iso is where y has risen to a share of its plateau, the median of y between two
 //! radii; the first such radius, and the one from which on y stays there up to the plateau's own radii (of rings next to the centre few
-//! bonds say anything, and one of them is soon above). Then how far the pressures lie apart: the standard deviation of ln y between them, rms over x = 3 to 6, y as it is (h over d_0)
+//! bonds say anything, and one of them is soon above). Where y comes down to its plateau, the radius from which on it is within 1.3 of it. Then how far the pressures lie apart: the standard deviation of ln y between them, rms over x = 3 to 6, y as it is (h over d_0)
 //! and y over h_0 near the centre.
 
 use std::error::Error;
@@ -51,6 +51,9 @@ const PLATEAU: [f64; 2] = [0.3, 0.6];
 
 /// Shares of the plateau that end the disordered region.
 const SHARES: [f64; 3] = [0.8, 0.9, 1.0];
+
+/// y over its plateau from which on it counts as there where it comes from above.
+const NEAR_PLATEAU: f64 = 1.3;
 
 /// One sample: ΔZ, R, and h_∥ relaxed, h_∥ of the linear response, h_r relaxed.
 struct Sample {
@@ -134,10 +137,21 @@ fn at(length: &IsostaticLength, x: f64) -> f64 {
 /// x from which on y is no more below a threshold, up to a radius.
 fn settled(length: &IsostaticLength, threshold: f64, until: f64) -> f64 {
     let below = |point: &IsostaticPoint| point.radius < until && point.scaled_fluctuation < threshold;
-    let Some(last) = length.curve.iter().rposition(below) else { return f64::NAN };
-    let (a, b) = (&length.curve[last], &length.curve[last + 1]);
+    last_crossing(length, threshold, below).unwrap_or(f64::NAN)
+}
+
+/// x from which on y is no more above a threshold, up to a radius.
+fn fallen(length: &IsostaticLength, threshold: f64, until: f64) -> Option<f64> {
+    let above = |point: &IsostaticPoint| point.radius < until && point.scaled_fluctuation > threshold;
+    last_crossing(length, threshold, above)
+}
+
+/// x between the last point on one side of a threshold and the next.
+fn last_crossing(length: &IsostaticLength, threshold: f64, side: impl Fn(&IsostaticPoint) -> bool) -> Option<f64> {
+    let last = length.curve.iter().rposition(side)?;
+    let (a, b) = (&length.curve[last], length.curve.get(last + 1)?);
     let share = (threshold - a.scaled_fluctuation) / (b.scaled_fluctuation - a.scaled_fluctuation);
-    a.scaled_radius + share * (b.scaled_radius - a.scaled_radius)
+    Some(a.scaled_radius + share * (b.scaled_radius - a.scaled_radius))
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -184,7 +198,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             SHARES
                 .iter()
                 .for_each(|share| print!(" {:.2}", settled(&plain, share * plateau, PLATEAU[0] * outer_radius)));
-            println!();
+            match fallen(&plain, NEAR_PLATEAU * plateau, PLATEAU[0] * outer_radius) {
+                Some(x) => println!("; down to {NEAR_PLATEAU}: {x:.2}"),
+                None => println!("; never above {NEAR_PLATEAU}"),
+            }
         }
     }
     for ((_, _, name), [plain, near]) in CURVES.iter().zip(&curves) {
