@@ -151,6 +151,10 @@ fn last_crossing(length: &IsostaticLength, threshold: f64, side: impl Fn(&Isosta
     let last = length.curve.iter().rposition(side)?;
     let (a, b) = (&length.curve[last], length.curve.get(last + 1)?);
     let share = (threshold - a.scaled_fluctuation) / (b.scaled_fluctuation - a.scaled_fluctuation);
+    if !(0.0..=1.0).contains(&share) {
+        // The next point, the first one past the radius, is on the same side.
+        return None;
+    }
     Some(a.scaled_radius + share * (b.scaled_radius - a.scaled_radius))
 }
 

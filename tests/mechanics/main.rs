@@ -1,6 +1,6 @@
 //! Contacts, relaxers, linear response, preparation and inflation: everything that moves disks.
 //!
-//! One crate, because its parts compile the same relaxers for the same laws: one by one they take three times as long.
+//! One crate, because its parts compile the same relaxers for the same laws: one by one they take four times as long.
 
 mod claims;
 mod scenes;
