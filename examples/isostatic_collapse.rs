@@ -1,10 +1,11 @@
 //! Whether h_∥(r) of different pressures is one function of r ΔZ, with ℓ_iso ΔZ = C; and that h_r(r) is not.
 //!
 //! ```text
-//! cargo run --release --features measurements --example isostatic_collapse -- [DISK_COUNT [SAMPLE_COUNT [INCREASE [PRESSURE …]]]]      (5548 Hertzian disks, 10 samples, d_0 = 0.1)
+//! cargo run --release --features measurements --example isostatic_collapse -- [damped] [DISK_COUNT [SAMPLE_COUNT [INCREASE [PRESSURE …]]]]      (5548 Hertzian disks, 10 samples, d_0 = 0.1)
 //! ```
 //!
-//! Packings at p = 100, 300, 1000 and 3000 or the pressures given, everything relaxed by FIRE and Newton in turn. h of a pressure is the root of the mean of h²
+//! Packings at p = 100, 300, 1000 and 3000 or the pressures given, everything relaxed by FIRE and Newton in turn, but for `damped` the
+//! inflation by damped dynamics. h of a pressure is the root of the mean of h²
 //! over samples, which one sample with a large plastic event rules, and the geometric mean, which none does: of bonds under the relaxed inflation, of bonds under the linear response to one, and of d_r. Printed for each: y/y_plateau
 //! at some x = r ΔZ, and C by the plateau rule: ℓ_iso is where y has risen to a share of its plateau, the median of y between two
 //! radii; the first such radius, and the one from which on y stays there up to the plateau's own radii (of rings next to the centre few
@@ -25,7 +26,7 @@ use jamscope::observe::isostatic::{
 use jamscope::observe::{ExcessCoordination, State};
 use jamscope::packing::Mixture;
 use jamscope::preparation::{Preparation, Target, prepare};
-use jamscope::relax::Staged;
+use jamscope::relax::{ImplicitDynamics, Staged};
 use rayon::prelude::*;
 
 /// Pressures, unless others are given \[force / length\]: R is at least three times 75 p^(−1/3) at 5548 disks.
@@ -62,7 +63,11 @@ struct Sample {
     fluctuations: [Fluctuations; 3],
 }
 
-fn sample(disk_count: usize, pressure: f64, increase: f64, seed: u64) -> Result<Sample, Box<dyn Error>> {
+fn sample(
+    (disk_count, pressure): (usize, f64),
+    (increase, damped): (f64, bool),
+    seed: u64,
+) -> Result<Sample, Box<dyn Error>> {
     let (law, staged) = (Hertzian::default(), Staged::default());
     let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
     let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed };
@@ -72,7 +77,11 @@ fn sample(disk_count: usize, pressure: f64, increase: f64, seed: u64) -> Result<
         [0.480, 0.486, 0.491][usize::from(disk_count > 10_000) + usize::from(disk_count > 40_000)];
     let boundary = Boundary::HeldRim { outer_radius_over_side };
     let inflation = Inflation { increase, boundary, ..Inflation::default() };
-    let inflated = inflate(&inflation, &packing, &law, &staged, seed, &mut ())?;
+    let inflated = if damped {
+        inflate(&inflation, &packing, &law, &ImplicitDynamics::default(), seed, &mut ())?
+    } else {
+        inflate(&inflation, &packing, &law, &staged, seed, &mut ())?
+    };
     let before = State::new(inflated.before.packing.get(), &law)?;
     let excess = ExcessCoordination::of(&before.network).ok_or("no backbone")?.value;
     let response = LinearResponse::of_inflation(before.packing, inflated.centre, &law, Prestress::Included)?;
@@ -159,18 +168,23 @@ fn last_crossing(length: &IsostaticLength, threshold: f64, side: impl Fn(&Isosta
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    let damped = arguments.first().is_some_and(|word| word == "damped");
+    if damped {
+        arguments.remove(0);
+    }
     let number = |index: usize, default: f64| arguments.get(index).map_or(Ok(default), |text| text.parse::<f64>());
     let (disk_count, sample_count, increase) = (number(0, 5548.0)? as usize, number(1, 10.0)? as u64, number(2, 0.1)?);
     let given: Vec<f64> = arguments.iter().skip(3).map(|text| text.parse()).collect::<Result<_, _>>()?;
     let pressures = if given.is_empty() { PRESSURES.to_vec() } else { given };
-    println!("{disk_count} disks, {sample_count} samples, d_0 = {increase}; y over its plateau at x = {MORE_RADII:?}");
+    let how = if damped { ", damped dynamics" } else { "" };
+    println!("{disk_count} disks, {sample_count} samples, d_0 = {increase}{how}; y over its plateau at x = {MORE_RADII:?}");
     // y at the x above of every pressure: over d_0, and over h_0.
     let mut curves: [[Vec<[f64; 4]>; 2]; CURVES.len()] = Default::default();
     for pressure in pressures {
         let samples: Vec<Sample> = (1..=sample_count)
             .into_par_iter()
-            .map(|seed| sample(disk_count, pressure, increase, seed).map_err(|error| error.to_string()))
+            .map(|seed| sample((disk_count, pressure), (increase, damped), seed).map_err(|error| error.to_string()))
             .collect::<Result<_, _>>()?;
         let count = samples.len() as f64;
         let excess = samples.iter().map(|sample| sample.excess).sum::<f64>() / count;

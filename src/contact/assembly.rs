@@ -22,6 +22,9 @@ use crate::vector::{Vector, dot, extended_sum, larger, longest_difference_square
 /// that do not touch. From 0.25 to 0.5 these are 7 in 100 pairs and 4 in 100 of the time of the loop, for half the lists and less.
 pub const SKIN: f64 = 0.5;
 
+/// How far a disk may go from where it was listed over the width of the skin: half of it, less the rounding of the comparison.
+const LISTED: f64 = 0.4999;
+
 /// A packing under a contact law, in working order.
 #[derive(Debug, Clone)]
 pub struct Assembly<const D: usize, L> {
@@ -236,8 +239,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Two disks with the same centre.
     pub fn keep_listed(&mut self, bound: f64) -> Result<bool, PackingError> {
         self.moved += bound;
-        // Half the skin, less the rounding of the comparison. Written so that NaN asks for the exact look.
-        let limit = 0.4999 * self.skin;
+        // Written so that NaN asks for the exact look.
+        let limit = LISTED * self.skin;
         if self.moved <= limit {
             return Ok(false);
         }
@@ -255,6 +258,16 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
         self.rebuild()?;
         Ok(true)
+    }
+
+    /// Width of the skin \[length\].
+    pub(crate) fn skin(&self) -> f64 {
+        self.skin
+    }
+
+    /// How far every disk may go before the list must be made anew, at least \[length\].
+    pub(crate) fn listed_way(&self) -> f64 {
+        LISTED * self.skin - self.moved
     }
 
     /// Remembers where the disks are, for [`Assembly::restore`].

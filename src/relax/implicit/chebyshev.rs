@@ -43,6 +43,8 @@ pub(super) struct StageTerms {
     pub(super) slope: f64,
     /// Of h f at the start, γ̃.
     pub(super) start_slope: f64,
+    /// When the stage is, over h.
+    pub(super) time: f64,
 }
 
 /// T_j, T_j' and T_j'' at one argument, from j = 0 on.
@@ -94,20 +96,18 @@ impl Chebyshev {
         let first = 0.25 / (w0 * w0);
         let (mut b_earlier, mut b_last) = (first, first);
         let mut a_last = 1.0 - first * w0;
-        stages.push(StageTerms { start: 1.0, last: 0.0, earlier: 0.0, slope: first * w1, start_slope: 0.0 });
+        // The stages of ẏ = 1 are their own times.
+        let (mut time_earlier, mut time) = (0.0, first * w1);
+        stages.push(StageTerms { start: 1.0, last: 0.0, earlier: 0.0, slope: first * w1, start_slope: 0.0, time });
         for _ in 2..=count {
             polynomials.rise();
             let [t, slope, curvature] = polynomials.now;
             let b = curvature / (slope * slope);
             let (mu, nu) = (2.0 * b * w0 / b_last, -b / b_earlier);
             let along = 2.0 * b * w1 / b_last;
-            stages.push(StageTerms {
-                start: 1.0 - mu - nu,
-                last: mu,
-                earlier: nu,
-                slope: along,
-                start_slope: -a_last * along,
-            });
+            let start_slope = -a_last * along;
+            (time_earlier, time) = (time, mu * time + nu * time_earlier + along + start_slope);
+            stages.push(StageTerms { start: 1.0 - mu - nu, last: mu, earlier: nu, slope: along, start_slope, time });
             (b_earlier, b_last, a_last) = (b_last, b, 1.0 - b * t);
         }
         Chebyshev { stages, extent: (w0 + 1.0) / w1 }
@@ -191,6 +191,25 @@ mod tests {
                 let bound = 1e-14 * (count as f64).powi(4) * exact.norm().max(1.0);
                 assert!((stages - exact).norm() < bound, "{count} stages, z = {z}: {stages} for {exact}");
             }
+        }
+    }
+
+    #[test]
+    fn the_stages_are_where_their_polynomials_say() {
+        // c_j = w_1 T_j''(w_0)/T_j'(w_0), the first derivative at 0 of that of stage j; c_1 is that of b_1 = b_2.
+        for count in counts() {
+            let method = Chebyshev::new(count);
+            let w0 = 1.0 + DAMPING / (count as f64).powi(2);
+            let w1 = (w0 + 1.0) / method.extent;
+            let mut polynomials = Polynomials::at(w0);
+            for (index, terms) in method.stages.iter().enumerate() {
+                let [_, first, second] = polynomials.now;
+                let exact = if index == 0 { 0.25 / (w0 * w0) * w1 } else { w1 * second / first };
+                // Rounding as above.
+                assert!((terms.time - exact).abs() < 1e-15 * (count as f64).powi(2), "stage {index} of {count}");
+                polynomials.rise();
+            }
+            assert!((method.stages[count - 1].time - 1.0).abs() < 1e-15 * (count as f64).powi(2));
         }
     }
 

@@ -8,6 +8,7 @@ use crate::contact::damping::DampingLaw;
 use crate::contact::totals::Totals;
 use crate::packing::{Packing, PackingError};
 use crate::relax::implicit::Finish;
+use crate::relax::implicit::growth::{LARGEST_GROWTH, SMALLEST_GROWTH, growth};
 use crate::relax::implicit::motion::{ImplicitMotion, Inertia, Stepped};
 use crate::relax::implicit::pace::{Kind, Pace};
 use crate::relax::implicit::restless::Restless;
@@ -26,18 +27,8 @@ pub(super) struct Integration {
     pub(super) step_limit: usize,
 }
 
-/// Largest ratio of a step to the one before; 1 after a rejected one, since the contact that made it fail is mostly still near.
-pub(super) const LARGEST_GROWTH: f64 = 2.0;
-
-/// Smallest one.
-pub(super) const SMALLEST_GROWTH: f64 = 0.1;
-
 /// Ratio after a step whose matrix was not positive definite.
 const INDEFINITE_GROWTH: f64 = 0.5;
-
-/// Aim of the next step's error over what is allowed. Contacts come and go, so errors vary from step to step by much, and a
-/// repeated step costs as much as a short one.
-const SAFETY: f64 = 0.5;
 
 /// Error allowed off the backbone over that on it. Rattlers fly and hit; where they hit matters little to the backbone, but an
 /// error there is an overlap, and so energy.
@@ -185,7 +176,7 @@ impl Integration {
                 Stepped::TooFar => SMALLEST_GROWTH,
                 Stepped::Moved(reached) => {
                     let error = allowed.share(motion, |motion, disk| motion.error(*time_step, disk));
-                    let growth = allowed.growth(error, LARGEST_GROWTH);
+                    let growth = growth(error, LARGEST_GROWTH);
                     if error <= 1.0 {
                         *time_step *= if rejected { growth.min(1.0) } else { growth };
                         return Ok(Ok(Some(reached)));
@@ -232,16 +223,13 @@ impl Allowed<'_> {
         motion: &ImplicitMotion<D, L, C>,
         error: impl Fn(&ImplicitMotion<D, L, C>, usize) -> f64,
     ) -> f64 {
-        let of_disk = |disk: usize| error(motion, disk) * if self.backbone[disk] { 1.0 } else { 1.0 / OFF_BACKBONE };
-        let largest = (0..motion.assembly.mobile_count()).map(of_disk).fold(0.0, |most, error| larger(error, most));
-        largest / (self.tolerance * self.overlap)
+        let of_disk = |disk: usize| error(motion, disk) * self.weight(disk);
+        (0..motion.assembly.mobile_count()).map(of_disk).fold(0.0, |most, error| larger(error, most))
     }
 
-    /// Length of the next step over that of one with this share: errors are those of second order, of either method, and in a
-    /// step grow as the third power of h.
-    pub(super) fn growth(&self, share: f64, largest: f64) -> f64 {
-        let growth = (SAFETY / share).cbrt().clamp(SMALLEST_GROWTH, largest);
-        if growth.is_nan() { SMALLEST_GROWTH } else { growth }
+    /// What an error of a disk \[length\] is over the one allowed is this times it.
+    pub(super) fn weight(&self, disk: usize) -> f64 {
+        (if self.backbone[disk] { 1.0 } else { 1.0 / OFF_BACKBONE }) / (self.tolerance * self.overlap)
     }
 }
 

@@ -12,6 +12,7 @@
 //! stabilised explicit steps take their place.
 
 mod chebyshev;
+mod growth;
 mod integration;
 mod matrix;
 mod motion;

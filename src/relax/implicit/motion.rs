@@ -11,6 +11,8 @@
 //! [`super::tableau`]. It is positive definite but for the prestress in K, which is left out where it would not be.
 
 mod explicit;
+mod patch;
+mod refined;
 mod rosenbrock;
 mod stabilised;
 
@@ -25,6 +27,8 @@ use crate::relax::implicit::matrix::StepMatrix;
 use crate::relax::implicit::tableau::{ROS34PW2, STAGE_COUNT};
 use crate::vector::Vector;
 
+pub(super) use refined::Refine;
+use refined::Refinement;
 use rosenbrock::Stage;
 use stabilised::Chain;
 
@@ -104,6 +108,7 @@ pub struct ImplicitMotion<const D: usize, L, C> {
     taken_back: bool,
     stages: [Stage<D>; STAGE_COUNT],
     chain: Chain<D>,
+    refinement: Refinement<D>,
     before: Before<D>,
     /// Velocities of all disks, and all forces with damping.
     all_velocities: Vec<Vector<D>>,
@@ -152,6 +157,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             taken_back: false,
             stages: std::array::from_fn(|_| Stage { way: zero.clone(), kick: zero.clone(), work: 0.0 }),
             chain: Chain::default(),
+            refinement: Refinement::default(),
             before: Before::default(),
             all_velocities: vec![[0.0; D]; assembly.len()],
             all_forces: Vec::new(),

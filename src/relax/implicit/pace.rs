@@ -45,6 +45,7 @@ pub(super) enum Kind {
         /// Length of the next one \[time\].
         step: f64,
         stage_count: usize,
+        stiffness: Stiffness,
     },
     Explicit,
 }
@@ -93,7 +94,7 @@ impl Pace {
             let step = time_step.min(stiffness.longest_step());
             let stage_count = stiffness.stage_count(step);
             if (stage_count as f64) < rate * step {
-                kind = Kind::Stabilised { step, stage_count };
+                kind = Kind::Stabilised { step, stage_count, stiffness };
             }
         }
         kind

@@ -15,10 +15,10 @@ use crate::vector::{Vector, difference, dot, larger, scaled, sum};
 pub(super) struct Chain<const D: usize> {
     method: Option<Chebyshev>,
     /// Ways since the start of the step after the last stage, and after the one before it.
-    way: Vec<Vector<D>>,
+    pub(super) way: Vec<Vector<D>>,
     earlier_way: Vec<Vector<D>>,
     /// Velocities of all disks likewise; held ones rest.
-    velocity: Vec<Vector<D>>,
+    pub(super) velocity: Vec<Vector<D>>,
     earlier_velocity: Vec<Vector<D>>,
     /// Sums of c n n over the contacts of a disk.
     blocks: Vec<[Vector<D>; D]>,
@@ -29,7 +29,7 @@ const LANES: usize = 8;
 
 impl<const D: usize> Chain<D> {
     /// Everything where a step starts.
-    fn begin(&mut self, velocities: &[Vector<D>], disk_count: usize) {
+    pub(super) fn begin(&mut self, velocities: &[Vector<D>], disk_count: usize) {
         for way in [&mut self.way, &mut self.earlier_way] {
             way.clear();
             way.resize(velocities.len(), [0.0; D]);
@@ -42,7 +42,7 @@ impl<const D: usize> Chain<D> {
     }
 
     /// One stage; the longest way since the last one and since the start of the step, of a coordinate.
-    fn go(
+    pub(super) fn go(
         &mut self,
         terms: &StageTerms,
         [slope, start_slope]: [f64; 2],
@@ -215,14 +215,28 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     /// # Source
     /// Sommeijer, Shampine, Verwer (1997), eq. (2.9).
     pub fn stabilised_error(&self, time_step: f64, disk: usize) -> f64 {
-        let (v, end_v) = (self.before.velocities[disk], self.velocities[disk]);
-        let slopes = sum(v, end_v);
-        let way = sum(scaled(-0.8, self.moved[disk]), scaled(0.4 * time_step, slopes));
-        let forces = sum(self.before.net_forces[disk], self.net_forces[disk]);
-        let kick = sum(scaled(0.8, difference(v, end_v)), scaled(0.4 * time_step, forces));
-        let scale = time_step * ROS34PW2.diagonal;
-        (dot(way, way) + scale * scale * dot(kick, kick)).sqrt()
+        let velocities = [self.before.velocities[disk], self.velocities[disk]];
+        let forces = [self.before.net_forces[disk], self.net_forces[disk]];
+        estimated_error(time_step, self.moved[disk], velocities, forces)
     }
+}
+
+/// See [`ImplicitMotion::stabilised_error`]: of the way of a disk, its velocities and forces at the start and at the end.
+pub(super) fn estimated_error<const D: usize>(
+    time_step: f64,
+    moved: Vector<D>,
+    [start_velocity, velocity]: [Vector<D>; 2],
+    [start_force, force]: [Vector<D>; 2],
+) -> f64 {
+    let way = sum(scaled(-0.8, moved), scaled(0.4 * time_step, sum(start_velocity, velocity)));
+    let kick = sum(scaled(0.8, difference(start_velocity, velocity)), scaled(0.4 * time_step, sum(start_force, force)));
+    measure(time_step, way, kick)
+}
+
+/// Length of a difference between two states of a disk: that of the way, and that of the velocity times hγ \[length\].
+pub(super) fn measure<const D: usize>(time_step: f64, way: Vector<D>, kick: Vector<D>) -> f64 {
+    let scale = time_step * ROS34PW2.diagonal;
+    (dot(way, way) + scale * scale * dot(kick, kick)).sqrt()
 }
 
 /// Largest eigenvalue of a symmetric matrix, of D > 2 rows a bound on it from above.
