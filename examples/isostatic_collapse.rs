@@ -178,7 +178,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let given: Vec<f64> = arguments.iter().skip(3).map(|text| text.parse()).collect::<Result<_, _>>()?;
     let pressures = if given.is_empty() { PRESSURES.to_vec() } else { given };
     let how = if damped { ", damped dynamics" } else { "" };
-    println!("{disk_count} disks, {sample_count} samples, d_0 = {increase}{how}; y over its plateau at x = {MORE_RADII:?}");
+    println!(
+        "{disk_count} disks, {sample_count} samples, d_0 = {increase}{how}; y over its plateau at x = {MORE_RADII:?}"
+    );
     // y at the x above of every pressure: over d_0, and over h_0.
     let mut curves: [[Vec<[f64; 4]>; 2]; CURVES.len()] = Default::default();
     for pressure in pressures {

@@ -9,7 +9,7 @@
 //! backbone in units of the mean overlap; where a contact opens or closes within a step, the force or the damping kinks or
 //! jumps, the stages disagree, and the step is repeated with a shorter one. Near the minimum the steps grow without bound
 //! and become Newton's. See [`ImplicitMotion`] for the step, [`tableau`] for the method. While collisions keep steps short,
-//! stabilised explicit steps take their place.
+//! stabilised explicit steps take their place, made again with shorter ones around the disks that collide.
 
 mod chebyshev;
 mod growth;
