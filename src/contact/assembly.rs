@@ -261,12 +261,12 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     }
 
     /// Width of the skin \[length\].
-    pub(crate) fn skin(&self) -> f64 {
+    pub fn skin(&self) -> f64 {
         self.skin
     }
 
     /// How far every disk may go before the list must be made anew, at least \[length\].
-    pub(crate) fn listed_way(&self) -> f64 {
+    pub fn listed_way(&self) -> f64 {
         LISTED * self.skin - self.moved
     }
 

@@ -14,6 +14,8 @@ pub mod network;
 pub mod on_site;
 pub mod pair_list;
 mod rows;
+#[cfg(feature = "linear")]
+mod selected;
 pub mod stiffness;
 pub mod totals;
 

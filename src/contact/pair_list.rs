@@ -193,14 +193,6 @@ impl<const D: usize> PairList<D> {
         Ok(())
     }
 
-    /// Empties the list and fills it with pairs of another one under other numbers: of each first disk the second ones, each
-    /// with the place of the pair in `whole`.
-    pub(crate) fn select(&mut self, whole: &PairList<D>, starts: &[u32], seconds: &[(u32, u32)]) {
-        let disk_count = starts.len() - 1;
-        // No two centres are the same in `whole`.
-        let _ = self.fill(disk_count, disk_count, || Selected { whole, starts, seconds });
-    }
-
     /// Adds the blocks of the next tile.
     fn add_tile(&mut self, disks: Range<usize>, first_count: usize, mut search: impl Search<D>, tile: &mut Tile) {
         let mut arranger = std::mem::take(&mut self.arranger);
@@ -322,37 +314,6 @@ impl<const D: usize> PairList<D> {
         self.coefficient.extend_from_slice(&measured.coefficient[..count]);
         block.rows.clear();
         block.seconds.drain(..count);
-    }
-}
-
-/// See [`PairList::select`].
-struct Selected<'a, const D: usize> {
-    whole: &'a PairList<D>,
-    starts: &'a [u32],
-    seconds: &'a [(u32, u32)],
-}
-
-impl<const D: usize> Selected<'_, D> {
-    fn seconds(&self, first: usize) -> &[(u32, u32)] {
-        &self.seconds[self.starts[first] as usize..self.starts[first + 1] as usize]
-    }
-}
-
-impl<const D: usize> Search<D> for Selected<'_, D> {
-    fn find(&mut self, first: usize, seconds: &mut Vec<u32>) {
-        seconds.extend(self.seconds(first).iter().map(|&(second, _)| second));
-    }
-
-    fn measure(&self, first: &[u32], second: &[u32], measured: &mut Measured<D>) {
-        for (place, (&first, &second)) in first.iter().zip(second).enumerate() {
-            let found = self.seconds(first as usize).iter().find(|&&(disk, _)| disk == second);
-            let Some(&(_, pair)) = found else { continue };
-            let pair = pair as usize;
-            measured.separation[place] = self.whole.separation[pair];
-            measured.distance[place] = self.whole.distance[pair];
-            measured.overlap[place] = self.whole.overlap[pair];
-            measured.coefficient[place] = self.whole.coefficient[pair];
-        }
     }
 }
 

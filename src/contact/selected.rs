@@ -1,0 +1,100 @@
+//! Some pairs of a list as a list of its own, under other numbers.
+
+use crate::contact::pair_list::{Measured, PairList, Search};
+
+impl<const D: usize> PairList<D> {
+    /// Empties the list and fills it with pairs of another one under other numbers.
+    ///
+    /// # Shape
+    /// `starts` has one entry a disk and one more: where its pairs begin in `seconds`, which has the second disk of each with the
+    /// place of the pair in `whole`.
+    pub(crate) fn select(&mut self, whole: &PairList<D>, starts: &[u32], seconds: &[(u32, u32)]) {
+        let disk_count = starts.len() - 1;
+        // No two centres are the same in `whole`.
+        let _ = self.fill(disk_count, disk_count, || Selected { whole, starts, seconds });
+    }
+}
+
+/// See [`PairList::select`].
+struct Selected<'a, const D: usize> {
+    whole: &'a PairList<D>,
+    starts: &'a [u32],
+    seconds: &'a [(u32, u32)],
+}
+
+impl<const D: usize> Selected<'_, D> {
+    fn seconds(&self, first: usize) -> &[(u32, u32)] {
+        &self.seconds[self.starts[first] as usize..self.starts[first + 1] as usize]
+    }
+}
+
+impl<const D: usize> Search<D> for Selected<'_, D> {
+    fn find(&mut self, first: usize, seconds: &mut Vec<u32>) {
+        seconds.extend(self.seconds(first).iter().map(|&(second, _)| second));
+    }
+
+    fn measure(&self, first: &[u32], second: &[u32], measured: &mut Measured<D>) {
+        for (place, (&first, &second)) in first.iter().zip(second).enumerate() {
+            let found = self.seconds(first as usize).iter().find(|&&(disk, _)| disk == second);
+            let Some(&(_, pair)) = found else { continue };
+            let pair = pair as usize;
+            measured.separation[place] = self.whole.separation[pair];
+            measured.distance[place] = self.whole.distance[pair];
+            measured.overlap[place] = self.whole.overlap[pair];
+            measured.coefficient[place] = self.whole.coefficient[pair];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Hertzian;
+    use crate::contact::assembly::Assembly;
+    use crate::contact::forces::{Across, forces};
+    use crate::io::read_packing;
+    use crate::vector::{Vector, difference, norm};
+
+    #[test]
+    fn every_other_pair_under_numbers_from_the_end_pulls_as_it_did() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz");
+        let packing = read_packing::<2>(file).expect("a stored packing");
+        let law = Hertzian::default();
+        let assembly = Assembly::new(&packing, law).expect("no coincidence");
+        let (whole, count) = (assembly.pairs(), assembly.len());
+        let other = |disk: u32| count as u32 - 1 - disk;
+        let mut found: Vec<(u32, u32, u32)> = (0..whole.len())
+            .step_by(2)
+            .map(|pair| (other(whole.first[pair]), other(whole.second[pair]), pair as u32))
+            .collect();
+        found.sort_unstable();
+        let starts: Vec<u32> =
+            (0..=count as u32).map(|disk| found.partition_point(|&(first, ..)| first < disk) as u32).collect();
+        let seconds: Vec<(u32, u32)> = found.iter().map(|&(_, second, pair)| (second, pair)).collect();
+        let mut half = PairList::default();
+        half.select(whole, &starts, &seconds);
+        assert_eq!(half.len(), whole.len().div_ceil(2));
+        // What the others pull by is what is missing.
+        found = (1..whole.len()).step_by(2).map(|pair| (whole.first[pair], whole.second[pair], pair as u32)).collect();
+        found.sort_unstable();
+        let starts: Vec<u32> =
+            (0..=count as u32).map(|disk| found.partition_point(|&(first, ..)| first < disk) as u32).collect();
+        let seconds: Vec<(u32, u32)> = found.iter().map(|&(_, second, pair)| (second, pair)).collect();
+        let mut rest = PairList::default();
+        rest.select(whole, &starts, &seconds);
+        let of = |pairs: &PairList<2>| {
+            let mut pulls = vec![[0.0; 2]; count];
+            forces(&law, pairs, &vec![[0.0; 2]; count], &mut Across::default(), &mut pulls);
+            pulls
+        };
+        let (all, half, rest): (Vec<Vector<2>>, Vec<Vector<2>>, Vec<Vector<2>>) = (of(whole), of(&half), of(&rest));
+        let mut largest = 0.0f64;
+        for disk in 0..count {
+            let missing = difference(all[disk], half[count - 1 - disk]);
+            // Sums of forces of up to 10⁴ in other orders.
+            assert!(norm(difference(missing, rest[disk])) < 1e-10, "disk {disk}");
+            largest = largest.max(norm(rest[disk]));
+        }
+        assert!(largest > 10.0, "{largest}");
+    }
+}
