@@ -62,26 +62,22 @@ mod tests {
         let law = Hertzian::default();
         let assembly = Assembly::new(&packing, law).expect("no coincidence");
         let (whole, count) = (assembly.pairs(), assembly.len());
-        let other = |disk: u32| count as u32 - 1 - disk;
-        let mut found: Vec<(u32, u32, u32)> = (0..whole.len())
-            .step_by(2)
-            .map(|pair| (other(whole.first[pair]), other(whole.second[pair]), pair as u32))
-            .collect();
-        found.sort_unstable();
-        let starts: Vec<u32> =
-            (0..=count as u32).map(|disk| found.partition_point(|&(first, ..)| first < disk) as u32).collect();
-        let seconds: Vec<(u32, u32)> = found.iter().map(|&(_, second, pair)| (second, pair)).collect();
-        let mut half = PairList::default();
-        half.select(whole, &starts, &seconds);
+        // Every second pair from `begin` on, its disks under these numbers.
+        let selected = |begin: usize, number: &dyn Fn(u32) -> u32| {
+            let pair = |pair: usize| (number(whole.first[pair]), number(whole.second[pair]), pair as u32);
+            let mut found: Vec<(u32, u32, u32)> = (begin..whole.len()).step_by(2).map(pair).collect();
+            found.sort_unstable();
+            let start = |disk: u32| found.partition_point(|&(first, ..)| first < disk) as u32;
+            let starts: Vec<u32> = (0..=count as u32).map(start).collect();
+            let seconds: Vec<(u32, u32)> = found.iter().map(|&(_, second, pair)| (second, pair)).collect();
+            let mut pairs = PairList::default();
+            pairs.select(whole, &starts, &seconds);
+            pairs
+        };
+        let half = selected(0, &|disk| count as u32 - 1 - disk);
         assert_eq!(half.len(), whole.len().div_ceil(2));
         // What the others pull by is what is missing.
-        found = (1..whole.len()).step_by(2).map(|pair| (whole.first[pair], whole.second[pair], pair as u32)).collect();
-        found.sort_unstable();
-        let starts: Vec<u32> =
-            (0..=count as u32).map(|disk| found.partition_point(|&(first, ..)| first < disk) as u32).collect();
-        let seconds: Vec<(u32, u32)> = found.iter().map(|&(_, second, pair)| (second, pair)).collect();
-        let mut rest = PairList::default();
-        rest.select(whole, &starts, &seconds);
+        let rest = selected(1, &|disk| disk);
         let of = |pairs: &PairList<2>| {
             let mut pulls = vec![[0.0; 2]; count];
             forces(&law, pairs, &vec![[0.0; 2]; count], &mut Across::default(), &mut pulls);
