@@ -11,7 +11,8 @@ use crate::relax::implicit::motion::{ImplicitMotion, Refine};
 use crate::relax::implicit::pace::{Kind, Pace, SHARE};
 
 /// Error allowed in a stabilised step over that allowed in an implicit one. Of twelve motions of 1000 disks at p = 10 (constant
-/// damping) seven end where explicit dynamics do at 1/2, ten at 1/4, eleven at 1/10; of twenty at p = 100 and at p = 800 all, at each.
+/// damping) seven end where explicit dynamics do at 1/2, ten at 1/4, eleven at 1/10 where steps have
+/// one length for all disks, all twelve at 1/10 with shorter ones around events; of twenty at p = 100 and at p = 800 all, at each.
 const TOLERANCE_SHARE: f64 = 0.1;
 
 /// Disks whose errors do not count for the length of a step, over all that can move: where their errors are too large, the step is

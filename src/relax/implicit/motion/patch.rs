@@ -14,10 +14,10 @@ use crate::relax::implicit::motion::refined::Refine;
 use crate::relax::implicit::motion::stabilised::{Chain, estimated_error};
 use crate::vector::{Vector, difference, larger, sum};
 
-/// Steps of a patch over the step of all when it begins.
+/// The first step of a patch is the step of all over this: a guess, which its errors lengthen or shorten at once.
 const FIRST_PARTS: f64 = 4.0;
 
-/// Most steps of a patch, rejected ones included.
+/// Most steps of a patch, rejected ones included: with more the step of all is too long by far.
 const MOST_STEPS: usize = 500;
 
 /// No place.

@@ -22,13 +22,14 @@ use crate::relax::implicit::motion::patch::Patch;
 use crate::relax::implicit::motion::stabilised::measure;
 use crate::vector::{Vector, difference, larger, norm, sum};
 
-/// Change of the last shell of a patch over the error allowed, at most.
+/// Change of the last shell of a patch over the error allowed, at most: the disks around, which are not moved again, would change by less.
 const OUTSIDE: f64 = 0.5;
 
 /// Shells of a patch beyond those its disks push in one step, of which there are [`PUSHED`] √(hλ).
 const LEAST_SHELLS: u32 = 1;
 
-/// See [`LEAST_SHELLS`].
+/// See [`LEAST_SHELLS`]. Of 3000 to 4000 steps of 16 508 disks at p = 10 patches fail in 3 at 1, in 34 at 1/2 and in 461 at 0.3; at 1 the whole
+/// motion takes a third longer, at 0.3 as long as at 1/2.
 const PUSHED: f64 = 0.5;
 
 /// Disks in patches over all that can move, at most: with more a shorter step of all costs less.
