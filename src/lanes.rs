@@ -23,6 +23,14 @@ pub fn sum<S: pulp::Simd>(simd: S, column: &[f64]) -> f64 {
     lanes.iter().sum()
 }
 
+/// The largest |a_k|, 0 of none; a NaN may get lost.
+#[inline(always)]
+pub fn largest<S: pulp::Simd>(simd: S, column: &[f64]) -> f64 {
+    let (vectors, rest) = S::as_simd_f64s(column);
+    let most = vectors.iter().fold(simd.splat_f64s(0.0), |most, &a| simd.max_f64s(most, simd.abs_f64s(a)));
+    rest.iter().fold(simd.reduce_max_f64s(most), |most, a| most.max(a.abs()))
+}
+
 /// Σ a_k b_k.
 #[inline(always)]
 pub fn dot_product<S: pulp::Simd>(simd: S, a: &[f64], b: &[f64]) -> f64 {
@@ -91,11 +99,11 @@ mod tests {
     struct All<'a>(&'a [f64], &'a [f64]);
 
     impl pulp::WithSimd for All<'_> {
-        type Output = [f64; 5];
+        type Output = [f64; 6];
 
-        fn with_simd<S: pulp::Simd>(self, simd: S) -> [f64; 5] {
+        fn with_simd<S: pulp::Simd>(self, simd: S) -> [f64; 6] {
             let [both, a_squared, b_squared] = products(simd, self.0, self.1);
-            [sum(simd, self.0), dot_product(simd, self.0, self.1), both, a_squared, b_squared]
+            [sum(simd, self.0), dot_product(simd, self.0, self.1), both, a_squared, b_squared, largest(simd, self.0)]
         }
     }
 
@@ -106,7 +114,8 @@ mod tests {
             let (a, b) = (column(1.3), column(2.7));
             let product = |x: &[f64], y: &[f64]| plain(x.iter().zip(y).map(|(x, y)| x * y));
             let both = product(&a, &b);
-            let expected = [plain(a.iter().copied()), both, both, product(&a, &a), product(&b, &b)];
+            let most = a.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+            let expected = [plain(a.iter().copied()), both, both, product(&a, &a), product(&b, &b), most];
             assert_eq!(pulp::Arch::new().dispatch(All(&a, &b)), expected, "widest, {length}");
             assert_eq!(pulp::WithSimd::with_simd(All(&a, &b), pulp::Scalar::new()), expected, "scalar, {length}");
         }

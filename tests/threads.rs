@@ -60,7 +60,7 @@ fn forces_across_tiles_are_those_of_the_plain_loop() {
     for pair in 0..pairs.len() {
         let (i, j) = (pairs.first[pair] as usize, pairs.second[pair] as usize);
         let moved = difference(assembly.displacements[i], assembly.displacements[j]);
-        let apart = sum(pairs.separation[pair], moved);
+        let apart = sum(pairs.separation.of(pair), moved);
         let overlap = (pairs.distance[pair] + pairs.overlap[pair] - norm(apart)).max(0.0);
         let force = scaled(law.force(pairs.coefficient[pair], overlap) / norm(apart), apart);
         plain[i] = sum(plain[i], force);
@@ -87,4 +87,60 @@ fn a_relaxation_has_the_bits_of_one_thread() {
     assert_eq!(here.state.positions(), alone.state.positions());
     assert_eq!(here.state.corrections(), alone.state.corrections());
     assert_eq!(here.residual, alone.residual);
+}
+
+/// Velocities of the mobile disks, as if they had been moving.
+fn velocities(assembly: &Assembly<2, Hertzian>) -> Vec<[f64; 2]> {
+    (0..assembly.mobile_count()).map(|disk| [1e-3 * (disk as f64).sin(), 1e-3 * (2.0 * disk as f64).cos()]).collect()
+}
+
+/// v ← v + 10⁻⁶ F, u ← u + 10⁻² v.
+fn kick(forces: &[[f64; 2]], velocities: &mut [[f64; 2]], displacements: &mut [[f64; 2]]) -> usize {
+    for ((force, velocity), displacement) in forces.iter().zip(velocities.iter_mut()).zip(displacements) {
+        *velocity = sum(*velocity, scaled(1e-6, *force));
+        *displacement = sum(*displacement, scaled(1e-2, *velocity));
+    }
+    velocities.len()
+}
+
+/// How many disks there are, and Σ F·v.
+fn look(forces: &[[f64; 2]], velocities: &[[f64; 2]]) -> (usize, f64) {
+    assert_eq!(forces.len(), velocities.len());
+    (
+        forces.len(),
+        forces.iter().flatten().zip(velocities.iter().flatten()).map(|(force, velocity)| force * velocity).sum(),
+    )
+}
+
+#[test]
+fn a_step_tile_by_tile_has_the_bits_of_one_array_by_array() {
+    let mut assembly = Assembly::new(&large(), Hertzian::default()).expect("disks apart");
+    assembly.evaluate();
+    let mobile = assembly.mobile_count();
+    assert_eq!(mobile + 1, assembly.len(), "one held");
+    let mut apart = (assembly.clone(), velocities(&assembly));
+    kick(&apart.0.forces[..mobile], &mut apart.1, &mut apart.0.displacements[..mobile]);
+    apart.0.evaluate();
+    let mut step = (assembly.clone(), velocities(&assembly));
+    let mut alone = step.clone();
+    let (kicked, looked) = step.0.advance(&mut step.1, 1e-3, kick, look).expect("the list holds");
+    assert_eq!(apart.1, step.1, "velocities");
+    assert_eq!(apart.0.displacements, step.0.displacements);
+    assert_eq!(apart.0.forces, step.0.forces);
+    assert_eq!(kicked.iter().sum::<usize>(), mobile, "every disk moves once");
+    assert_eq!(looked.iter().map(|&(count, _)| count).sum::<usize>(), mobile, "every disk is looked at once");
+    let expected = look(&apart.0.forces[..mobile], &apart.1).1;
+    let found: f64 = looked.iter().map(|&(_, power)| power).sum();
+    // Sums of 10⁵ terms in another order, of size at most Σ|F||v| ~ 5·10⁴ · 10² · 10⁻³.
+    assert!((found - expected).abs() < 1e-9, "{found} for {expected}");
+    let (of_one, looked_by_one) = on_one_thread(move || {
+        let looked = alone.0.advance(&mut alone.1, 1e-3, kick, look).expect("the list holds").1;
+        (alone, looked)
+    });
+    assert_eq!(of_one.0.forces, step.0.forces, "one thread");
+    assert_eq!(looked_by_one, looked, "one thread");
+    assert!(
+        assembly.advance(&mut velocities(&assembly.clone()), 1.0, kick, look).is_none(),
+        "farther than the list allows"
+    );
 }

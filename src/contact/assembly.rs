@@ -6,8 +6,11 @@
 //! from the origin a packing lies. When the neighbour list is made anew, anchors take over what the displacements have gathered
 //! (without rounding: the remainder stays in the displacement).
 
+mod upkeep;
+
 use std::iter::repeat_with;
 
+use crate::contact::advance::{Movers, advance};
 use crate::contact::forces::{self, Across};
 use crate::contact::law::PairLaw;
 use crate::contact::neighbours::{Disks, ListRoom, build_pairs, spatial_order};
@@ -16,14 +19,11 @@ use crate::contact::stiffness::stiffness_rows;
 use crate::contact::totals::Totals;
 use crate::packing::{Domain, Packing, PackingError};
 use crate::side_by_side::{self, PIECE};
-use crate::vector::{Vector, dot, extended_sum, larger, longest_difference_squared, sum, two_sum};
+use crate::vector::{Vector, dot, extended_sum, sum, two_sum};
 
 /// Width of the skin over the smallest radius \[1\]. Changes speed only: a wider one makes lists last longer and adds pairs
 /// that do not touch. From 0.25 to 0.5 these are 7 in 100 pairs and 4 in 100 of the time of the loop, for half the lists and less.
 pub const SKIN: f64 = 0.5;
-
-/// How far a disk may go from where it was listed over the width of the skin: half of it, less the rounding of the comparison.
-const LISTED: f64 = 0.4999;
 
 /// A packing under a contact law, in working order.
 #[derive(Debug, Clone)]
@@ -41,10 +41,23 @@ pub struct Assembly<const D: usize, L> {
     from_sites: Vec<[(f64, f64); D]>,
     radii: Vec<f64>,
     pairs: PairList<D>,
+    /// Near pairs, in place of `pairs` while there is a skin of theirs.
+    near_pairs: PairList<D>,
+    near_skin: Option<f64>,
+    /// Whether near pairs are ever picked.
+    prunes: bool,
+    /// Calls of [`Assembly::keep_listed`] since the list in use was made, and at how many the way of the disks is looked at.
+    age: usize,
+    look_at: usize,
+    /// Where the disks were at the last such look, and when that was.
+    seen: Vec<Vector<D>>,
+    seen_at: usize,
     across: Across<D>,
     list_room: ListRoom<D>,
+    smallest_radius: f64,
+    /// Of the list of all pairs.
     skin: f64,
-    /// Displacements when the list was made.
+    /// Displacements when the list in use was made.
     listed: Vec<Vector<D>>,
     /// Displacements to come back to, if the relaxer set a checkpoint.
     checkpoint: Vec<Vector<D>>,
@@ -74,9 +87,9 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         let order = spatial_order(packing.domain(), packing.positions(), packing.radii(), packing.held());
         let pick = |column: &[Vector<D>]| order.iter().map(|&disk| column[disk as usize]).collect::<Vec<_>>();
         let radii: Vec<f64> = order.iter().map(|&disk| packing.radii()[disk as usize]).collect();
-        let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
+        let smallest_radius = radii.iter().copied().fold(f64::INFINITY, f64::min);
         let largest = radii.iter().copied().fold(0.0, f64::max);
-        let mut skin = skin * smallest;
+        let mut skin = skin * smallest_radius;
         if let Some(lengths) = packing.domain().lengths() {
             // The list takes one image a pair, so its range stays below half the shortest side.
             let shortest = lengths.iter().copied().fold(f64::INFINITY, f64::min);
@@ -104,9 +117,17 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             rebuild_count: 0,
             from_sites: Vec::new(),
             pairs: PairList::default(),
+            near_pairs: PairList::default(),
+            near_skin: None,
+            prunes: false,
+            age: 0,
+            look_at: 0,
+            seen: Vec::new(),
+            seen_at: 0,
             across: Across::default(),
             list_room: ListRoom::default(),
             radii,
+            smallest_radius,
             skin,
             order,
         };
@@ -176,28 +197,52 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         &self.law
     }
 
-    /// The neighbour list.
+    /// The neighbour list in use: every pair that may touch before the list is changed.
     pub fn pairs(&self) -> &PairList<D> {
-        &self.pairs
+        in_use(self.near_skin, &self.near_pairs, &self.pairs)
     }
 
-    /// How often the list was made, the first time included.
+    /// How often the list of all pairs was made, the first time included.
     pub fn rebuild_count(&self) -> usize {
         self.rebuild_count
     }
 
     /// Forces of the present displacements into [`Assembly::forces`].
     pub fn evaluate(&mut self) {
-        forces::forces(&self.law, &self.pairs, &self.displacements, &mut self.across, &mut self.forces);
+        let pairs = in_use(self.near_skin, &self.near_pairs, &self.pairs);
+        forces::forces(&self.law, pairs, &self.displacements, &mut self.across, &mut self.forces);
         if L::ON_SITE {
             let _ = self.add_on_site_forces();
         }
     }
 
+    /// Moves the mobile disks, evaluates the forces where they then are and looks at them, tile by tile ([`advance`]). None, and
+    /// nothing done, for a law with sites, and where the list might not hold if a disk moves by `bound` \[length\]. The caller tells
+    /// [`Assembly::keep_listed`] afterwards how far they went.
+    ///
+    /// # Shape
+    /// `velocities` has one entry a mobile disk. `kick` gets (forces, velocities, displacements) of some mobile disks, `look` (forces,
+    /// velocities); every mobile disk comes once.
+    pub fn advance<K: Send, P: Send>(
+        &mut self,
+        velocities: &mut [Vector<D>],
+        bound: f64,
+        kick: impl Fn(&[Vector<D>], &mut [Vector<D>], &mut [Vector<D>]) -> K + Send + Sync,
+        look: impl Fn(&[Vector<D>], &[Vector<D>]) -> P + Send + Sync,
+    ) -> Option<(Vec<K>, Vec<P>)> {
+        if L::ON_SITE || !self.holds_beyond(bound) {
+            return None;
+        }
+        let pairs = in_use(self.near_skin, &self.near_pairs, &self.pairs);
+        let movers = Movers { velocities, displacements: &mut self.displacements, forces: &mut self.forces };
+        Some(advance(&self.law, pairs, movers, &mut self.across, kick, look))
+    }
+
     /// Forces as by [`Assembly::evaluate`], with energy, virial and contact count.
     pub fn evaluate_totals(&mut self) -> Totals<D> {
+        let pairs = in_use(self.near_skin, &self.near_pairs, &self.pairs);
         let mut totals =
-            forces::forces_and_totals(&self.law, &self.pairs, &self.displacements, &mut self.across, &mut self.forces);
+            forces::forces_and_totals(&self.law, pairs, &self.displacements, &mut self.across, &mut self.forces);
         if L::ON_SITE {
             totals.on_site_energy = self.add_on_site_forces();
             totals.energy += totals.on_site_energy;
@@ -230,44 +275,6 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     pub fn longest_way_from_site(&self) -> f64 {
         let squared = (0..self.from_sites.len()).map(|index| dot(self.way_from_site(index), self.way_from_site(index)));
         squared.fold(0.0, |most, value| if value > most { value } else { most }).sqrt()
-    }
-
-    /// Tells that no disk has moved by more than `bound` since the last call, and makes the list anew if it must be.
-    /// True if the list is new.
-    ///
-    /// # Errors
-    /// Two disks with the same centre.
-    pub fn keep_listed(&mut self, bound: f64) -> Result<bool, PackingError> {
-        self.moved += bound;
-        // Written so that NaN asks for the exact look.
-        let limit = LISTED * self.skin;
-        if self.moved <= limit {
-            return Ok(false);
-        }
-        let mobile = &self.displacements[..self.mobile_count];
-        let pieces = mobile.chunks(PIECE).zip(self.listed[..self.mobile_count].chunks(PIECE));
-        let squares = side_by_side::each(pieces, |(now, listed)| longest_difference_squared(now, listed));
-        let largest = squares.into_iter().fold(0.0, larger);
-        if largest.is_nan() {
-            // Not a position any more: the forces are NaN too, and the relaxer stops on them.
-            return Ok(false);
-        }
-        self.moved = largest.sqrt();
-        if self.moved <= limit {
-            return Ok(false);
-        }
-        self.rebuild()?;
-        Ok(true)
-    }
-
-    /// Width of the skin \[length\].
-    pub fn skin(&self) -> f64 {
-        self.skin
-    }
-
-    /// How far every disk may go before the list must be made anew, at least \[length\].
-    pub fn listed_way(&self) -> f64 {
-        LISTED * self.skin - self.moved
     }
 
     /// Remembers where the disks are, for [`Assembly::restore`].
@@ -340,8 +347,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
                 other => other,
             },
         )?;
-        self.listed.clone_from(&self.displacements);
-        self.moved = 0.0;
+        self.near_skin = None;
+        self.begin_list();
         self.rebuild_count += 1;
         Ok(())
     }
@@ -357,9 +364,14 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Upper bound on the largest eigenvalue of a contact matrix with this weight (pair, overlap, stiffness) a contact.
     pub fn row_bound(&self, row: &mut Vec<f64>, weight: impl Fn(usize, f64, f64) -> f64 + Sync) -> f64 {
         row.resize(self.len(), 0.0);
-        stiffness_rows(&self.law, &self.pairs, &self.displacements, self.mobile_count, weight, row);
+        stiffness_rows(&self.law, self.pairs(), &self.displacements, self.mobile_count, weight, row);
         row[..self.mobile_count].iter().fold(0.0, |most, &value| if value > most { value } else { most })
     }
+}
+
+/// Near pairs while there is a skin of theirs, or all.
+fn in_use<'a, const D: usize>(near_skin: Option<f64>, near: &'a PairList<D>, all: &'a PairList<D>) -> &'a PairList<D> {
+    if near_skin.is_some() { near } else { all }
 }
 
 /// What anchors are counted from, and the domain seen from there: the corner of a periodic box; in the open plane the

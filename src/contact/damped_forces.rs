@@ -12,7 +12,7 @@ use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, PairList};
 use crate::contact::rows::{gather, rows_of, scatter};
 use crate::lanes;
-use crate::vector::{Vector, scaled, sum};
+use crate::vector::Vector;
 
 /// Net forces of elastic and damping contacts on all disks; the power damping takes, Σ c v_n², is returned. `forces` is
 /// overwritten, whatever it held.
@@ -32,14 +32,14 @@ pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
 ) -> f64 {
     forces.fill([0.0; D]);
     let mut power = 0.0;
-    let mut columns = Columns::<D> { pull: [[0.0; D]; BLOCK], apace: [[0.0; D]; BLOCK], power: [0.0; BLOCK] };
+    let mut columns = Columns::<D> { pull: [[0.0; BLOCK]; D], apace: [[0.0; BLOCK]; D], power: [0.0; BLOCK] };
     for block in &pairs.blocks {
         let range = block.pairs..block.pairs + block.pair_count;
         let (rows, second) = (rows_of(pairs, block), &pairs.second[range.clone()]);
-        gather(&mut columns.pull, block, rows, second, displacements);
-        gather(&mut columns.apace, block, rows, second, velocities);
+        gather(&mut columns.pull, block, (rows, second, 0), displacements);
+        gather(&mut columns.apace, block, (rows, second, 0), velocities);
         let listed = Listed {
-            separation: &pairs.separation[range.clone()],
+            separation: pairs.separation.columns().map(|column| &column[range.clone()]),
             distance: &pairs.distance[range.clone()],
             overlap: &pairs.overlap[range.clone()],
             coefficient: &pairs.coefficient[range.clone()],
@@ -52,17 +52,18 @@ pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
 }
 
 /// One block of pairs, column by column.
+#[repr(align(64))]
 struct Columns<const D: usize> {
     /// Relative displacement of the pair, then the force on its first disk.
-    pull: [Vector<D>; BLOCK],
+    pull: [[f64; BLOCK]; D],
     /// Relative velocity.
-    apace: [Vector<D>; BLOCK],
+    apace: [[f64; BLOCK]; D],
     power: [f64; BLOCK],
 }
 
 /// What the list has of each pair of a block.
 struct Listed<'a, const D: usize> {
-    separation: &'a [Vector<D>],
+    separation: [&'a [f64]; D],
     distance: &'a [f64],
     overlap: &'a [f64],
     coefficient: &'a [f64],
@@ -93,17 +94,19 @@ fn evaluate<const D: usize, L: PairLaw, C: DampingLaw>(
     listed: &Listed<'_, D>,
 ) {
     let count = listed.distance.len();
-    let (pulls, apaces, powers) = (&mut columns.pull[..count], &columns.apace[..count], &mut columns.power[..count]);
-    let (separations, overlaps) = (&listed.separation[..count], &listed.overlap[..count]);
+    let pulls = columns.pull.each_mut().map(|column| &mut column[..count]);
+    let (apaces, powers) = (columns.apace.each_ref().map(|column| &column[..count]), &mut columns.power[..count]);
+    let (separations, overlaps) = (listed.separation.map(|column| &column[..count]), &listed.overlap[..count]);
     let (coefficients, dampings) = (&listed.coefficient[..count], &listed.damping[..count]);
     for k in 0..count {
-        let moved = pulls[k];
-        let apart = sum(separations[k], moved);
+        let mut apart = [0.0; D];
         let (mut squared, mut change, mut along) = (0.0, 0.0, 0.0);
         for d in 0..D {
+            let (anchored, moved) = (separations[d][k], pulls[d][k]);
+            apart[d] = anchored + moved;
             squared += apart[d] * apart[d];
-            change += moved[d] * (2.0 * apart[d] - moved[d]);
-            along += apaces[k][d] * apart[d];
+            change += moved * (anchored + apart[d]);
+            along += apaces[d][k] * apart[d];
         }
         let distance = squared.sqrt();
         let both = distance + listed.distance[k];
@@ -117,7 +120,10 @@ fn evaluate<const D: usize, L: PairLaw, C: DampingLaw>(
         let resistance = damping.damping(dampings[k], overlap);
         let resisted = if gap > 0.0 { resistance * normal_velocity } else { 0.0 };
         powers[k] = resisted * normal_velocity;
-        pulls[k] = scaled((law.force(coefficients[k], overlap) - resisted) * over_distance, apart);
+        let factor = (law.force(coefficients[k], overlap) - resisted) * over_distance;
+        for d in 0..D {
+            pulls[d][k] = factor * apart[d];
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The hot loop: energy, forces and virial of all contacts in one pass.
 //!
 //! ```text
-//! r_ij = D_ij + w     w = u_i − u_j     δ = δ⁰_ij − w·(2 D_ij + w) / (|r_ij| + |D_ij|)
+//! r_ij = D_ij + w     w = u_i − u_j     δ = δ⁰_ij − w·(D_ij + r_ij) / (|r_ij| + |D_ij|)
 //! f_i += F(δ) r_ij/|r_ij|,  f_j −= the same
 //! ```
 //!
@@ -18,14 +18,15 @@ use crate::contact::pair_list::{BLOCK, Block, PairList, Tile};
 use crate::contact::rows::{gather, rows_of, scatter};
 use crate::contact::totals::{Tally, Totals};
 use crate::side_by_side;
-use crate::vector::{Vector, difference, scaled, sum};
+use crate::vector::{Vector, difference, sum};
 
-/// One block of pairs, column by column.
+/// One block of pairs, column by column, each component of a vector in a column of its own.
+#[repr(align(64))]
 pub(super) struct Columns<const D: usize> {
     /// Relative displacement of the pair, then the force on its first disk.
-    pub pull: [Vector<D>; BLOCK],
+    pub pull: [[f64; BLOCK]; D],
     // What is kept only for who asks.
-    pub apart: [Vector<D>; BLOCK],
+    pub apart: [[f64; BLOCK]; D],
     pub overlap: [f64; BLOCK],
     pub force: [f64; BLOCK],
     /// Force over distance.
@@ -36,8 +37,8 @@ impl<const D: usize> Columns<D> {
     #[inline(always)]
     pub fn new() -> Self {
         Columns {
-            pull: [[0.0; D]; BLOCK],
-            apart: [[0.0; D]; BLOCK],
+            pull: [[0.0; BLOCK]; D],
+            apart: [[0.0; BLOCK]; D],
             overlap: [0.0; BLOCK],
             force: [0.0; BLOCK],
             factor: [0.0; BLOCK],
@@ -48,10 +49,10 @@ impl<const D: usize> Columns<D> {
 /// Forces of pairs across the border of a tile, for each tile: those on the first disks. Room that is kept between two
 /// evaluations; what it holds before one does not matter.
 #[derive(Debug, Clone, Default)]
-pub struct Across<const D: usize>(Vec<Vec<Vector<D>>>);
+pub struct Across<const D: usize>(pub(super) Vec<Vec<Vector<D>>>);
 
 impl<const D: usize> Across<D> {
-    fn fit(&mut self, pairs: &PairList<D>) {
+    pub(super) fn fit(&mut self, pairs: &PairList<D>) {
         self.0.resize(pairs.tiles.len(), Vec::new());
         for (room, tile) in self.0.iter_mut().zip(&pairs.tiles) {
             room.resize(tile.border_pairs.len(), [0.0; D]);
@@ -96,8 +97,8 @@ fn all_tiles<const D: usize, L: PairLaw, const TOTALS: bool>(
 ) -> Totals<D> {
     if let [tile] = pairs.tiles.as_slice() {
         let mut totals = Totals::ZERO;
-        let task = Task { law, pairs, displacements, tile, offset: 0 };
-        sweep::<D, L, TOTALS>(&task, forces, &mut [], &mut totals);
+        let task = Task { law, pairs, displacements: (displacements, 0), tile, offset: 0 };
+        sweep_inner::<D, L, TOTALS>(&task, forces, &mut totals);
         return totals;
     }
     across.fit(pairs);
@@ -105,16 +106,14 @@ fn all_tiles<const D: usize, L: PairLaw, const TOTALS: bool>(
     let parts = side_by_side::each(pairs.tiles.iter().zip(room).enumerate(), |(place, (tile, (forces, across)))| {
         let mut totals = Totals::ZERO;
         let offset = (place * pairs.tile_size) as u32;
-        let task = Task { law, pairs, displacements, tile, offset };
-        sweep::<D, L, TOTALS>(&task, forces, across, &mut totals);
+        let task = Task { law, pairs, displacements: (displacements, 0), tile, offset };
+        sweep_inner::<D, L, TOTALS>(&task, forces, &mut totals);
+        sweep_border::<D, L, TOTALS>(&task, forces, across, &mut totals);
         totals
     });
     let tiles = pairs.tiles.iter().zip(forces.chunks_mut(pairs.tile_size)).enumerate();
     side_by_side::each(tiles, |(place, (tile, forces))| {
-        for &(disk, from, pair) in &tile.incoming {
-            let force = &mut forces[disk as usize - place * pairs.tile_size];
-            *force = difference(*force, across.0[from as usize][pair as usize]);
-        }
+        add_incoming(tile, place * pairs.tile_size, across, forces);
     });
     let mut totals = Totals::ZERO;
     if TOTALS {
@@ -126,34 +125,51 @@ fn all_tiles<const D: usize, L: PairLaw, const TOTALS: bool>(
 }
 
 /// What the loop over a tile reads.
-struct Task<'a, const D: usize, L> {
-    law: &'a L,
-    pairs: &'a PairList<D>,
-    displacements: &'a [Vector<D>],
-    tile: &'a Tile,
+pub(super) struct Task<'a, const D: usize, L> {
+    pub law: &'a L,
+    pub pairs: &'a PairList<D>,
+    /// Displacements from this disk on.
+    pub displacements: (&'a [Vector<D>], u32),
+    pub tile: &'a Tile,
     /// First disk of the tile.
-    offset: u32,
+    pub offset: u32,
 }
 
-/// Forces of the pairs of a tile: on its disks, and across its border.
-fn sweep<const D: usize, L: PairLaw, const TOTALS: bool>(
+/// Forces of the pairs within a tile on its disks, which are overwritten.
+pub(super) fn sweep_inner<const D: usize, L: PairLaw, const TOTALS: bool>(
+    task: &Task<'_, D, L>,
+    forces: &mut [Vector<D>],
+    totals: &mut Totals<D>,
+) {
+    forces.fill([0.0; D]);
+    let mut columns = Columns::<D>::new();
+    for block in &task.pairs.blocks[task.tile.inner.clone()] {
+        let seconds = evaluate_block(task, block, &mut columns, TOTALS.then_some(&mut *totals));
+        scatter(&columns.pull, block, (rows_of(task.pairs, block), seconds, task.offset), forces);
+    }
+}
+
+/// Adds the forces of the pairs across the border of a tile to its disks; those on the first disks are kept for the others.
+pub(super) fn sweep_border<const D: usize, L: PairLaw, const TOTALS: bool>(
     task: &Task<'_, D, L>,
     forces: &mut [Vector<D>],
     across: &mut [Vector<D>],
     totals: &mut Totals<D>,
 ) {
-    forces.fill([0.0; D]);
     let mut columns = Columns::<D>::new();
-    let blocks = &task.pairs.blocks;
-    for block in &blocks[task.tile.inner.clone()] {
-        let seconds = evaluate_block(task, block, &mut columns, TOTALS.then_some(&mut *totals));
-        scatter(&columns.pull, block, (rows_of(task.pairs, block), seconds, task.offset), forces);
-    }
-    for block in &blocks[task.tile.border.clone()] {
+    for block in &task.pairs.blocks[task.tile.border.clone()] {
         let _ = evaluate_block(task, block, &mut columns, TOTALS.then_some(&mut *totals));
         let first = &task.pairs.first[block.pairs..block.pairs + block.pair_count];
         let room = &mut across[block.pairs - task.tile.border_pairs.start..];
         scatter_to_border(&columns.pull, (first, task.offset), room, forces);
+    }
+}
+
+/// Adds the forces of pairs of other tiles to the disks of a tile, which begins with disk `offset`.
+pub(super) fn add_incoming<const D: usize>(tile: &Tile, offset: usize, across: &Across<D>, forces: &mut [Vector<D>]) {
+    for &(disk, from, pair) in &tile.incoming {
+        let force = &mut forces[disk as usize - offset];
+        *force = difference(*force, across.0[from as usize][pair as usize]);
     }
 }
 
@@ -175,24 +191,23 @@ fn evaluate_block<'a, const D: usize, L: PairLaw>(
 pub(super) fn fill<'a, const D: usize, L: PairLaw, const KEEP: bool>(
     law: &L,
     pairs: &'a PairList<D>,
-    displacements: &[Vector<D>],
+    (displacements, offset): (&[Vector<D>], u32),
     block: &Block,
     columns: &mut Columns<D>,
 ) -> &'a [u32] {
     let range = block.pairs..block.pairs + block.pair_count;
     let second = &pairs.second[range.clone()];
-    gather(&mut columns.pull, block, rows_of(pairs, block), second, displacements);
+    gather(&mut columns.pull, block, (rows_of(pairs, block), second, offset), displacements);
     let whole = block.pairs..block.pairs + BLOCK;
     let arch = pulp::Arch::new();
-    let listed = (
-        pairs.separation.get(whole.clone()),
-        pairs.distance.get(whole.clone()),
-        pairs.overlap.get(whole.clone()),
-        pairs.coefficient.get(whole),
-    );
-    if let (Some(separation), Some(distance), Some(overlap), Some(coefficient)) = listed {
+    if whole.end <= pairs.len() {
         // A block that is not full goes on into the next one; what comes of that is not used.
-        let anchors = Anchors { separation, distance, overlap, coefficient };
+        let anchors = Anchors {
+            separation: pairs.separation.columns().map(|column| &column[whole.clone()]),
+            distance: &pairs.distance[whole.clone()],
+            overlap: &pairs.overlap[whole.clone()],
+            coefficient: &pairs.coefficient[whole],
+        };
         arch.dispatch(Arithmetic::<D, L, KEEP> { law, columns, anchors });
     } else {
         let padded = |column: &[f64]| {
@@ -200,11 +215,11 @@ pub(super) fn fill<'a, const D: usize, L: PairLaw, const KEEP: bool>(
             whole[..block.pair_count].copy_from_slice(&column[range.clone()]);
             whole
         };
-        let mut separation = [[1.0; D]; BLOCK];
-        separation[..block.pair_count].copy_from_slice(&pairs.separation[range.clone()]);
+        let separation = pairs.separation.columns().map(padded);
         let (distance, overlap) = (&padded(&pairs.distance), &padded(&pairs.overlap));
         let coefficient = &padded(&pairs.coefficient);
-        let anchors = Anchors { separation: &separation, distance, overlap, coefficient };
+        let separation = separation.each_ref().map(|column| &column[..]);
+        let anchors = Anchors { separation, distance, overlap, coefficient };
         arch.dispatch(Arithmetic::<D, L, KEEP> { law, columns, anchors });
     }
     second
@@ -212,7 +227,7 @@ pub(super) fn fill<'a, const D: usize, L: PairLaw, const KEEP: bool>(
 
 /// What the list has of each pair of a block.
 struct Anchors<'a, const D: usize> {
-    separation: &'a [Vector<D>],
+    separation: [&'a [f64]; D],
     distance: &'a [f64],
     overlap: &'a [f64],
     coefficient: &'a [f64],
@@ -239,20 +254,20 @@ impl<const D: usize, L: PairLaw, const KEEP: bool> pulp::WithSimd for Arithmetic
 fn evaluate<const D: usize, L: PairLaw, const KEEP: bool>(law: &L, columns: &mut Columns<D>, anchors: &Anchors<'_, D>) {
     // As many turns as a column has places, known beforehand: whole vectors, and no check.
     let length = "columns as long as a block";
-    let anchor_separation: &[Vector<D>; BLOCK] = anchors.separation.try_into().expect(length);
+    let anchor_separation: [&[f64; BLOCK]; D] = anchors.separation.map(|column| column.try_into().expect(length));
     let anchor_distance: &[f64; BLOCK] = anchors.distance.try_into().expect(length);
     let anchor_overlap: &[f64; BLOCK] = anchors.overlap.try_into().expect(length);
     let coefficient: &[f64; BLOCK] = anchors.coefficient.try_into().expect(length);
     let Columns { pull, apart: aparts, overlap: overlaps, force: forces, factor: factors } = columns;
     for k in 0..BLOCK {
-        let moved = pull[k];
-        let apart = sum(anchor_separation[k], moved);
+        let mut apart = [0.0; D];
         let mut squared = 0.0;
         let mut change = 0.0;
         for d in 0..D {
+            let (anchored, moved) = (anchor_separation[d][k], pull[d][k]);
+            apart[d] = anchored + moved;
             squared += apart[d] * apart[d];
-            // 2 D + w = (D + w) + D = 2 apart − moved.
-            change += moved[d] * (2.0 * apart[d] - moved[d]);
+            change += moved * (anchored + apart[d]);
         }
         let distance = squared.sqrt();
         let both = distance + anchor_distance[k];
@@ -263,9 +278,13 @@ fn evaluate<const D: usize, L: PairLaw, const KEEP: bool>(law: &L, columns: &mut
         let overlap = if gap < 0.0 { 0.0 } else { gap };
         let force = law.force(coefficient[k], overlap);
         let factor = force * (both * inverse);
-        pull[k] = scaled(factor, apart);
+        for d in 0..D {
+            pull[d][k] = factor * apart[d];
+        }
         if KEEP {
-            aparts[k] = apart;
+            for d in 0..D {
+                aparts[d][k] = apart[d];
+            }
             overlaps[k] = overlap;
             forces[k] = force;
             factors[k] = factor;
@@ -275,13 +294,13 @@ fn evaluate<const D: usize, L: PairLaw, const KEEP: bool>(law: &L, columns: &mut
 
 /// Few pairs: no rows of fixed length here.
 fn scatter_to_border<const D: usize>(
-    pull: &[Vector<D>; BLOCK],
+    pull: &[[f64; BLOCK]; D],
     (first, offset): (&[u32], u32),
     across: &mut [Vector<D>],
     forces: &mut [Vector<D>],
 ) {
     for (k, (&i, across)) in first.iter().zip(across).enumerate() {
-        *across = pull[k];
+        *across = std::array::from_fn(|d| pull[d][k]);
         let total = &mut forces[(i - offset) as usize];
         *total = sum(*total, *across);
     }
@@ -295,14 +314,15 @@ pub fn geometry<const D: usize>(
     displacements: &[Vector<D>],
 ) -> (Vector<D>, f64, f64) {
     let (a, b) = (displacements[pairs.first[pair] as usize], displacements[pairs.second[pair] as usize]);
+    let anchored = pairs.separation.of(pair);
     let mut apart = [0.0; D];
     let mut squared = 0.0;
     let mut change = 0.0;
     for d in 0..D {
         let moved = a[d] - b[d];
-        apart[d] = pairs.separation[pair][d] + moved;
+        apart[d] = anchored[d] + moved;
         squared += apart[d] * apart[d];
-        change += moved * (2.0 * apart[d] - moved);
+        change += moved * (anchored[d] + apart[d]);
     }
     let distance = squared.sqrt();
     let inverse = 1.0 / (distance * (distance + pairs.distance[pair]));

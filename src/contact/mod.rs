@@ -2,6 +2,7 @@
 //!
 //! Start from [`ContactNetwork`] to look at a packing, from [`Assembly`] to move one.
 
+pub mod advance;
 pub mod assembly;
 pub mod damped_forces;
 pub mod damping;
@@ -13,6 +14,7 @@ pub mod neighbours;
 pub mod network;
 pub mod on_site;
 pub mod pair_list;
+mod pruned;
 mod rows;
 #[cfg(feature = "linear")]
 mod selected;

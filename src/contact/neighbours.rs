@@ -4,7 +4,7 @@
 //! disk has moved by half the skin. Each pair carries its separation at the anchors, so the box and its images are
 //! looked at only while the list is built.
 
-use crate::contact::pair_list::{BLOCK, Measured, PairList, Search};
+use crate::contact::pair_list::{BLOCK, Measured, PairList, Search, Source};
 use crate::packing::{Domain, PackingError};
 use crate::side_by_side::{self, PIECE};
 use crate::vector::{Vector, difference, dot, extended_norm, extended_sum, sum, two_sum};
@@ -207,7 +207,12 @@ pub fn build_pairs<const D: usize>(
     });
     let (grid, points, sorted) = (&*grid, &*points, &*sorted);
     let nearby = Nearby { disks, skin, lengths, grid, points, sorted, coefficient: &coefficient };
-    pairs.fill(points.len(), disks.mobile_count, || TileSearch { nearby, cell: usize::MAX, runs: Vec::new() })
+    pairs.fill(points.len(), disks.mobile_count, || TileSearch {
+        nearby,
+        cell: usize::MAX,
+        runs: Vec::new(),
+        ends: Ends { anchors: [([1.0; D], [0.0; D]); BLOCK], radii: [(1.0, 1.0); BLOCK] },
+    })
 }
 
 /// What every tile is searched in.
@@ -234,6 +239,7 @@ struct TileSearch<'a, const D: usize, C> {
     nearby: Nearby<'a, D, C>,
     cell: usize,
     runs: Vec<Run<D>>,
+    ends: Ends<D>,
 }
 
 impl<const D: usize, C: Fn(f64, f64) -> f64> Search<D> for TileSearch<'_, D, C> {
@@ -267,21 +273,28 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Search<D> for TileSearch<'_, D, C> 
             seconds.truncate(count);
         }
     }
+}
 
-    fn measure(&self, first: &[u32], second: &[u32], measured: &mut Measured<D>) {
+impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for TileSearch<'_, D, C> {
+    /// A pair of a disk bears the number of the other one.
+    fn second(&self, pair: u32) -> u32 {
+        pair
+    }
+
+    fn measure(&mut self, first: &[u32], second: &[u32], measured: &mut Measured<D>) {
         let Nearby { disks, lengths, coefficient, .. } = self.nearby;
-        // As long as a block whatever it holds, so that no pair is left over for a loop without vectors.
-        let mut ends = Ends { anchors: [([1.0; D], [0.0; D]); BLOCK], radii: [(1.0, 1.0); BLOCK] };
+        let ends = &mut self.ends;
         for (place, (&first, &second)) in first.iter().zip(second).enumerate() {
             let (first, second) = (first as usize, second as usize);
             ends.anchors[place] = (disks.anchors[first], disks.anchors[second]);
             ends.radii[place] = (disks.radii[first], disks.radii[second]);
         }
-        pulp::Arch::new().dispatch(Measure { ends: &ends, lengths, coefficient, measured });
+        pulp::Arch::new().dispatch(Measure { ends, lengths, coefficient, measured });
     }
 }
 
-/// Anchors and radii of both disks of the pairs of a block.
+/// Anchors and radii of both disks of the pairs of a block; as long as one whatever it holds, so that no pair is left over for
+/// a loop without vectors.
 struct Ends<const D: usize> {
     anchors: [(Vector<D>, Vector<D>); BLOCK],
     radii: [(f64, f64); BLOCK],
@@ -306,10 +319,10 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> pulp::WithSimd for Measure<'_, D, C
         for k in 0..BLOCK {
             coefficients[k] = coefficient(radii[k].0, radii[k].1);
         }
-        let mut rest = [[0.0; D]; BLOCK];
+        let mut rest = [[0.0; BLOCK]; D];
         for k in 0..BLOCK {
             for d in 0..D {
-                (separation[k][d], rest[k][d]) = two_sum(anchors[k].0[d], -anchors[k].1[d]);
+                (separation[d][k], rest[d][k]) = two_sum(anchors[k].0[d], -anchors[k].1[d]);
             }
         }
         if let Some(lengths) = lengths {
@@ -317,13 +330,14 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> pulp::WithSimd for Measure<'_, D, C
             for k in 0..BLOCK {
                 for d in 0..D {
                     // The image is nowhere near halfway: pairs are closer than half a side.
-                    let shift = -(separation[k][d] / lengths[d]).round_ties_even() * lengths[d];
-                    (separation[k][d], rest[k][d]) = extended_sum((separation[k][d], rest[k][d]), shift);
+                    let shift = -(separation[d][k] / lengths[d]).round_ties_even() * lengths[d];
+                    (separation[d][k], rest[d][k]) = extended_sum((separation[d][k], rest[d][k]), shift);
                 }
             }
         }
         for k in 0..BLOCK {
-            let (rounded, of_distance) = extended_norm(separation[k], rest[k]);
+            let component = |column: &[[f64; BLOCK]; D]| -> Vector<D> { std::array::from_fn(|d| column[d][k]) };
+            let (rounded, of_distance) = extended_norm(component(separation), component(&rest));
             let (gap, of_gap) = two_sum(radii[k].0 + radii[k].1, -rounded);
             distance[k] = rounded;
             overlap[k] = gap + (of_gap - of_distance);

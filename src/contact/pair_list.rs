@@ -34,7 +34,7 @@ pub struct PairList<const D: usize> {
     /// Second disk of each pair.
     pub second: Vec<u32>,
     /// From the anchor of the second to that of the first along the nearest image, D \[length\].
-    pub separation: Vec<Vector<D>>,
+    pub separation: Separations<D>,
     /// Distance of the anchors, |D| \[length\].
     pub distance: Vec<f64>,
     /// Overlap at the anchors, R_i + R_j − |D|, rounded once only; negative for a pair apart \[length\].
@@ -47,9 +47,33 @@ pub struct PairList<const D: usize> {
     pub(super) tiles: Vec<Tile>,
     /// Disks of a tile.
     pub(super) tile_size: usize,
-    arranger: Arranger,
+    arranger: Box<Arranger<D>>,
     /// Tiles made side by side, until they are put one after the other.
     parts: Vec<PairList<D>>,
+}
+
+/// Separations of pairs, each component in a column of its own.
+#[derive(Debug, Clone)]
+pub struct Separations<const D: usize>([Vec<f64>; D]);
+
+impl<const D: usize> Default for Separations<D> {
+    fn default() -> Self {
+        Separations(std::array::from_fn(|_| Vec::new()))
+    }
+}
+
+impl<const D: usize> Separations<D> {
+    /// The separation of a pair \[length\].
+    #[inline(always)]
+    pub fn of(&self, pair: usize) -> Vector<D> {
+        std::array::from_fn(|d| self.0[d][pair])
+    }
+
+    /// The component of every pair along each axis \[length\].
+    #[inline(always)]
+    pub fn columns(&self) -> [&[f64]; D] {
+        self.0.each_ref().map(Vec::as_slice)
+    }
 }
 
 /// A block: where its pairs and rows begin, and how many rows of each length it has.
@@ -70,66 +94,88 @@ pub(super) struct Tile {
     pub border: Range<usize>,
     /// Pairs of `border`.
     pub border_pairs: Range<usize>,
+    /// Disks of the tile, counted from its first one, that no pair across its border touches: the longest run of them.
+    pub interior: Range<usize>,
     /// Disk of this tile, the tile that has the pair, and the pair's place among the border pairs there.
     pub incoming: Vec<(u32, u32, u32)>,
 }
 
-/// What finds the pairs of a tile, disk by disk, and measures them, block by block.
-pub(super) trait Search<const D: usize> {
-    /// Adds the second disks of the pairs of a first one.
-    fn find(&mut self, first: usize, seconds: &mut Vec<u32>);
+/// Where pairs come from, each under a number of its own.
+pub(super) trait Source<const D: usize> {
+    /// Second disk of a pair.
+    fn second(&self, pair: u32) -> u32;
 
     /// Measures the pairs of a block; columns beyond them are not used.
-    fn measure(&self, first: &[u32], second: &[u32], measured: &mut Measured<D>);
+    fn measure(&mut self, first: &[u32], pairs: &[u32], measured: &mut Measured<D>);
+}
+
+/// What finds the pairs of a tile, disk by disk.
+pub(super) trait Search<const D: usize>: Source<D> {
+    /// Adds the pairs of a first disk.
+    fn find(&mut self, first: usize, pairs: &mut Vec<u32>);
 }
 
 /// What a block of pairs has at the anchors, column by column; see [`PairList`].
+#[derive(Debug, Clone)]
 pub(super) struct Measured<const D: usize> {
-    pub separation: [Vector<D>; BLOCK],
+    pub separation: [[f64; BLOCK]; D],
     pub distance: [f64; BLOCK],
     pub overlap: [f64; BLOCK],
     pub coefficient: [f64; BLOCK],
 }
 
-/// Rows waiting for their block or for the end of their tile.
-#[derive(Debug, Clone, Default)]
-struct Arranger {
-    block: Waiting,
-    border: Waiting,
+impl<const D: usize> Default for Measured<D> {
+    fn default() -> Self {
+        Measured {
+            separation: [[0.0; BLOCK]; D],
+            distance: [0.0; BLOCK],
+            overlap: [0.0; BLOCK],
+            coefficient: [0.0; BLOCK],
+        }
+    }
 }
 
-impl Arranger {
+/// Rows waiting for their block or for the end of their tile.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Arranger<const D: usize> {
+    pub block: Waiting,
+    border: Waiting,
+    /// Room for the block that is being closed.
+    measured: Measured<D>,
+}
+
+impl<const D: usize> Arranger<D> {
     /// Of the pairs of a first disk, which wait from `begin` on, sets those apart whose second disk is in another tile.
-    fn set_border_apart(&mut self, first: u32, begin: usize, disks: &Range<usize>) {
-        let Arranger { block: Waiting { seconds, .. }, border } = self;
-        let inside = |second: u32| disks.contains(&(second as usize));
-        if seconds[begin..].iter().all(|&second| inside(second)) {
+    fn set_border_apart(&mut self, first: u32, begin: usize, inside: impl Fn(u32) -> bool) {
+        let Arranger { block: Waiting { pairs, .. }, border, .. } = self;
+        if pairs[begin..].iter().all(|&pair| inside(pair)) {
             return;
         }
-        let begin_across = border.seconds.len();
-        border.seconds.extend(seconds[begin..].iter().filter(|&&second| !inside(second)));
+        let begin_across = border.pairs.len();
+        border.pairs.extend(pairs[begin..].iter().filter(|&&pair| !inside(pair)));
         let mut kept = begin;
-        for place in begin..seconds.len() {
-            seconds[kept] = seconds[place];
-            kept += usize::from(inside(seconds[place]));
+        for place in begin..pairs.len() {
+            pairs[kept] = pairs[place];
+            kept += usize::from(inside(pairs[place]));
         }
-        seconds.truncate(kept);
-        for part in (begin_across..border.seconds.len()).step_by(LONGEST_ROW) {
-            border.rows.push((first, part, LONGEST_ROW.min(border.seconds.len() - part)));
+        pairs.truncate(kept);
+        for part in (begin_across..border.pairs.len()).step_by(LONGEST_ROW) {
+            border.rows.push((first, part, LONGEST_ROW.min(border.pairs.len() - part)));
         }
     }
 }
 
 #[derive(Debug, Clone, Default)]
-struct Waiting {
-    seconds: Vec<u32>,
+pub(super) struct Waiting {
+    /// As their source numbers them.
+    pub pairs: Vec<u32>,
     /// First disk, where its pairs begin, and how many there are.
     rows: Vec<(u32, usize, usize)>,
 }
 
 impl Waiting {
     fn clear(&mut self) {
-        self.seconds.clear();
+        self.pairs.clear();
         self.rows.clear();
     }
 }
@@ -145,6 +191,17 @@ impl<const D: usize> PairList<D> {
         self.first.is_empty()
     }
 
+    /// Copies what a pair has at the anchors to a place of a block.
+    #[inline(always)]
+    pub(super) fn copy_pair(&self, pair: usize, place: usize, measured: &mut Measured<D>) {
+        for (measured, column) in measured.separation.iter_mut().zip(&self.separation.0) {
+            measured[place] = column[pair];
+        }
+        measured.distance[place] = self.distance[pair];
+        measured.overlap[place] = self.overlap[pair];
+        measured.coefficient[place] = self.coefficient[pair];
+    }
+
     /// Empties the list and fills it with what `search`, made anew for each tile, finds: each pair is named by one of its disks only.
     /// Disks from `first_count` on are never first.
     ///
@@ -156,68 +213,114 @@ impl<const D: usize> PairList<D> {
         first_count: usize,
         search: impl Fn() -> S + Sync,
     ) -> Result<(), PackingError> {
-        self.clear();
         // Sixteen layers of disks: few pairs cross its border.
         let layer = (disk_count as f64).powf(1.0 - 1.0 / D as f64);
-        self.tile_size = LEAST_TILE.max(16 * layer as usize);
-        let tile_size = self.tile_size;
-        self.tiles.resize(disk_count.div_ceil(tile_size), Tile::default());
-        let mut tiles = std::mem::take(&mut self.tiles);
+        let tile_size = LEAST_TILE.max(16 * layer as usize);
         let disks = |place: usize| place * tile_size..disk_count.min((place + 1) * tile_size);
-        if side_by_side::is_shared(tiles.len()) {
-            let mut parts = std::mem::take(&mut self.parts);
-            parts.resize(tiles.len(), PairList::default());
-            side_by_side::each(tiles.iter_mut().zip(&mut parts).enumerate(), |(place, (tile, part))| {
-                part.clear();
-                part.add_tile(disks(place), first_count, search(), tile);
-            });
-            self.join(&parts, &mut tiles);
-            self.parts = parts;
-        } else {
-            for (place, tile) in tiles.iter_mut().enumerate() {
-                self.add_tile(disks(place), first_count, search(), tile);
-            }
-        }
-        self.tiles = tiles;
+        self.fill_tiles(disk_count.div_ceil(tile_size), tile_size, |list, place, tile| {
+            list.add_tile(disks(place), first_count, search(), tile);
+        });
         let together = self.distance.iter().enumerate().filter(|&(_, &distance)| distance == 0.0);
         // The first two in the order of the disks, wherever they lie in the list.
         if let Some((first, second)) = together.map(|(pair, _)| (self.first[pair], self.second[pair])).min() {
             return Err(PackingError::CoincidentCentres { first: first as usize, second: second as usize });
         }
-        for tile in 0..self.tiles.len() {
-            for (place, pair) in self.tiles[tile].border_pairs.clone().enumerate() {
-                let second = self.second[pair];
-                self.tiles[second as usize / self.tile_size].incoming.push((second, tile as u32, place as u32));
-            }
-        }
         Ok(())
     }
 
-    /// Adds the blocks of the next tile.
-    fn add_tile(&mut self, disks: Range<usize>, first_count: usize, mut search: impl Search<D>, tile: &mut Tile) {
+    /// Empties the list and fills it tile by tile, perhaps side by side: `add` adds the blocks of one to a list.
+    pub(super) fn fill_tiles(
+        &mut self,
+        tile_count: usize,
+        tile_size: usize,
+        add: impl Fn(&mut PairList<D>, usize, &mut Tile) + Sync,
+    ) {
+        self.clear();
+        self.tile_size = tile_size;
+        self.tiles.resize(tile_count, Tile::default());
+        let mut tiles = std::mem::take(&mut self.tiles);
+        if side_by_side::is_shared(tiles.len()) {
+            let mut parts = std::mem::take(&mut self.parts);
+            parts.resize(tiles.len(), PairList::default());
+            side_by_side::each(tiles.iter_mut().zip(&mut parts).enumerate(), |(place, (tile, part))| {
+                part.clear();
+                add(part, place, tile);
+            });
+            self.join(&parts, &mut tiles);
+            self.parts = parts;
+        } else {
+            for (place, tile) in tiles.iter_mut().enumerate() {
+                add(self, place, tile);
+            }
+        }
+        self.tiles = tiles;
+        for tile in 0..self.tiles.len() {
+            for (place, pair) in self.tiles[tile].border_pairs.clone().enumerate() {
+                let second = self.second[pair];
+                self.tiles[second as usize / tile_size].incoming.push((second, tile as u32, place as u32));
+            }
+        }
+        for (place, tile) in self.tiles.iter_mut().enumerate() {
+            let first = &self.first[tile.border_pairs.clone()];
+            let touched = first.iter().copied().chain(tile.incoming.iter().map(|&(disk, ..)| disk));
+            let mut touched: Vec<usize> = touched.map(|disk| disk as usize - place * tile_size).collect();
+            touched.sort_unstable();
+            touched.push(tile_size);
+            let mut begin = 0;
+            tile.interior = 0..0;
+            for end in touched {
+                if end > begin + tile.interior.len() {
+                    tile.interior = begin..end;
+                }
+                begin = end + 1;
+            }
+        }
+    }
+
+    /// Adds the blocks of a tile: what `inner` puts in line within it, then what `border` puts in line across its border.
+    pub(super) fn add_blocks<S: Source<D>>(
+        &mut self,
+        tile: &mut Tile,
+        source: &mut S,
+        inner: impl FnOnce(&mut Self, &mut Arranger<D>, &mut S),
+        border: impl FnOnce(&mut Self, &mut Arranger<D>, &mut S),
+    ) {
         let mut arranger = std::mem::take(&mut self.arranger);
-        let inner = self.blocks.len();
-        for first in disks.start..disks.end.min(first_count) {
-            let begin = arranger.block.seconds.len();
-            search.find(first, &mut arranger.block.seconds);
-            arranger.set_border_apart(first as u32, begin, &disks);
-            self.add_rows(first as u32, begin, &mut arranger.block, &search);
-        }
-        let waiting = arranger.block.seconds.len();
-        self.close_block(&mut arranger.block, waiting, &search);
-        let (border, border_pairs) = (self.blocks.len(), self.len());
-        for &(first, begin, count) in &arranger.border.rows {
-            let place = arranger.block.seconds.len();
-            arranger.block.seconds.extend_from_slice(&arranger.border.seconds[begin..begin + count]);
-            self.add_rows(first, place, &mut arranger.block, &search);
-        }
-        let waiting = arranger.block.seconds.len();
-        self.close_block(&mut arranger.block, waiting, &search);
-        arranger.border.clear();
-        (tile.inner, tile.border) = (inner..border, border..self.blocks.len());
-        tile.border_pairs = border_pairs..self.first.len();
+        let begin = self.blocks.len();
+        inner(self, &mut arranger, source);
+        self.close_block(&mut arranger, source);
+        let (middle, border_pairs) = (self.blocks.len(), self.len());
+        border(self, &mut arranger, source);
+        self.close_block(&mut arranger, source);
+        (tile.inner, tile.border) = (begin..middle, middle..self.blocks.len());
+        tile.border_pairs = border_pairs..self.len();
         tile.incoming.clear();
         self.arranger = arranger;
+    }
+
+    /// Adds the blocks of the next tile.
+    fn add_tile<S: Search<D>>(&mut self, disks: Range<usize>, first_count: usize, mut search: S, tile: &mut Tile) {
+        let firsts = disks.start..disks.end.min(first_count);
+        let inner = |list: &mut Self, arranger: &mut Arranger<D>, search: &mut S| {
+            for first in firsts {
+                let begin = arranger.block.pairs.len();
+                search.find(first, &mut arranger.block.pairs);
+                let inside = |pair: u32| disks.contains(&(search.second(pair) as usize));
+                arranger.set_border_apart(first as u32, begin, inside);
+                list.add_rows(first as u32, begin, arranger, search);
+            }
+        };
+        let border = |list: &mut Self, arranger: &mut Arranger<D>, search: &mut S| {
+            let mut waiting = std::mem::take(&mut arranger.border);
+            for &(first, begin, count) in &waiting.rows {
+                let place = arranger.block.pairs.len();
+                arranger.block.pairs.extend_from_slice(&waiting.pairs[begin..begin + count]);
+                list.add_rows(first, place, arranger, search);
+            }
+            waiting.clear();
+            arranger.border = waiting;
+        };
+        self.add_blocks(tile, &mut search, inner, border);
     }
 
     /// Puts lists of one tile each one after the other.
@@ -235,7 +338,9 @@ impl<const D: usize> PairList<D> {
         }
         join_column(&mut self.first, 0, parts, |part| &part.first);
         join_column(&mut self.second, 0, parts, |part| &part.second);
-        join_column(&mut self.separation, [0.0; D], parts, |part| &part.separation);
+        for d in 0..D {
+            join_column(&mut self.separation.0[d], 0.0, parts, |part| &part.separation.0[d]);
+        }
         join_column(&mut self.distance, 0.0, parts, |part| &part.distance);
         join_column(&mut self.overlap, 0.0, parts, |part| &part.overlap);
         join_column(&mut self.coefficient, 0.0, parts, |part| &part.coefficient);
@@ -244,7 +349,7 @@ impl<const D: usize> PairList<D> {
     fn clear(&mut self) {
         self.first.clear();
         self.second.clear();
-        self.separation.clear();
+        self.separation.0.iter_mut().for_each(Vec::clear);
         self.distance.clear();
         self.overlap.clear();
         self.coefficient.clear();
@@ -255,24 +360,30 @@ impl<const D: usize> PairList<D> {
     }
 
     /// Makes rows of the pairs of a first disk, which wait from `begin` on; a block that has no place for one is closed before it.
-    fn add_rows(&mut self, first: u32, begin: usize, block: &mut Waiting, search: &impl Search<D>) {
+    pub(super) fn add_rows(
+        &mut self,
+        first: u32,
+        begin: usize,
+        arranger: &mut Arranger<D>,
+        source: &mut impl Source<D>,
+    ) {
         let mut begin = begin;
-        while begin < block.seconds.len() {
-            let mut end = block.seconds.len().min(begin + LONGEST_ROW);
+        while begin < arranger.block.pairs.len() {
+            let mut end = arranger.block.pairs.len().min(begin + LONGEST_ROW);
             if end > BLOCK {
-                self.close_block(block, begin, search);
+                self.close_block(arranger, source);
                 (begin, end) = (0, end - begin);
             }
-            block.rows.push((first, begin, end - begin));
+            arranger.block.rows.push((first, begin, end - begin));
             begin = end;
         }
     }
 
-    /// Writes the rows that wait, with their `count` pairs, as a block, the short ones first.
-    fn close_block(&mut self, block: &mut Waiting, count: usize, search: &impl Search<D>) {
-        if block.rows.is_empty() {
-            return;
-        }
+    /// Writes the rows that wait as a block, the short ones first; pairs that are not in a row yet go on waiting.
+    fn close_block(&mut self, arranger: &mut Arranger<D>, source: &mut impl Source<D>) {
+        let Arranger { block, measured, .. } = arranger;
+        let Some(&(_, begin, length)) = block.rows.last() else { return };
+        let count = begin + length;
         let mut row_counts = [0u8; LONGEST_ROW];
         for &(_, _, length) in &block.rows {
             row_counts[length - 1] += 1;
@@ -297,23 +408,22 @@ impl<const D: usize> PairList<D> {
             // Three pairs in the mean: a copy by a call takes longer.
             for place in 0..length {
                 first[*pair + place] = disk;
-                second[*pair + place] = block.seconds[begin + place];
+                second[*pair + place] = block.pairs[begin + place];
             }
             *pair += length;
         }
-        let mut measured = Measured {
-            separation: [[0.0; D]; BLOCK],
-            distance: [0.0; BLOCK],
-            overlap: [0.0; BLOCK],
-            coefficient: [0.0; BLOCK],
-        };
-        search.measure(first, second, &mut measured);
-        self.separation.extend_from_slice(&measured.separation[..count]);
+        source.measure(first, second, measured);
+        for pair in second {
+            *pair = source.second(*pair);
+        }
+        for (column, measured) in self.separation.0.iter_mut().zip(&measured.separation) {
+            column.extend_from_slice(&measured[..count]);
+        }
         self.distance.extend_from_slice(&measured.distance[..count]);
         self.overlap.extend_from_slice(&measured.overlap[..count]);
         self.coefficient.extend_from_slice(&measured.coefficient[..count]);
         block.rows.clear();
-        block.seconds.drain(..count);
+        block.pairs.drain(..count);
     }
 }
 

@@ -36,51 +36,50 @@ macro_rules! for_each_length {
     }};
 }
 
-/// Relative displacements of the pairs of a block.
+/// Relative displacements of the pairs of a block; disks are counted from `offset`.
 pub(super) fn gather<const D: usize>(
-    moved: &mut [Vector<D>; BLOCK],
+    moved: &mut [[f64; BLOCK]; D],
     block: &Block,
-    rows: &[u32],
-    second: &[u32],
+    (rows, second, offset): (&[u32], &[u32], u32),
     displacements: &[Vector<D>],
 ) {
     for_each_length!(block, |of_rows, of_pairs| gather_rows(
-        &mut moved[of_pairs.clone()],
-        &rows[of_rows],
-        &second[of_pairs.clone()],
+        moved.each_mut().map(|column| &mut column[of_pairs.clone()]),
+        (&rows[of_rows], &second[of_pairs.clone()], offset),
         displacements
     ));
 }
 
 #[inline(always)]
 fn gather_rows<const D: usize, const LENGTH: usize>(
-    moved: &mut [Vector<D>],
-    rows: &[u32],
-    second: &[u32],
+    moved: [&mut [f64]; D],
+    (rows, second, offset): (&[u32], &[u32], u32),
     displacements: &[Vector<D>],
 ) {
     // Columns of one length and a plain index: of chained iterators some stay calls.
     let count = rows.len();
-    let moved = &mut moved.as_chunks_mut::<LENGTH>().0[..count];
+    let moved = moved.map(|column| &mut column.as_chunks_mut::<LENGTH>().0[..count]);
     let second = &second.as_chunks::<LENGTH>().0[..count];
     for row in 0..count {
-        let a = displacements[rows[row] as usize];
-        let (moved, second): (&mut [_; LENGTH], &[_; LENGTH]) = (&mut moved[row], &second[row]);
+        let a = displacements[(rows[row] - offset) as usize];
         for k in 0..LENGTH {
-            moved[k] = difference(a, displacements[second[k] as usize]);
+            let apart = difference(a, displacements[(second[row][k] - offset) as usize]);
+            for d in 0..D {
+                moved[d][row][k] = apart[d];
+            }
         }
     }
 }
 
 /// Adds the force of each pair of a block to its first disk and takes it from the second; disks are counted from `offset`.
 pub(super) fn scatter<const D: usize>(
-    pull: &[Vector<D>; BLOCK],
+    pull: &[[f64; BLOCK]; D],
     block: &Block,
     (rows, second, offset): (&[u32], &[u32], u32),
     forces: &mut [Vector<D>],
 ) {
     for_each_length!(block, |of_rows, of_pairs| scatter_rows(
-        &pull[of_pairs.clone()],
+        pull.each_ref().map(|column| &column[of_pairs.clone()]),
         (&rows[of_rows], &second[of_pairs.clone()], offset),
         forces
     ));
@@ -88,20 +87,21 @@ pub(super) fn scatter<const D: usize>(
 
 #[inline(always)]
 fn scatter_rows<const D: usize, const LENGTH: usize>(
-    pull: &[Vector<D>],
+    pull: [&[f64]; D],
     (rows, second, offset): (&[u32], &[u32], u32),
     forces: &mut [Vector<D>],
 ) {
     let count = rows.len();
-    let pull = &pull.as_chunks::<LENGTH>().0[..count];
+    let pull = pull.map(|column| &column.as_chunks::<LENGTH>().0[..count]);
     let second = &second.as_chunks::<LENGTH>().0[..count];
     for row in 0..count {
         let first = (rows[row] - offset) as usize;
         let mut total = forces[first];
         for k in 0..LENGTH {
-            total = sum(total, pull[row][k]);
+            let pull: Vector<D> = std::array::from_fn(|d| pull[d][row][k]);
+            total = sum(total, pull);
             let other = &mut forces[(second[row][k] - offset) as usize];
-            *other = difference(*other, pull[row][k]);
+            *other = difference(*other, pull);
         }
         forces[first] = total;
     }

@@ -1,6 +1,6 @@
 //! Some pairs of a list as a list of its own, under other numbers.
 
-use crate::contact::pair_list::{Measured, PairList, Search};
+use crate::contact::pair_list::{Measured, PairList, Search, Source};
 
 impl<const D: usize> PairList<D> {
     /// Empties the list and fills it with pairs of another one under other numbers.
@@ -22,26 +22,21 @@ struct Selected<'a, const D: usize> {
     seconds: &'a [(u32, u32)],
 }
 
-impl<const D: usize> Selected<'_, D> {
-    fn seconds(&self, first: usize) -> &[(u32, u32)] {
-        &self.seconds[self.starts[first] as usize..self.starts[first + 1] as usize]
+impl<const D: usize> Search<D> for Selected<'_, D> {
+    fn find(&mut self, first: usize, pairs: &mut Vec<u32>) {
+        pairs.extend(self.starts[first]..self.starts[first + 1]);
     }
 }
 
-impl<const D: usize> Search<D> for Selected<'_, D> {
-    fn find(&mut self, first: usize, seconds: &mut Vec<u32>) {
-        seconds.extend(self.seconds(first).iter().map(|&(second, _)| second));
+impl<const D: usize> Source<D> for Selected<'_, D> {
+    /// A pair bears the number of its place in `seconds`.
+    fn second(&self, pair: u32) -> u32 {
+        self.seconds[pair as usize].0
     }
 
-    fn measure(&self, first: &[u32], second: &[u32], measured: &mut Measured<D>) {
-        for (place, (&first, &second)) in first.iter().zip(second).enumerate() {
-            let found = self.seconds(first as usize).iter().find(|&&(disk, _)| disk == second);
-            let Some(&(_, pair)) = found else { continue };
-            let pair = pair as usize;
-            measured.separation[place] = self.whole.separation[pair];
-            measured.distance[place] = self.whole.distance[pair];
-            measured.overlap[place] = self.whole.overlap[pair];
-            measured.coefficient[place] = self.whole.coefficient[pair];
+    fn measure(&mut self, _first: &[u32], pairs: &[u32], measured: &mut Measured<D>) {
+        for (place, &pair) in pairs.iter().enumerate() {
+            self.whole.copy_pair(self.seconds[pair as usize].1 as usize, place, measured);
         }
     }
 }

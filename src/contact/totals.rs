@@ -89,7 +89,7 @@ fn tally<S: pulp::Simd, const D: usize, L: PairLaw>(
     for a in 0..D {
         for b in 0..=a {
             for k in 0..BLOCK {
-                terms[k] = factor[k] * (apart[k][a] * apart[k][b]);
+                terms[k] = factor[k] * (apart[a][k] * apart[b][k]);
             }
             totals.virial[a][b] += lanes::sum(simd, &terms[..count]);
             totals.virial[b][a] = totals.virial[a][b];

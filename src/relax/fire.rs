@@ -27,9 +27,10 @@ use serde::{Deserialize, Serialize};
 use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
 use crate::packing::{Packing, PackingError};
-use crate::relax::flat::{combine, kick_and_drift, products};
+use crate::relax::flat::{Products, combine, kick_and_drift, products};
 use crate::relax::monitor::{LOOK_EVERY, Monitor};
 use crate::relax::{Cost, ForceLimit, Look, Outcome, Relaxer, Stop, Trace};
+use crate::vector::{Vector, larger};
 
 /// FIRE. Defaults: Bitzek et al. (2006), Phys. Rev. Lett. 97, 170201, where no other origin is given.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -114,6 +115,9 @@ const BOUND_EVERY: usize = 40;
 /// First time step over the largest one \[1\].
 const FIRST_STEP: f64 = 0.1;
 
+/// A bound on the largest component of a velocity before it is rounded, over that of the rounded one, and more \[1\].
+const BOUND_ROUNDING: f64 = 1.0 + 1e-12;
+
 /// Rounding of an energy summed over blocks, relative \[1\].
 pub(super) const ENERGY_ROUNDING: f64 = 1e-13;
 
@@ -144,7 +148,10 @@ impl Fire {
         monitor: &mut Monitor,
         trace: &mut impl Trace,
     ) -> Result<(Stop, Cost), PackingError> {
-        Run { settings: self, evaluation_count: 0, step_count: 0 }.run(assembly, monitor, trace)
+        assembly.prune_lists(true);
+        let ended = Run { settings: self, evaluation_count: 0, step_count: 0 }.run(assembly, monitor, trace);
+        assembly.prune_lists(false);
+        ended
     }
 }
 
@@ -163,7 +170,10 @@ impl Run<'_> {
     ) -> Result<(Stop, Cost), PackingError> {
         let settings = self.settings;
         let mobile = assembly.mobile_count();
-        let mut velocity = vec![0.0; mobile * D];
+        let mut velocity = vec![[0.0; D]; mobile];
+        let mut fastest = 0.0;
+        // The products where the disks are, if the step to there has taken them.
+        let mut taken: Option<Products> = None;
         let mut row = Vec::new();
         let mut largest_step = self.largest_step(assembly, &mut row);
         let mut time_step = FIRST_STEP * largest_step;
@@ -174,11 +184,11 @@ impl Run<'_> {
         loop {
             let due = self.step_count.is_multiple_of(LOOK_EVERY);
             let totals = if due { Some(assembly.evaluate_totals()) } else { None };
-            if !due {
+            if !due && taken.is_none() {
                 assembly.evaluate();
             }
             self.evaluation_count += 1;
-            let mut sums = products(assembly.forces[..mobile].as_flattened(), &velocity);
+            let mut sums = taken.take().unwrap_or_else(|| of(&assembly.forces[..mobile], &velocity));
             let restart = sums.power <= 0.0 && self.step_count > 0;
             if let Some(totals) = &totals {
                 let look = Look {
@@ -214,7 +224,7 @@ impl Run<'_> {
                         let floor = monitor.near_the_floor();
                         return Ok((if floor { Stop::RoundingFloor } else { Stop::NoDescent }, self.cost()));
                     }
-                    step_back(assembly, time_step, &velocity, sums.speed_squared)?;
+                    step_back(assembly, time_step, velocity.as_flattened(), sums.speed_squared)?;
                 }
                 let totals = match totals {
                     Some(totals) if settings.uphill == Uphill::Restart => totals,
@@ -249,8 +259,9 @@ impl Run<'_> {
                     };
                     trace.look(&look);
                 }
-                velocity.fill(0.0);
-                sums = products(assembly.forces[..mobile].as_flattened(), &velocity);
+                velocity.fill([0.0; D]);
+                fastest = 0.0;
+                sums = of(&assembly.forces[..mobile], &velocity);
                 let kept =
                     matches!(settings.uphill, Uphill::StepBack(back) if self.step_count < back.start_delay && !higher);
                 if !kept {
@@ -269,19 +280,28 @@ impl Run<'_> {
             let kicked = sums.speed_squared + time_step * (2.0 * sums.power + time_step * sums.force_squared);
             let turn = if sums.force_squared > 0.0 { mixing * (kicked / sums.force_squared).sqrt() } else { 0.0 };
             let keep = 1.0 - mixing;
-            let (forces, displacements) = (&assembly.forces[..mobile], &mut assembly.displacements[..mobile]);
-            let displacements = displacements.as_flattened_mut();
-            kick_and_drift(
-                keep,
-                keep * time_step + turn,
-                time_step,
-                forces.as_flattened(),
-                &mut velocity,
-                displacements,
-            );
+            let push = keep * time_step + turn;
+            let kick = |forces: &[Vector<D>], velocities: &mut [Vector<D>], displacements: &mut [Vector<D>]| {
+                let (velocities, displacements) = (velocities.as_flattened_mut(), displacements.as_flattened_mut());
+                kick_and_drift(keep, push, time_step, forces.as_flattened(), velocities, displacements)
+            };
+            // No disk goes farther than √D times the longest way along an axis.
+            let reach = time_step * (D as f64).sqrt();
             self.step_count += 1;
-            // |v| ≤ |v + dt F| after mixing, and no disk moves further than the whole vector does.
-            let new_list = assembly.keep_listed(time_step * kicked.max(0.0).sqrt())?;
+            // A look takes totals, which take a pass of their own.
+            let looks = self.step_count.is_multiple_of(LOOK_EVERY);
+            let bound = reach * (keep * fastest + push * sums.largest_force) * BOUND_ROUNDING;
+            match if looks { None } else { assembly.advance(&mut velocity, bound, kick, of) } {
+                Some((speeds, parts)) => {
+                    fastest = speeds.into_iter().fold(0.0, larger);
+                    taken = Some(parts.iter().fold(Products::ZERO, |sums, part| sums.with(part)));
+                }
+                None => {
+                    let (forces, displacements) = (&assembly.forces[..mobile], &mut assembly.displacements[..mobile]);
+                    fastest = kick(forces, &mut velocity, displacements);
+                }
+            }
+            let new_list = assembly.keep_listed(reach * fastest)?;
             if new_list && monitor.ran_away(assembly) {
                 return Ok((Stop::NoMinimum, self.cost()));
             }
@@ -314,6 +334,11 @@ fn step_back<const D: usize, L: PairLaw>(
     let mobile = assembly.mobile_count();
     combine(1.0, assembly.displacements[..mobile].as_flattened_mut(), -0.5 * time_step, velocity);
     assembly.keep_listed(0.5 * time_step * speed_squared.sqrt()).map(|_| ())
+}
+
+/// The products of these disks.
+fn of<const D: usize>(forces: &[Vector<D>], velocities: &[Vector<D>]) -> Products {
+    products(forces.as_flattened(), velocities.as_flattened())
 }
 
 fn trace_is_active<T: Trace>(_trace: &T) -> bool {

@@ -3,6 +3,7 @@
 
 use crate::lanes;
 use crate::side_by_side;
+use crate::vector::larger;
 
 /// Length of a piece of a long column; fixed, so the bits do not depend on the number of threads.
 const PIECE: usize = 1 << 15;
@@ -16,6 +17,23 @@ pub struct Products {
     pub force_squared: f64,
     /// v·v.
     pub speed_squared: f64,
+    /// The largest component of F, whatever its sign; a NaN may get lost here, not in the others.
+    pub largest_force: f64,
+}
+
+impl Products {
+    /// Those of no disk.
+    pub const ZERO: Self = Products { power: 0.0, force_squared: 0.0, speed_squared: 0.0, largest_force: 0.0 };
+
+    /// Those of both parts.
+    pub fn with(&self, part: &Self) -> Self {
+        Products {
+            power: self.power + part.power,
+            force_squared: self.force_squared + part.force_squared,
+            speed_squared: self.speed_squared + part.speed_squared,
+            largest_force: larger(self.largest_force, part.largest_force),
+        }
+    }
 }
 
 /// F·v, F·F and v·v in one pass.
@@ -25,12 +43,7 @@ pub fn products(force: &[f64], velocity: &[f64]) -> Products {
         return of_piece((force, velocity));
     }
     let pieces = side_by_side::each(force.chunks(PIECE).zip(velocity.chunks(PIECE)), of_piece);
-    let zero = Products { power: 0.0, force_squared: 0.0, speed_squared: 0.0 };
-    pieces.iter().fold(zero, |sum, piece| Products {
-        power: sum.power + piece.power,
-        force_squared: sum.force_squared + piece.force_squared,
-        speed_squared: sum.speed_squared + piece.speed_squared,
-    })
+    pieces.iter().fold(Products::ZERO, |sum, piece| sum.with(piece))
 }
 
 struct ProductsOf<'a> {
@@ -44,11 +57,12 @@ impl pulp::WithSimd for ProductsOf<'_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> Products {
         let [power, force_squared, speed_squared] = lanes::products(simd, self.force, self.velocity);
-        Products { power, force_squared, speed_squared }
+        let largest_force = lanes::largest(simd, self.force);
+        Products { power, force_squared, speed_squared, largest_force }
     }
 }
 
-/// `v ← keep·v + push·F`, then `u ← u + dt·v`.
+/// `v ← keep·v + push·F`, then `u ← u + dt·v`; the largest component of v, whatever its sign, is returned.
 pub fn kick_and_drift(
     keep: f64,
     push: f64,
@@ -56,15 +70,15 @@ pub fn kick_and_drift(
     force: &[f64],
     velocity: &mut [f64],
     displacement: &mut [f64],
-) {
+) -> f64 {
     let piece = |((force, velocity), displacement): ((&_, &mut _), &mut _)| {
-        pulp::Arch::new().dispatch(KickAndDrift { keep, push, time_step, force, velocity, displacement });
+        pulp::Arch::new().dispatch(KickAndDrift { keep, push, time_step, force, velocity, displacement })
     };
     if force.len() <= PIECE {
         return piece(((force, velocity), displacement));
     }
     let pieces = force.chunks(PIECE).zip(velocity.chunks_mut(PIECE)).zip(displacement.chunks_mut(PIECE));
-    side_by_side::each(pieces, piece);
+    side_by_side::each(pieces, piece).into_iter().fold(0.0, larger)
 }
 
 struct KickAndDrift<'a> {
@@ -77,14 +91,29 @@ struct KickAndDrift<'a> {
 }
 
 impl pulp::WithSimd for KickAndDrift<'_> {
-    type Output = ();
+    type Output = f64;
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        for ((f, v), u) in self.force.iter().zip(self.velocity).zip(self.displacement) {
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> f64 {
+        let splat = |value| simd.splat_f64s(value);
+        let (keep, push, time_step) = (splat(self.keep), splat(self.push), splat(self.time_step));
+        let (force, force_rest) = S::as_simd_f64s(self.force);
+        let (velocity, velocity_rest) = S::as_mut_simd_f64s(self.velocity);
+        let (displacement, displacement_rest) = S::as_mut_simd_f64s(self.displacement);
+        // A NaN may get lost here; it is in v and u.
+        let mut fastest = splat(0.0);
+        for ((&f, v), u) in force.iter().zip(velocity).zip(displacement) {
+            *v = simd.add_f64s(simd.mul_f64s(keep, *v), simd.mul_f64s(push, f));
+            *u = simd.add_f64s(*u, simd.mul_f64s(time_step, *v));
+            fastest = simd.max_f64s(fastest, simd.abs_f64s(*v));
+        }
+        let mut fastest = simd.reduce_max_f64s(fastest);
+        for ((f, v), u) in force_rest.iter().zip(velocity_rest).zip(displacement_rest) {
             *v = self.keep * *v + self.push * f;
             *u += self.time_step * *v;
+            fastest = larger(fastest, v.abs());
         }
+        fastest
     }
 }
 

@@ -1,0 +1,139 @@
+//! Keeping the neighbour list good while disks move: when it is looked at, pruned and made anew.
+
+use crate::contact::assembly::Assembly;
+use crate::contact::law::PairLaw;
+#[cfg(test)]
+use crate::contact::pair_list::PairList;
+use crate::contact::pruned::best_skin;
+use crate::packing::PackingError;
+use crate::side_by_side::{self, PIECE};
+use crate::vector::{Vector, larger, longest_difference_squared};
+
+/// How far a disk may go from where it was listed over the width of the skin: half of it, less the rounding of the comparison.
+const LISTED: f64 = 0.4999;
+
+/// Calls of [`Assembly::keep_listed`] after which the way of the disks is looked at for the first time; then at twice as many.
+const FIRST_LOOK: usize = 16;
+
+/// Widest skin of near pairs over that of the list in use \[1\]. A twelfth of a radius lasts some 70 steps where it is the best; picking the
+/// pairs of large packings costs two to three evaluations more than PICKING says.
+const WIDEST_NEAR: f64 = 0.16;
+
+impl<const D: usize, L: PairLaw> Assembly<D, L> {
+    #[cfg(test)]
+    pub(in crate::contact) fn near_pairs_used(&self) -> bool {
+        self.near_skin.is_some()
+    }
+
+    #[cfg(test)]
+    pub(in crate::contact) fn all_pairs(&self) -> &PairList<D> {
+        &self.pairs
+    }
+
+    /// Whether, from now on, only near pairs are listed while disks move little. For who calls [`Assembly::keep_listed`] once an
+    /// evaluation; what it keeps for each pair it must make anew whenever that says so.
+    pub fn prune_lists(&mut self, prunes: bool) {
+        self.prunes = prunes;
+        if prunes {
+            self.seen.clone_from(&self.displacements);
+        }
+        (self.age, self.seen_at, self.look_at) = (0, 0, FIRST_LOOK);
+    }
+
+    /// Whether the list will neither be changed nor looked at when no disk has moved by more than `bound` at the next call of
+    /// [`Assembly::keep_listed`].
+    pub(super) fn holds_beyond(&self, bound: f64) -> bool {
+        let looks = self.prunes && self.age + 1 == self.look_at;
+        // Written so that NaN does not hold.
+        !looks && self.moved + bound <= LISTED * self.skin()
+    }
+
+    /// Tells that no disk has moved by more than `bound` since the last call, and changes the list if it must be. True if it is
+    /// another one.
+    ///
+    /// # Errors
+    /// Two disks with the same centre.
+    pub fn keep_listed(&mut self, bound: f64) -> Result<bool, PackingError> {
+        self.moved += bound;
+        self.age += 1;
+        let looks = self.prunes && self.age == self.look_at;
+        // Written so that NaN asks for the exact look.
+        let limit = LISTED * self.skin();
+        if self.moved <= limit && !looks {
+            return Ok(false);
+        }
+        let largest = self.longest_way(&self.listed);
+        if largest.is_nan() {
+            // Not a position any more: the forces are NaN too, and the relaxer stops on them.
+            return Ok(false);
+        }
+        self.moved = largest;
+        let spent = self.moved > limit;
+        if !spent && !looks {
+            return Ok(false);
+        }
+        if !spent {
+            let way = self.longest_way(&self.seen) / (self.age - self.seen_at) as f64;
+            self.seen.clone_from(&self.displacements);
+            (self.seen_at, self.look_at) = (self.age, 2 * self.age);
+            let best = best_skin(self.smallest_radius, way);
+            let narrower = best < WIDEST_NEAR * self.skin();
+            if narrower {
+                self.prune(best);
+            }
+            return Ok(narrower);
+        }
+        let way = if self.prunes { self.moved / self.age as f64 } else { f64::INFINITY };
+        let best = best_skin(self.smallest_radius, way);
+        // Anchors are where the list of all pairs was made.
+        let moved = self.longest_displacement();
+        if self.near_skin.is_none() || moved > LISTED * self.skin {
+            self.rebuild()?;
+            if best < WIDEST_NEAR * self.skin {
+                self.prune(best);
+            }
+        } else {
+            // As long as that list lasts, near pairs are picked from it, or it is used itself.
+            let longest = self.skin - moved / LISTED;
+            if best < WIDEST_NEAR * self.skin && best < 2.0 * longest {
+                self.prune(best.min(longest));
+            } else {
+                (self.near_skin, self.moved) = (None, moved);
+                self.listed.fill([0.0; D]);
+            }
+        }
+        Ok(true)
+    }
+
+    /// The longest way of a mobile disk from where it was \[length\]; NaN if one is.
+    fn longest_way(&self, from: &[Vector<D>]) -> f64 {
+        let mobile = &self.displacements[..self.mobile_count];
+        let pieces = mobile.chunks(PIECE).zip(from[..self.mobile_count].chunks(PIECE));
+        let squares = side_by_side::each(pieces, |(now, before)| longest_difference_squared(now, before));
+        squares.into_iter().fold(0.0, larger).sqrt()
+    }
+
+    /// Picks the pairs nearer than this skin from the list of all pairs, which lasts until a disk has moved by half of it.
+    fn prune(&mut self, skin: f64) {
+        self.near_pairs.prune(&self.pairs, &self.displacements, skin);
+        self.near_skin = Some(skin);
+        self.begin_list();
+    }
+
+    /// The list in use is new.
+    pub(super) fn begin_list(&mut self) {
+        self.listed.clone_from(&self.displacements);
+        self.moved = 0.0;
+        self.prune_lists(self.prunes);
+    }
+
+    /// Width of the skin of the list in use \[length\].
+    pub fn skin(&self) -> f64 {
+        self.near_skin.unwrap_or(self.skin)
+    }
+
+    /// How far every disk may go before the list must be made anew, at least \[length\].
+    pub fn listed_way(&self) -> f64 {
+        LISTED * self.skin() - self.moved
+    }
+}
