@@ -125,6 +125,7 @@ pub mod reference;
 pub mod relax;
 pub mod report;
 pub mod response;
+mod roots;
 pub mod run;
 pub mod scene;
 mod side_by_side;

@@ -17,6 +17,7 @@ use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, Block, PairList, Tile};
 use crate::contact::rows::{gather, rows_of, scatter};
 use crate::contact::totals::{Tally, Totals};
+use crate::roots::{positive_part, reciprocal};
 use crate::side_by_side;
 use crate::vector::{Vector, difference, sum};
 
@@ -245,41 +246,50 @@ impl<const D: usize, L: PairLaw, const KEEP: bool> pulp::WithSimd for Arithmetic
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        evaluate::<D, L, KEEP>(self.law, self.columns, &self.anchors);
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        evaluate::<S, D, L, KEEP>(simd, self.law, self.columns, &self.anchors);
     }
 }
 
 #[inline(always)]
-fn evaluate<const D: usize, L: PairLaw, const KEEP: bool>(law: &L, columns: &mut Columns<D>, anchors: &Anchors<'_, D>) {
-    // As many turns as a column has places, known beforehand: whole vectors, and no check.
-    let length = "columns as long as a block";
-    let anchor_separation: [&[f64; BLOCK]; D] = anchors.separation.map(|column| column.try_into().expect(length));
-    let anchor_distance: &[f64; BLOCK] = anchors.distance.try_into().expect(length);
-    let anchor_overlap: &[f64; BLOCK] = anchors.overlap.try_into().expect(length);
-    let coefficient: &[f64; BLOCK] = anchors.coefficient.try_into().expect(length);
-    let Columns { pull, apart: aparts, overlap: overlaps, force: forces, factor: factors } = columns;
-    for k in 0..BLOCK {
-        let mut apart = [0.0; D];
-        let mut squared = 0.0;
-        let mut change = 0.0;
+fn evaluate<S: pulp::Simd, const D: usize, L: PairLaw, const KEEP: bool>(
+    simd: S,
+    law: &L,
+    columns: &mut Columns<D>,
+    anchors: &Anchors<'_, D>,
+) {
+    // As many turns as a block has places, known beforehand: no check.
+    let count = BLOCK / S::F64_LANES;
+    let read = |column| &S::as_simd_f64s(column).0[..count];
+    let anchor_separation = anchors.separation.map(read);
+    let (anchor_distance, anchor_overlap) = (read(anchors.distance), read(anchors.overlap));
+    let coefficient = read(anchors.coefficient);
+    let pull = columns.pull.each_mut().map(|column| S::as_mut_simd_f64s(column).0);
+    let aparts = columns.apart.each_mut().map(|column| S::as_mut_simd_f64s(column).0);
+    let (overlaps, _) = S::as_mut_simd_f64s(&mut columns.overlap);
+    let (forces, _) = S::as_mut_simd_f64s(&mut columns.force);
+    let (factors, _) = S::as_mut_simd_f64s(&mut columns.factor);
+    let zero = simd.splat_f64s(0.0);
+    for k in 0..count {
+        let mut apart = [zero; D];
+        let (mut squared, mut change) = (zero, zero);
         for d in 0..D {
             let (anchored, moved) = (anchor_separation[d][k], pull[d][k]);
-            apart[d] = anchored + moved;
-            squared += apart[d] * apart[d];
-            change += moved * (anchored + apart[d]);
+            apart[d] = simd.add_f64s(anchored, moved);
+            squared = simd.add_f64s(squared, simd.mul_f64s(apart[d], apart[d]));
+            change = simd.add_f64s(change, simd.mul_f64s(moved, simd.add_f64s(anchored, apart[d])));
         }
-        let distance = squared.sqrt();
-        let both = distance + anchor_distance[k];
-        // One division for change / both and 1 / distance: divisions and roots are what the loop waits for.
-        let inverse = 1.0 / (distance * both);
-        let gap = anchor_overlap[k] - change * (distance * inverse);
-        // Written so that NaN stays NaN.
-        let overlap = if gap < 0.0 { 0.0 } else { gap };
-        let force = law.force(coefficient[k], overlap);
-        let factor = force * (both * inverse);
+        let distance = simd.sqrt_f64s(squared);
+        let both = simd.add_f64s(distance, anchor_distance[k]);
+        // One reciprocal for change / both and 1 / distance: divisions and roots are what the loop waits for.
+        let inverse = reciprocal(simd, simd.mul_f64s(distance, both));
+        let change = simd.mul_f64s(change, simd.mul_f64s(distance, inverse));
+        let gap = simd.sub_f64s(anchor_overlap[k], change);
+        let overlap = positive_part(simd, gap);
+        let force = law.forces(simd, coefficient[k], overlap);
+        let factor = simd.mul_f64s(force, simd.mul_f64s(both, inverse));
         for d in 0..D {
-            pull[d][k] = factor * apart[d];
+            pull[d][k] = simd.mul_f64s(factor, apart[d]);
         }
         if KEEP {
             for d in 0..D {

@@ -14,9 +14,14 @@
 //!
 //! The law is a type: the loop over contacts is compiled once for each and holds no branch on it.
 
+use std::slice::{from_mut, from_ref};
+
+use pulp::Simd;
+use pulp::bytemuck::{cast_slice, cast_slice_mut};
 use serde::{Deserialize, Serialize};
 
 use crate::contact::damping::{DampingLaw, MassDamping, ViscoelasticDamping, effective_radius};
+use crate::roots::square_root;
 
 /// What happens where two disks touch: a pure function of the overlap and of a coefficient made once a pair.
 pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
@@ -35,6 +40,17 @@ pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
 
     /// Repulsive force F(δ) for an overlap δ ≥ 0 \[force\]. A NaN stays one.
     fn force(&self, coefficient: f64, overlap: f64) -> f64;
+
+    /// [`force`](Self::force) of a vector of pairs, with the same bits; one after the other, where a law has nothing faster.
+    #[inline(always)]
+    fn forces<S: Simd>(&self, _simd: S, coefficients: S::f64s, overlaps: S::f64s) -> S::f64s {
+        let mut forces = overlaps;
+        let each: &[f64] = cast_slice(from_ref(&coefficients));
+        for (force, &coefficient) in cast_slice_mut(from_mut(&mut forces)).iter_mut().zip(each) {
+            *force = self.force(coefficient, *force);
+        }
+        forces
+    }
 
     /// Exponent α of the energy \[1\].
     fn exponent(&self) -> f64;
@@ -139,6 +155,10 @@ impl PairLaw for Hertzian {
         coefficient * overlap * overlap.sqrt()
     }
     #[inline(always)]
+    fn forces<S: Simd>(&self, simd: S, coefficients: S::f64s, overlaps: S::f64s) -> S::f64s {
+        simd.mul_f64s(simd.mul_f64s(coefficients, overlaps), square_root(simd, overlaps))
+    }
+    #[inline(always)]
     fn exponent(&self) -> f64 {
         2.5
     }
@@ -162,6 +182,10 @@ impl PairLaw for Hookean {
     fn force(&self, _coefficient: f64, overlap: f64) -> f64 {
         // That of every pair: the loop need not load it.
         self.stiffness * overlap
+    }
+    #[inline(always)]
+    fn forces<S: Simd>(&self, simd: S, _coefficients: S::f64s, overlaps: S::f64s) -> S::f64s {
+        simd.mul_f64s(simd.splat_f64s(self.stiffness), overlaps)
     }
     #[inline(always)]
     fn exponent(&self) -> f64 {

@@ -66,6 +66,10 @@ impl<L: PairLaw> PairLaw for OnSite<L> {
         self.law.force(coefficient, overlap)
     }
     #[inline(always)]
+    fn forces<S: pulp::Simd>(&self, simd: S, coefficients: S::f64s, overlaps: S::f64s) -> S::f64s {
+        self.law.forces(simd, coefficients, overlaps)
+    }
+    #[inline(always)]
     fn exponent(&self) -> f64 {
         self.law.exponent()
     }

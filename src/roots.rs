@@ -1,0 +1,198 @@
+//! Square roots and reciprocals of vectors with the bits of the machine's own instructions, and faster where these are slow.
+//!
+//! Processors with vectors of 512 bits have an instruction for eight square roots and one for eight quotients that take 16 to 30
+//! cycles, one at a time, and begin two fused products each cycle. There a first guess of 14 bits is refined by products, beside what
+//! the unit for roots and quotients is doing:
+//!
+//! ```text
+//! √a    g = a y, h = y/2, y ≈ 1/√a      twice: e = 1/2 − g h, g ← g + g e, h ← h + h e      at last: g + (a − g²) h
+//! 1/a   y ≈ 1/a                         three times: e = 1 − a y, y ← y + y e
+//! ```
+//!
+//! The last e and a − g² are exact; what is added then is right to 2⁻⁵² of itself and no more than 2⁻⁵² of the result. So before it
+//! is rounded the result is off by 2⁻¹⁰⁴ of itself, and after it the correctly rounded one, unless the exact result lies so near
+//! to the middle between two numbers. The tests try those that lie nearest.
+//!
+//! # Source
+//! Markstein (2000), IA-64 and Elementary Functions, chapters 8 and 9.
+
+use pulp::Simd;
+
+/// √a of numbers a ≥ 0, the bits of [`f64::sqrt`] for 0 and from 2⁻⁹⁶⁰ to 2¹⁰⁰⁰; below within a unit in the last place, above perhaps NaN.
+#[inline(always)]
+pub fn square_root<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = long::vectors(&simd) {
+        return pulp::bytemuck::cast(long::square_root(simd, pulp::bytemuck::cast(a)));
+    }
+    simd.sqrt_f64s(a)
+}
+
+/// 1/a, the bits of a division for |a| from 2⁻¹⁰⁰⁰ to 2¹⁰⁰⁰, except for the last number below a power of two, where it may be the
+/// next lower one (the sum to be rounded is the very middle); perhaps NaN beyond.
+#[inline(always)]
+pub fn reciprocal<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = long::vectors(&simd) {
+        return pulp::bytemuck::cast(long::reciprocal(simd, pulp::bytemuck::cast(a)));
+    }
+    simd.div_f64s(simd.splat_f64s(1.0), a)
+}
+
+/// a, but 0 where it is negative; NaN stays NaN.
+#[inline(always)]
+pub fn positive_part<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
+    let zero = simd.splat_f64s(0.0);
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = long::vectors(&simd) {
+        // Of two numbers of which one is NaN, this instruction takes the second.
+        let (zero, a) = (pulp::bytemuck::cast(zero), pulp::bytemuck::cast(a));
+        return pulp::bytemuck::cast(simd.avx512f._mm512_max_pd(zero, a));
+    }
+    simd.select_f64s(simd.less_than_f64s(a, zero), zero, a)
+}
+
+#[cfg(target_arch = "x86_64")]
+mod long {
+    use std::any::Any;
+    use std::arch::x86_64::{__m512d, _CMP_NEQ_UQ};
+
+    use pulp::x86::V4;
+
+    /// Vectors of 512 bits, if that is what `simd` stands for: known when the code is made.
+    #[inline(always)]
+    pub fn vectors<S: Any>(simd: &S) -> Option<V4> {
+        (simd as &dyn Any).downcast_ref::<V4>().copied()
+    }
+
+    #[inline(always)]
+    pub fn square_root(simd: V4, a: __m512d) -> __m512d {
+        let simd = simd.avx512f;
+        let half = simd._mm512_set1_pd(0.5);
+        let guess = simd._mm512_rsqrt14_pd(a);
+        let mut root = simd._mm512_mul_pd(a, guess);
+        let mut inverse = simd._mm512_mul_pd(half, guess);
+        for _ in 0..2 {
+            let error = simd._mm512_fnmadd_pd(root, inverse, half);
+            root = simd._mm512_fmadd_pd(root, error, root);
+            inverse = simd._mm512_fmadd_pd(inverse, error, inverse);
+        }
+        let rest = simd._mm512_fnmadd_pd(root, root, a);
+        // The guess for 0 is infinite.
+        let kept = simd._mm512_cmp_pd_mask::<_CMP_NEQ_UQ>(a, simd._mm512_setzero_pd());
+        simd._mm512_maskz_fmadd_pd(kept, rest, inverse, root)
+    }
+
+    #[inline(always)]
+    pub fn reciprocal(simd: V4, a: __m512d) -> __m512d {
+        let simd = simd.avx512f;
+        let one = simd._mm512_set1_pd(1.0);
+        let mut inverse = simd._mm512_rcp14_pd(a);
+        for _ in 0..3 {
+            let error = simd._mm512_fnmadd_pd(a, inverse, one);
+            inverse = simd._mm512_fmadd_pd(inverse, error, inverse);
+        }
+        inverse
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    /// Roots, reciprocals and positive parts of a column of whole vectors.
+    struct Each<'a>(&'a [f64]);
+
+    impl pulp::WithSimd for Each<'_> {
+        type Output = [Vec<f64>; 3];
+
+        fn with_simd<S: Simd>(self, simd: S) -> [Vec<f64>; 3] {
+            let (column, rest) = S::as_simd_f64s(self.0);
+            assert!(rest.is_empty());
+            let list = |of: &dyn Fn(S::f64s) -> S::f64s| {
+                let vectors: Vec<S::f64s> = column.iter().map(|&a| of(a)).collect();
+                pulp::bytemuck::cast_slice(&vectors).to_vec()
+            };
+            [list(&|a| square_root(simd, a)), list(&|a| reciprocal(simd, a)), list(&|a| positive_part(simd, a))]
+        }
+    }
+
+    fn of(column: &[f64]) -> [Vec<f64>; 3] {
+        pulp::Arch::new().dispatch(Each(column))
+    }
+
+    /// Odd numbers M < 2⁵⁴ whose square is c below a number of 53 bits times a power of two: M/2 is the middle of two doubles
+    /// nearest to a root. M is found bit by bit, M² ≡ c modulo ever higher powers of two.
+    fn nearest_to_a_middle(c: i64) -> Vec<f64> {
+        let mut found = Vec::new();
+        for start in [1u128, 3] {
+            let wanted = |m: u128, bits: u32| (m * m).wrapping_sub(c as i128 as u128) & ((1 << bits) - 1) == 0;
+            let mut m = start;
+            if !wanted(m, 3) {
+                continue;
+            }
+            for bits in 4..=55 {
+                if !wanted(m, bits) {
+                    m += 1 << (bits - 2);
+                }
+            }
+            for m in [m & ((1 << 54) - 1), (1 << 54) - (m & ((1 << 54) - 1))] {
+                // M² − c, whose last 54 bits are zero.
+                let near = ((m * m) as i128 - i128::from(c)) as u128;
+                if m > 1 << 53 && near.leading_zeros() + near.trailing_zeros() >= 128 - 53 {
+                    found.push(near as f64);
+                }
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn roots_and_reciprocals_have_the_bits_of_the_instructions() {
+        let mut random = Pcg64::seed_from_u64(1);
+        let mut column: Vec<f64> = (0..400_000)
+            .map(|_| f64::from_bits(random.random_range((1023u64 - 960) << 52..(1023u64 + 1000) << 52)))
+            .collect();
+        // Neighbours of powers of two and of squares, where roundings are closest to going wrong.
+        for exponent in -900..900 {
+            let power = f64::from_bits(((1023 + exponent) as u64) << 52);
+            for near in -4i64..=4 {
+                column.push(f64::from_bits(power.to_bits().wrapping_add_signed(near)));
+            }
+        }
+        for _ in 0..20_000 {
+            let root = 1.0 + random.random::<f64>();
+            for near in -2i64..=2 {
+                column.push(f64::from_bits((root * root).to_bits().wrapping_add_signed(near)));
+            }
+        }
+        let hard: Vec<f64> = (-64..64).flat_map(|k| nearest_to_a_middle(8 * k + 1)).collect();
+        assert!(hard.len() > 100, "{} hard cases", hard.len());
+        column.extend(hard);
+        column.resize(column.len().next_multiple_of(8), 1.0);
+        let [roots, reciprocals, _] = of(&column);
+        for ((a, root), reciprocal) in column.iter().zip(roots).zip(reciprocals) {
+            assert_eq!(root.to_bits(), a.sqrt().to_bits(), "root of {a:e}");
+            let last = a.to_bits() & ((1 << 52) - 1) == (1 << 52) - 1;
+            let lower = (1.0 / a).to_bits() - 1;
+            assert!(reciprocal == 1.0 / a || last && reciprocal.to_bits() == lower, "reciprocal of {a:e}");
+        }
+    }
+
+    #[test]
+    fn nothing_and_no_number_are_kept() {
+        let column = [0.0, 1.0, f64::NAN, 4.0, 0.0, 0.25, f64::MIN_POSITIVE, 9.0];
+        let [roots, reciprocals, parts] = of(&column);
+        assert_eq!([roots[0], roots[1], roots[3], roots[4], roots[5], roots[7]], [0.0, 1.0, 2.0, 0.0, 0.5, 3.0]);
+        assert!(roots[2].is_nan() && reciprocals[2].is_nan() && parts[2].is_nan());
+        let smallest = f64::MIN_POSITIVE.sqrt();
+        assert!((roots[6] - smallest).abs() <= f64::EPSILON * smallest);
+        let [_, _, parts] = of(&[-1.0, -0.0, 0.0, 2.0, f64::NAN, f64::NEG_INFINITY, f64::INFINITY, -1e-300]);
+        assert_eq!([parts[0], parts[1], parts[2], parts[3]], [0.0, 0.0, 0.0, 2.0]);
+        assert!(parts[4].is_nan());
+        assert_eq!([parts[5], parts[6], parts[7]], [0.0, f64::INFINITY, 0.0]);
+    }
+}
