@@ -20,6 +20,9 @@ use crate::vector::Vector;
 /// Most pairs of a block; its columns stay in the nearest cache.
 pub const BLOCK: usize = 128;
 
+/// Most pairs of a group.
+const GROUP: usize = 8192;
+
 /// Most pairs of a row; a disk with more has several rows.
 pub const LONGEST_ROW: usize = 8;
 
@@ -140,7 +143,8 @@ impl<const D: usize> Default for Measured<D> {
 pub(super) struct Arranger<const D: usize> {
     pub block: Waiting,
     border: Waiting,
-    /// Room for the block that is being closed.
+    /// Room for the rows of the group that is being closed, and for its block.
+    by_length: Vec<Row>,
     measured: Measured<D>,
 }
 
@@ -165,12 +169,14 @@ impl<const D: usize> Arranger<D> {
     }
 }
 
+/// First disk, where its pairs begin, and how many there are.
+type Row = (u32, usize, usize);
+
 #[derive(Debug, Clone, Default)]
 pub(super) struct Waiting {
     /// As their source numbers them.
     pub pairs: Vec<u32>,
-    /// First disk, where its pairs begin, and how many there are.
-    rows: Vec<(u32, usize, usize)>,
+    rows: Vec<Row>,
 }
 
 impl Waiting {
@@ -288,10 +294,10 @@ impl<const D: usize> PairList<D> {
         let mut arranger = std::mem::take(&mut self.arranger);
         let begin = self.blocks.len();
         inner(self, &mut arranger, source);
-        self.close_block(&mut arranger, source);
+        self.close_group(&mut arranger, source);
         let (middle, border_pairs) = (self.blocks.len(), self.len());
         border(self, &mut arranger, source);
-        self.close_block(&mut arranger, source);
+        self.close_group(&mut arranger, source);
         (tile.inner, tile.border) = (begin..middle, middle..self.blocks.len());
         tile.border_pairs = border_pairs..self.len();
         tile.incoming.clear();
@@ -359,7 +365,7 @@ impl<const D: usize> PairList<D> {
         self.arranger.border.clear();
     }
 
-    /// Makes rows of the pairs of a first disk, which wait from `begin` on; a block that has no place for one is closed before it.
+    /// Makes rows of the pairs of a first disk, which wait from `begin` on; a group that has no place for one is closed before it.
     pub(super) fn add_rows(
         &mut self,
         first: u32,
@@ -370,8 +376,8 @@ impl<const D: usize> PairList<D> {
         let mut begin = begin;
         while begin < arranger.block.pairs.len() {
             let mut end = arranger.block.pairs.len().min(begin + LONGEST_ROW);
-            if end > BLOCK {
-                self.close_block(arranger, source);
+            if end > GROUP {
+                self.close_group(arranger, source);
                 (begin, end) = (0, end - begin);
             }
             arranger.block.rows.push((first, begin, end - begin));
@@ -379,39 +385,53 @@ impl<const D: usize> PairList<D> {
         }
     }
 
-    /// Writes the rows that wait as a block, the short ones first; pairs that are not in a row yet go on waiting.
-    fn close_block(&mut self, arranger: &mut Arranger<D>, source: &mut impl Source<D>) {
-        let Arranger { block, measured, .. } = arranger;
-        let Some(&(_, begin, length)) = block.rows.last() else { return };
-        let count = begin + length;
+    /// Writes the rows that wait as blocks, the short ones first; pairs that are not in a row yet go on waiting.
+    fn close_group(&mut self, arranger: &mut Arranger<D>, source: &mut impl Source<D>) {
+        let Arranger { block: Waiting { pairs, rows }, by_length, measured, .. } = arranger;
+        let Some(&(_, begin, length)) = rows.last() else { return };
+        sort_by_length(rows, by_length);
+        let mut rest = by_length.as_slice();
+        while !rest.is_empty() {
+            let mut filled = 0;
+            let fits = |&&(_, _, length): &&Row| {
+                filled += length;
+                filled <= BLOCK
+            };
+            let (block, later) = rest.split_at(rest.iter().take_while(fits).count());
+            self.add_block(block, pairs, measured, source);
+            rest = later;
+        }
+        rows.clear();
+        pairs.drain(..begin + length);
+    }
+
+    /// Writes rows, of which the short ones come first, as a block.
+    fn add_block(
+        &mut self,
+        rows: &[Row],
+        waiting: &[u32],
+        measured: &mut Measured<D>,
+        source: &mut impl Source<D>,
+    ) {
+        let (begin, first_row) = (self.len(), self.rows.len());
+        let count: usize = rows.iter().map(|&(_, _, length)| length).sum();
+        self.rows.resize(first_row + rows.len(), 0);
+        self.first.resize(begin + count, 0);
+        self.second.resize(begin + count, 0);
+        let (of_rows, first, second) = (&mut self.rows[first_row..], &mut self.first[begin..], &mut self.second[begin..]);
         let mut row_counts = [0u8; LONGEST_ROW];
-        for &(_, _, length) in &block.rows {
+        let mut pair = 0;
+        for (row, &(disk, begin, length)) in of_rows.iter_mut().zip(rows) {
+            *row = disk;
             row_counts[length - 1] += 1;
-        }
-        let (rows, pairs) = (self.rows.len(), self.len());
-        self.blocks.push(Block { pairs, pair_count: count, rows, row_counts });
-        // Where the next row of each length goes, and its pairs.
-        let (mut row, mut pair) = ([0; LONGEST_ROW], [0; LONGEST_ROW]);
-        for length in 1..LONGEST_ROW {
-            let shorter = usize::from(row_counts[length - 1]);
-            row[length] = row[length - 1] + shorter;
-            pair[length] = pair[length - 1] + shorter * length;
-        }
-        self.rows.resize(rows + block.rows.len(), 0);
-        self.first.resize(pairs + count, 0);
-        self.second.resize(pairs + count, 0);
-        let (of_rows, first, second) = (&mut self.rows[rows..], &mut self.first[pairs..], &mut self.second[pairs..]);
-        for &(disk, begin, length) in &block.rows {
-            let (row, pair) = (&mut row[length - 1], &mut pair[length - 1]);
-            of_rows[*row] = disk;
-            *row += 1;
             // Three pairs in the mean: a copy by a call takes longer.
             for place in 0..length {
-                first[*pair + place] = disk;
-                second[*pair + place] = block.pairs[begin + place];
+                first[pair + place] = disk;
+                second[pair + place] = waiting[begin + place];
             }
-            *pair += length;
+            pair += length;
         }
+        self.blocks.push(Block { pairs: begin, pair_count: count, rows: first_row, row_counts });
         source.measure(first, second, measured);
         for pair in second {
             *pair = source.second(*pair);
@@ -422,8 +442,24 @@ impl<const D: usize> PairList<D> {
         self.distance.extend_from_slice(&measured.distance[..count]);
         self.overlap.extend_from_slice(&measured.overlap[..count]);
         self.coefficient.extend_from_slice(&measured.coefficient[..count]);
-        block.rows.clear();
-        block.pairs.drain(..count);
+    }
+}
+
+/// Rows in the order of their lengths, those of one length as they were.
+fn sort_by_length(rows: &[Row], sorted: &mut Vec<Row>) {
+    let mut places = [0; LONGEST_ROW + 1];
+    for &(_, _, length) in rows {
+        places[length] += 1;
+    }
+    for length in 1..=LONGEST_ROW {
+        places[length] += places[length - 1];
+    }
+    sorted.clear();
+    sorted.resize(rows.len(), (0, 0, 0));
+    for &row in rows {
+        let place = &mut places[row.2 - 1];
+        sorted[*place] = row;
+        *place += 1;
     }
 }
 
