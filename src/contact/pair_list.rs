@@ -79,13 +79,14 @@ impl<const D: usize> Separations<D> {
     }
 }
 
-/// A block: where its pairs and rows begin, and how many rows of each length it has.
+/// A block: where its pairs and rows begin, how many rows it has and how many pairs each of them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block {
     pub pairs: usize,
     pub pair_count: usize,
     pub rows: usize,
-    pub row_counts: [u8; LONGEST_ROW],
+    pub row_count: usize,
+    pub row_length: usize,
 }
 
 /// A tile: its blocks, and what comes to its disks from others.
@@ -392,12 +393,9 @@ impl<const D: usize> PairList<D> {
         sort_by_length(rows, by_length);
         let mut rest = by_length.as_slice();
         while !rest.is_empty() {
-            let mut filled = 0;
-            let fits = |&&(_, _, length): &&Row| {
-                filled += length;
-                filled <= BLOCK
-            };
-            let (block, later) = rest.split_at(rest.iter().take_while(fits).count());
+            let row_length = rest[0].2;
+            let fits = |&&(_, _, length): &&Row| length == row_length;
+            let (block, later) = rest.split_at(rest.iter().take(BLOCK / row_length).take_while(fits).count());
             self.add_block(block, pairs, measured, source);
             rest = later;
         }
@@ -405,7 +403,7 @@ impl<const D: usize> PairList<D> {
         pairs.drain(..begin + length);
     }
 
-    /// Writes rows, of which the short ones come first, as a block.
+    /// Writes rows of one length as a block.
     fn add_block(
         &mut self,
         rows: &[Row],
@@ -414,16 +412,15 @@ impl<const D: usize> PairList<D> {
         source: &mut impl Source<D>,
     ) {
         let (begin, first_row) = (self.len(), self.rows.len());
-        let count: usize = rows.iter().map(|&(_, _, length)| length).sum();
+        let row_length = rows[0].2;
+        let count = rows.len() * row_length;
         self.rows.resize(first_row + rows.len(), 0);
         self.first.resize(begin + count, 0);
         self.second.resize(begin + count, 0);
         let (of_rows, first, second) = (&mut self.rows[first_row..], &mut self.first[begin..], &mut self.second[begin..]);
-        let mut row_counts = [0u8; LONGEST_ROW];
         let mut pair = 0;
         for (row, &(disk, begin, length)) in of_rows.iter_mut().zip(rows) {
             *row = disk;
-            row_counts[length - 1] += 1;
             // Three pairs in the mean: a copy by a call takes longer.
             for place in 0..length {
                 first[pair + place] = disk;
@@ -431,7 +428,7 @@ impl<const D: usize> PairList<D> {
             }
             pair += length;
         }
-        self.blocks.push(Block { pairs: begin, pair_count: count, rows: first_row, row_counts });
+        self.blocks.push(Block { pairs: begin, pair_count: count, rows: first_row, row_count: rows.len(), row_length });
         source.measure(first, second, measured);
         for pair in second {
             *pair = source.second(*pair);

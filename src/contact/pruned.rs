@@ -64,22 +64,19 @@ impl<const D: usize> Pruned<'_, D> {
             gather(&mut moved, block, (rows, &self.whole.second[range.clone()], 0), self.displacements);
             let excess = &mut excess[..block.pair_count];
             pulp::Arch::new().dispatch(Excess { near: self, first: range.start, moved: &moved, excess });
-            let (mut rows, mut pair) = (rows.iter(), range.start as u32);
-            let mut excess = excess.iter();
-            for (index, &count) in block.row_counts.iter().enumerate() {
-                for &first in rows.by_ref().take(usize::from(count)) {
-                    // Which are near cannot be guessed: they are picked without a branch. NaN counts as near.
-                    let (mut near, mut near_count) = ([0; LONGEST_ROW], 0);
-                    for &excess in excess.by_ref().take(index + 1) {
-                        near[near_count % LONGEST_ROW] = pair;
-                        let far = excess > 0.0;
-                        near_count += usize::from(!far);
-                        pair += 1;
-                    }
-                    let begin = arranger.block.pairs.len();
-                    arranger.block.pairs.extend(near.iter().take(near_count));
-                    list.add_rows(first, begin, arranger, self);
+            let mut pair = range.start as u32;
+            for (&first, excess) in rows.iter().zip(excess.chunks_exact(block.row_length)) {
+                // Which are near cannot be guessed: they are picked without a branch. NaN counts as near.
+                let (mut near, mut near_count) = ([0; LONGEST_ROW], 0);
+                for &excess in excess {
+                    near[near_count % LONGEST_ROW] = pair;
+                    let far = excess > 0.0;
+                    near_count += usize::from(!far);
+                    pair += 1;
                 }
+                let begin = arranger.block.pairs.len();
+                arranger.block.pairs.extend(near.iter().take(near_count));
+                list.add_rows(first, begin, arranger, self);
             }
         }
     }

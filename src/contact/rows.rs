@@ -8,32 +8,23 @@ use crate::vector::{Vector, difference, sum};
 /// First disks of the rows of a block.
 #[inline(always)]
 pub(super) fn rows_of<'a, const D: usize>(pairs: &'a PairList<D>, block: &Block) -> &'a [u32] {
-    let count: usize = block.row_counts.iter().map(|&count| usize::from(count)).sum();
-    &pairs.rows[block.rows..block.rows + count]
+    &pairs.rows[block.rows..block.rows + block.row_count]
 }
 
-/// Calls a function of the length of rows, as a constant, for the rows of each length: `$rows` and `$pairs` are where they are
-/// in their block.
-macro_rules! for_each_length {
-    ($block:expr, |$rows:ident, $pairs:ident| $call:ident($($argument:expr),*)) => {{
-        let (mut row, mut pair) = (0, 0);
-        for (index, &count) in $block.row_counts.iter().enumerate() {
-            let (count, length) = (usize::from(count), index + 1);
-            let ($rows, $pairs) = (row..row + count, pair..pair + count * length);
-            (row, pair) = ($rows.end, $pairs.end);
-            match length {
-                _ if count == 0 => {}
-                1 => $call::<D, 1>($($argument),*),
-                2 => $call::<D, 2>($($argument),*),
-                3 => $call::<D, 3>($($argument),*),
-                4 => $call::<D, 4>($($argument),*),
-                5 => $call::<D, 5>($($argument),*),
-                6 => $call::<D, 6>($($argument),*),
-                7 => $call::<D, 7>($($argument),*),
-                _ => $call::<D, LONGEST_ROW>($($argument),*),
-            }
+/// Calls a function of the length of the rows of a block, as a constant.
+macro_rules! with_length {
+    ($block:expr, $call:ident($($argument:expr),*)) => {
+        match $block.row_length {
+            1 => $call::<D, 1>($($argument),*),
+            2 => $call::<D, 2>($($argument),*),
+            3 => $call::<D, 3>($($argument),*),
+            4 => $call::<D, 4>($($argument),*),
+            5 => $call::<D, 5>($($argument),*),
+            6 => $call::<D, 6>($($argument),*),
+            7 => $call::<D, 7>($($argument),*),
+            _ => $call::<D, LONGEST_ROW>($($argument),*),
         }
-    }};
+    };
 }
 
 /// Relative displacements of the pairs of a block; disks are counted from `offset`.
@@ -43,22 +34,18 @@ pub(super) fn gather<const D: usize>(
     (rows, second, offset): (&[u32], &[u32], u32),
     displacements: &[Vector<D>],
 ) {
-    for_each_length!(block, |of_rows, of_pairs| gather_rows(
-        moved.each_mut().map(|column| &mut column[of_pairs.clone()]),
-        (&rows[of_rows], &second[of_pairs.clone()], offset),
-        displacements
-    ));
+    with_length!(block, gather_rows(moved, (rows, second, offset), displacements));
 }
 
 #[inline(always)]
 fn gather_rows<const D: usize, const LENGTH: usize>(
-    moved: [&mut [f64]; D],
+    moved: &mut [[f64; BLOCK]; D],
     (rows, second, offset): (&[u32], &[u32], u32),
     displacements: &[Vector<D>],
 ) {
     // Columns of one length and a plain index: of chained iterators some stay calls.
     let count = rows.len();
-    let moved = moved.map(|column| &mut column.as_chunks_mut::<LENGTH>().0[..count]);
+    let moved = moved.each_mut().map(|column| &mut column.as_chunks_mut::<LENGTH>().0[..count]);
     let second = &second.as_chunks::<LENGTH>().0[..count];
     for row in 0..count {
         let a = displacements[(rows[row] - offset) as usize];
@@ -78,21 +65,17 @@ pub(super) fn scatter<const D: usize>(
     (rows, second, offset): (&[u32], &[u32], u32),
     forces: &mut [Vector<D>],
 ) {
-    for_each_length!(block, |of_rows, of_pairs| scatter_rows(
-        pull.each_ref().map(|column| &column[of_pairs.clone()]),
-        (&rows[of_rows], &second[of_pairs.clone()], offset),
-        forces
-    ));
+    with_length!(block, scatter_rows(pull, (rows, second, offset), forces));
 }
 
 #[inline(always)]
 fn scatter_rows<const D: usize, const LENGTH: usize>(
-    pull: [&[f64]; D],
+    pull: &[[f64; BLOCK]; D],
     (rows, second, offset): (&[u32], &[u32], u32),
     forces: &mut [Vector<D>],
 ) {
     let count = rows.len();
-    let pull = pull.map(|column| &column.as_chunks::<LENGTH>().0[..count]);
+    let pull = pull.each_ref().map(|column| &column.as_chunks::<LENGTH>().0[..count]);
     let second = &second.as_chunks::<LENGTH>().0[..count];
     for row in 0..count {
         let first = (rows[row] - offset) as usize;
