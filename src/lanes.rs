@@ -23,14 +23,6 @@ pub fn sum<S: pulp::Simd>(simd: S, column: &[f64]) -> f64 {
     lanes.iter().sum()
 }
 
-/// The largest |a_k|, 0 of none; a NaN may get lost.
-#[inline(always)]
-pub fn largest<S: pulp::Simd>(simd: S, column: &[f64]) -> f64 {
-    let (vectors, rest) = S::as_simd_f64s(column);
-    let most = vectors.iter().fold(simd.splat_f64s(0.0), |most, &a| simd.max_f64s(most, simd.abs_f64s(a)));
-    rest.iter().fold(simd.reduce_max_f64s(most), |most, a| most.max(a.abs()))
-}
-
 /// Σ a_k b_k.
 #[inline(always)]
 pub fn dot_product<S: pulp::Simd>(simd: S, a: &[f64], b: &[f64]) -> f64 {
@@ -46,11 +38,11 @@ pub fn dot_product<S: pulp::Simd>(simd: S, a: &[f64], b: &[f64]) -> f64 {
     with_rest(lanes_of::<S>(&sums), a_rest, b_rest)
 }
 
-/// Σ a_k b_k, Σ a_k² and Σ b_k² in one pass.
+/// Σ a_k b_k, Σ a_k² and Σ b_k², and the largest |a_k| in one pass; 0 of none, and a NaN may get lost in the last.
 #[inline(always)]
-pub fn products<S: pulp::Simd>(simd: S, a: &[f64], b: &[f64]) -> [f64; 3] {
+pub fn products<S: pulp::Simd>(simd: S, a: &[f64], b: &[f64]) -> ([f64; 3], f64) {
     let zero = [simd.splat_f64s(0.0); LANES];
-    let (mut both, mut a_squared, mut b_squared) = (zero, zero, zero);
+    let (mut both, mut a_squared, mut b_squared, mut most) = (zero, zero, zero, zero[0]);
     let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
     let (a, b) = (S::as_simd_f64s(a.as_flattened()).0, S::as_simd_f64s(b.as_flattened()).0);
     let each = LANES / S::F64_LANES;
@@ -59,13 +51,15 @@ pub fn products<S: pulp::Simd>(simd: S, a: &[f64], b: &[f64]) -> [f64; 3] {
             both[k] = simd.add_f64s(both[k], simd.mul_f64s(a[k], b[k]));
             a_squared[k] = simd.add_f64s(a_squared[k], simd.mul_f64s(a[k], a[k]));
             b_squared[k] = simd.add_f64s(b_squared[k], simd.mul_f64s(b[k], b[k]));
+            most = simd.max_f64s(most, simd.abs_f64s(a[k]));
         }
     }
-    [
+    let sums = [
         with_rest(lanes_of::<S>(&both), a_rest, b_rest),
         with_rest(lanes_of::<S>(&a_squared), a_rest, a_rest),
         with_rest(lanes_of::<S>(&b_squared), b_rest, b_rest),
-    ]
+    ];
+    (sums, a_rest.iter().fold(simd.reduce_max_f64s(most), |most, a| most.max(a.abs())))
 }
 
 /// The lanes of vectors, however many a vector has.
@@ -102,8 +96,8 @@ mod tests {
         type Output = [f64; 6];
 
         fn with_simd<S: pulp::Simd>(self, simd: S) -> [f64; 6] {
-            let [both, a_squared, b_squared] = products(simd, self.0, self.1);
-            [sum(simd, self.0), dot_product(simd, self.0, self.1), both, a_squared, b_squared, largest(simd, self.0)]
+            let ([both, a_squared, b_squared], most) = products(simd, self.0, self.1);
+            [sum(simd, self.0), dot_product(simd, self.0, self.1), both, a_squared, b_squared, most]
         }
     }
 

@@ -404,20 +404,15 @@ impl<const D: usize> PairList<D> {
     }
 
     /// Writes rows of one length as a block.
-    fn add_block(
-        &mut self,
-        rows: &[Row],
-        waiting: &[u32],
-        measured: &mut Measured<D>,
-        source: &mut impl Source<D>,
-    ) {
+    fn add_block(&mut self, rows: &[Row], waiting: &[u32], measured: &mut Measured<D>, source: &mut impl Source<D>) {
         let (begin, first_row) = (self.len(), self.rows.len());
         let row_length = rows[0].2;
         let count = rows.len() * row_length;
         self.rows.resize(first_row + rows.len(), 0);
         self.first.resize(begin + count, 0);
         self.second.resize(begin + count, 0);
-        let (of_rows, first, second) = (&mut self.rows[first_row..], &mut self.first[begin..], &mut self.second[begin..]);
+        let (of_rows, first, second) =
+            (&mut self.rows[first_row..], &mut self.first[begin..], &mut self.second[begin..]);
         let mut pair = 0;
         for (row, &(disk, begin, length)) in of_rows.iter_mut().zip(rows) {
             *row = disk;

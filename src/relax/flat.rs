@@ -56,8 +56,7 @@ impl pulp::WithSimd for ProductsOf<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> Products {
-        let [power, force_squared, speed_squared] = lanes::products(simd, self.force, self.velocity);
-        let largest_force = lanes::largest(simd, self.force);
+        let ([power, force_squared, speed_squared], largest_force) = lanes::products(simd, self.force, self.velocity);
         Products { power, force_squared, speed_squared, largest_force }
     }
 }
