@@ -8,10 +8,9 @@
 //! D_ij is the separation of the anchors, u a displacement from them, δ⁰_ij the overlap at the anchors, known to full
 //! relative accuracy. The overlap follows from its change, so it carries the rounding of the displacements (10⁻¹⁶ w) and of
 //! itself, not that of the distance (10⁻¹⁶), nor that of positions in a box (10⁻¹⁴ and more). Pairs are taken in blocks of [`BLOCK`]: first the
-//! relative displacements are gathered, then all arithmetic is done column by column (which the compiler turns into vector
-//! instructions) and puts the force of each pair in the place of its displacement, then the forces are scattered. So gathering and
-//! scattering, which know no vectors, move as little as they can. The order of every sum is fixed, so the bits do not
-//! depend on the machine's vector width.
+//! relative displacements are gathered, then all arithmetic is done on whole vectors of pairs, column by column, and puts the force of each pair in the place of its displacement, then the forces are scattered. So gathering and
+//! scattering, which know no vectors, move as little as they can. The order of every sum is fixed and every operation rounded as
+//! IEEE 754 has it ([`roots`](crate::roots)), so the bits do not depend on the width of the machine's vectors.
 
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, Block, PairList, Tile};

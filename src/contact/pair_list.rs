@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! row    the pairs of one first disk, at most LONGEST_ROW of them
-//! block  at most BLOCK pairs: whole rows, the short ones first
+//! block  at most BLOCK pairs: rows of one length
 //! tile   a fixed number of disks in working order; first the blocks within it, then those across its border
 //! ```
 //!
-//! Rows of one length lie side by side, so the loop over a row has a fixed number of turns: the first disk is read and
-//! written once a row, and no branch is guessed wrong. A tile writes forces on its own disks only; what pairs across its
+//! Rows are sorted by length over groups of up to GROUP pairs, so the loop over the rows of a block has a fixed number of turns: the
+//! first disk is read and written once a row, and no branch is guessed wrong. A tile writes forces on its own disks only; what pairs across its
 //! border do to the disks of other tiles is kept apart and added afterwards, tile by tile. So tiles can be
 //! worked on side by side, and the order of every sum is that of one thread.
 
@@ -20,7 +20,7 @@ use crate::vector::Vector;
 /// Most pairs of a block; its columns stay in the nearest cache.
 pub const BLOCK: usize = 128;
 
-/// Most pairs of a group.
+/// Most pairs of a group: few blocks are not full, and its disks stay in the second cache.
 const GROUP: usize = 8192;
 
 /// Most pairs of a row; a disk with more has several rows.

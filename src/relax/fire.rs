@@ -28,7 +28,7 @@ use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
 use crate::packing::{Packing, PackingError};
 use crate::relax::flat::{Products, combine, kick_and_drift, products};
-use crate::relax::monitor::{LOOK_EVERY, Monitor};
+use crate::relax::monitor::Monitor;
 use crate::relax::{Cost, ForceLimit, Look, Outcome, Relaxer, Stop, Trace};
 use crate::vector::{Vector, larger};
 
@@ -181,8 +181,8 @@ impl Run<'_> {
         let (mut downhill, mut uphill) = (0, 0);
         let mut rest_energy = f64::INFINITY;
         let mut rest_scale = f64::INFINITY;
+        let mut due = true;
         loop {
-            let due = self.step_count.is_multiple_of(LOOK_EVERY);
             let totals = if due { Some(assembly.evaluate_totals()) } else { None };
             if !due && taken.is_none() {
                 assembly.evaluate();
@@ -288,10 +288,10 @@ impl Run<'_> {
             // No disk goes farther than √D times the longest way along an axis.
             let reach = time_step * (D as f64).sqrt();
             self.step_count += 1;
-            // A look takes totals, which take a pass of their own.
-            let looks = self.step_count.is_multiple_of(LOOK_EVERY);
+            due = monitor.is_due(self.step_count, sums.largest_force);
             let bound = reach * (keep * fastest + push * sums.largest_force) * BOUND_ROUNDING;
-            match if looks { None } else { assembly.advance(&mut velocity, bound, kick, of) } {
+            // A look takes totals, which take a pass of their own.
+            match if due { None } else { assembly.advance(&mut velocity, bound, kick, of) } {
                 Some((speeds, parts)) => {
                     fastest = speeds.into_iter().fold(0.0, larger);
                     taken = Some(parts.iter().fold(Products::ZERO, |sums, part| sums.with(part)));

@@ -13,6 +13,12 @@ use crate::vector::{Vector, dot, larger};
 /// Evaluations between two looks at the residual. An evaluation with a look costs half as much again.
 pub const LOOK_EVERY: usize = 20;
 
+/// Of so many looks one is made while forces are far from small.
+const FAR_LOOKS: usize = 4;
+
+/// A force is far from small if it is this many times what a look waits for \[1\].
+const FAR: f64 = 30.0;
+
 /// The watch of relaxers whose steps cost one evaluation.
 const WATCH: Watch = Watch { refresh_every: 10, patience: 150, waits_for_rattlers: false };
 
@@ -108,6 +114,19 @@ impl Monitor {
             return converged;
         }
         self.at_the_floor().then_some(Stop::RoundingFloor)
+    }
+
+    /// Whether a look is worth while after this step, at which the largest component of a net force is `largest_force`: every
+    /// [`LOOK_EVERY`] steps, but while some disk is far from rest one in [`FAR_LOOKS`] of these. A disk off the backbone may be
+    /// far from it for long.
+    pub fn is_due(&self, step: usize, largest_force: f64) -> bool {
+        let Residual { mean_contact_force: mean, .. } = self.last;
+        let awaited = match self.limit {
+            ForceLimit::Relative(limit) => limit * mean,
+            ForceLimit::Absolute(limit) => limit,
+        };
+        let far = largest_force > FAR * larger(awaited, self.floor * mean);
+        step.is_multiple_of(if far { FAR_LOOKS * LOOK_EVERY } else { LOOK_EVERY })
     }
 
     /// Whether a disk pushed from its site is too far from it. To be asked after every new list as well: between two looks a
