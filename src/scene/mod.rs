@@ -112,13 +112,13 @@ impl Default for Scene {
             sample: vec![
                 Sample {
                     name: "unjammed".into(),
-                    seed: 9,
+                    seed: 3,
                     source: Source::PackingFraction(0.82),
                     relaxer: RelaxerChoice::Fire(Fire::default()),
                 },
                 Sample {
                     name: "plastic".into(),
-                    seed: 14,
+                    seed: 26,
                     source: Source::Pressure(10.0),
                     relaxer: RelaxerChoice::Fire(Fire::default()),
                 },

@@ -402,6 +402,24 @@ fn a_relaxation_in_other_units_takes_the_same_steps_to_the_same_bits() {
 /// Steps, evaluations and lists of fixed scenes. They may move with the method, not by accident: within a quarter of what
 /// was counted when this was written.
 #[test]
+fn looks_are_rare_until_forces_are_small() {
+    let limit = 1e-8;
+    let mut looks: Vec<Look> = Vec::new();
+    let mut trace = |look: &Look| looks.push(*look);
+    let packing = points(256, 0.95, 16);
+    let outcome = fire(limit).relax(packing, &Hertzian::default(), &mut trace).expect("no coincidence");
+    assert!(matches!(outcome.stop, Stop::Converged(_)));
+    looks.retain(|look| !look.restart);
+    // "Small" is 30 times the limit, by the largest component of any disk a step before.
+    let far = looks.iter().filter(|look| look.residual > 100.0 * limit);
+    assert!(far.clone().count() > 3);
+    assert!(far.clone().all(|look| look.step_count % 80 == 0), "{:?}", far.collect::<Vec<_>>());
+    let near: Vec<usize> =
+        looks.iter().skip_while(|look| look.residual > 10.0 * limit).map(|look| look.step_count).collect();
+    assert!(near.len() > 1 && near.windows(2).all(|pair| pair[1] == pair[0] + 20), "{near:?}");
+}
+
+#[test]
 fn the_work_of_fixed_scenes_stays_what_it_was() {
     let counted = |what: &str, outcome: Outcome<Packing<2>>, steps: usize, evaluations: usize, lists: usize| {
         let cost = outcome.cost;
