@@ -324,6 +324,38 @@ mod tests {
         check_law(PowerLaw { energy_scale: 3.0, exponent: 3.7 });
     }
 
+    /// The forces of eight pairs, as vectors.
+    struct Forces<'a, L>(&'a L, [f64; 8], [f64; 8]);
+
+    impl<L: PairLaw> pulp::WithSimd for Forces<'_, L> {
+        type Output = Vec<f64>;
+
+        fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
+            let Forces(law, coefficients, overlaps) = self;
+            let vectors = S::as_simd_f64s(&coefficients).0.iter().zip(S::as_simd_f64s(&overlaps).0);
+            let forces: Vec<S::f64s> = vectors.map(|(&c, &overlap)| law.forces(simd, c, overlap)).collect();
+            cast_slice(&forces).to_vec()
+        }
+    }
+
+    fn check_vectors(law: &impl PairLaw) {
+        let overlaps = [0.0, 1e-20, 1e-9, 3e-3, 0.01, 0.1, 0.3, f64::NAN];
+        let coefficients = [0.3, 0.5, 0.7, 0.9, 1.1, 1.3, 1.5, 1.7].map(|radius| law.coefficient(radius, 0.5));
+        let found = pulp::Arch::new().dispatch(Forces(law, coefficients, overlaps));
+        for ((force, coefficient), overlap) in found.iter().zip(coefficients).zip(overlaps) {
+            let alone = law.force(coefficient, overlap);
+            assert!(force.to_bits() == alone.to_bits() || overlap.is_nan() && force.is_nan(), "{law:?} at {overlap}");
+        }
+    }
+
+    #[test]
+    fn the_forces_of_a_vector_are_those_of_its_pairs() {
+        check_vectors(&Hertzian::default());
+        check_vectors(&Hookean::default());
+        check_vectors(&PowerLaw { energy_scale: 3.0, exponent: 2.5 });
+        check_vectors(&crate::contact::OnSite { law: Hertzian::default(), coupling: -0.5 });
+    }
+
     #[test]
     fn the_power_law_is_the_formula_of_its_source() {
         // r = 1.1, σ = 1.2, α = 5/2, ε = 1: u = 0.4 (1 − r/σ)^2.5, to rounding times the powers taken.
