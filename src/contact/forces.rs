@@ -10,7 +10,7 @@
 //! itself, not that of the distance (10⁻¹⁶), nor that of positions in a box (10⁻¹⁴ and more). Pairs are taken in blocks of [`BLOCK`]: first the
 //! relative displacements are gathered, then all arithmetic is done on whole vectors of pairs, column by column, and puts the force of each pair in the place of its displacement, then the forces are scattered. So gathering and
 //! scattering, which know no vectors, move as little as they can. The order of every sum is fixed and every operation rounded as
-//! IEEE 754 has it ([`roots`](crate::roots)), so the bits do not depend on the width of the machine's vectors.
+//! IEEE 754 has it (`src/roots.rs`), so the bits do not depend on the width of the machine's vectors.
 
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, Block, PairList, Tile};
