@@ -139,10 +139,10 @@ impl<const D: usize> Default for Measured<D> {
     }
 }
 
-/// Rows waiting for their block or for the end of their tile.
+/// Rows waiting for the end of their group or of their tile.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Arranger<const D: usize> {
-    pub block: Waiting,
+    pub group: Waiting,
     border: Waiting,
     /// Room for the rows of the group that is being closed, and for its block.
     by_length: Vec<Row>,
@@ -152,7 +152,7 @@ pub(super) struct Arranger<const D: usize> {
 impl<const D: usize> Arranger<D> {
     /// Of the pairs of a first disk, which wait from `begin` on, sets those apart whose second disk is in another tile.
     fn set_border_apart(&mut self, first: u32, begin: usize, inside: impl Fn(u32) -> bool) {
-        let Arranger { block: Waiting { pairs, .. }, border, .. } = self;
+        let Arranger { group: Waiting { pairs, .. }, border, .. } = self;
         if pairs[begin..].iter().all(|&pair| inside(pair)) {
             return;
         }
@@ -165,13 +165,19 @@ impl<const D: usize> Arranger<D> {
         }
         pairs.truncate(kept);
         for part in (begin_across..border.pairs.len()).step_by(LONGEST_ROW) {
-            border.rows.push((first, part, LONGEST_ROW.min(border.pairs.len() - part)));
+            border.rows.push(Row { first, begin: part, length: LONGEST_ROW.min(border.pairs.len() - part) });
         }
     }
 }
 
-/// First disk, where its pairs begin, and how many there are.
-type Row = (u32, usize, usize);
+/// A row that waits.
+#[derive(Debug, Clone, Copy, Default)]
+struct Row {
+    first: u32,
+    /// Where its pairs wait.
+    begin: usize,
+    length: usize,
+}
 
 #[derive(Debug, Clone, Default)]
 pub(super) struct Waiting {
@@ -310,8 +316,8 @@ impl<const D: usize> PairList<D> {
         let firsts = disks.start..disks.end.min(first_count);
         let inner = |list: &mut Self, arranger: &mut Arranger<D>, search: &mut S| {
             for first in firsts {
-                let begin = arranger.block.pairs.len();
-                search.find(first, &mut arranger.block.pairs);
+                let begin = arranger.group.pairs.len();
+                search.find(first, &mut arranger.group.pairs);
                 let inside = |pair: u32| disks.contains(&(search.second(pair) as usize));
                 arranger.set_border_apart(first as u32, begin, inside);
                 list.add_rows(first as u32, begin, arranger, search);
@@ -319,9 +325,9 @@ impl<const D: usize> PairList<D> {
         };
         let border = |list: &mut Self, arranger: &mut Arranger<D>, search: &mut S| {
             let mut waiting = std::mem::take(&mut arranger.border);
-            for &(first, begin, count) in &waiting.rows {
-                let place = arranger.block.pairs.len();
-                arranger.block.pairs.extend_from_slice(&waiting.pairs[begin..begin + count]);
+            for &Row { first, begin, length } in &waiting.rows {
+                let place = arranger.group.pairs.len();
+                arranger.group.pairs.extend_from_slice(&waiting.pairs[begin..begin + length]);
                 list.add_rows(first, place, arranger, search);
             }
             waiting.clear();
@@ -362,7 +368,7 @@ impl<const D: usize> PairList<D> {
         self.coefficient.clear();
         self.rows.clear();
         self.blocks.clear();
-        self.arranger.block.clear();
+        self.arranger.group.clear();
         self.arranger.border.clear();
     }
 
@@ -375,27 +381,27 @@ impl<const D: usize> PairList<D> {
         source: &mut impl Source<D>,
     ) {
         let mut begin = begin;
-        while begin < arranger.block.pairs.len() {
-            let mut end = arranger.block.pairs.len().min(begin + LONGEST_ROW);
+        while begin < arranger.group.pairs.len() {
+            let mut end = arranger.group.pairs.len().min(begin + LONGEST_ROW);
             if end > GROUP {
                 self.close_group(arranger, source);
                 (begin, end) = (0, end - begin);
             }
-            arranger.block.rows.push((first, begin, end - begin));
+            arranger.group.rows.push(Row { first, begin, length: end - begin });
             begin = end;
         }
     }
 
     /// Writes the rows that wait as blocks, the short ones first; pairs that are not in a row yet go on waiting.
     fn close_group(&mut self, arranger: &mut Arranger<D>, source: &mut impl Source<D>) {
-        let Arranger { block: Waiting { pairs, rows }, by_length, measured, .. } = arranger;
-        let Some(&(_, begin, length)) = rows.last() else { return };
+        let Arranger { group: Waiting { pairs, rows }, by_length, measured, .. } = arranger;
+        let Some(&Row { begin, length, .. }) = rows.last() else { return };
         sort_by_length(rows, by_length);
         let mut rest = by_length.as_slice();
         while !rest.is_empty() {
-            let row_length = rest[0].2;
-            let fits = |&&(_, _, length): &&Row| length == row_length;
-            let (block, later) = rest.split_at(rest.iter().take(BLOCK / row_length).take_while(fits).count());
+            let length = rest[0].length;
+            let fits = |row: &&Row| row.length == length;
+            let (block, later) = rest.split_at(rest.iter().take(BLOCK / length).take_while(fits).count());
             self.add_block(block, pairs, measured, source);
             rest = later;
         }
@@ -406,7 +412,7 @@ impl<const D: usize> PairList<D> {
     /// Writes rows of one length as a block.
     fn add_block(&mut self, rows: &[Row], waiting: &[u32], measured: &mut Measured<D>, source: &mut impl Source<D>) {
         let (begin, first_row) = (self.len(), self.rows.len());
-        let row_length = rows[0].2;
+        let row_length = rows[0].length;
         let count = rows.len() * row_length;
         self.rows.resize(first_row + rows.len(), 0);
         self.first.resize(begin + count, 0);
@@ -414,7 +420,7 @@ impl<const D: usize> PairList<D> {
         let (of_rows, first, second) =
             (&mut self.rows[first_row..], &mut self.first[begin..], &mut self.second[begin..]);
         let mut pair = 0;
-        for (row, &(disk, begin, length)) in of_rows.iter_mut().zip(rows) {
+        for (row, &Row { first: disk, begin, length }) in of_rows.iter_mut().zip(rows) {
             *row = disk;
             // Three pairs in the mean: a copy by a call takes longer.
             for place in 0..length {
@@ -440,16 +446,16 @@ impl<const D: usize> PairList<D> {
 /// Rows in the order of their lengths, those of one length as they were.
 fn sort_by_length(rows: &[Row], sorted: &mut Vec<Row>) {
     let mut places = [0; LONGEST_ROW + 1];
-    for &(_, _, length) in rows {
-        places[length] += 1;
+    for row in rows {
+        places[row.length] += 1;
     }
     for length in 1..=LONGEST_ROW {
         places[length] += places[length - 1];
     }
     sorted.clear();
-    sorted.resize(rows.len(), (0, 0, 0));
+    sorted.resize(rows.len(), Row::default());
     for &row in rows {
-        let place = &mut places[row.2 - 1];
+        let place = &mut places[row.length - 1];
         sorted[*place] = row;
         *place += 1;
     }

@@ -74,8 +74,8 @@ impl<const D: usize> Pruned<'_, D> {
                     near_count += usize::from(!far);
                     pair += 1;
                 }
-                let begin = arranger.block.pairs.len();
-                arranger.block.pairs.extend(near.iter().take(near_count));
+                let begin = arranger.group.pairs.len();
+                arranger.group.pairs.extend(near.iter().take(near_count));
                 list.add_rows(first, begin, arranger, self);
             }
         }
