@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
-use crate::contact::damped_forces::add_damping;
+use crate::contact::damped_forces::{add_damping, damped_forces};
 use crate::contact::damping::{DampingChoice, DampingLaw};
 use crate::packing::{Packing, PackingError};
 use crate::relax::flat::products;
@@ -188,6 +188,8 @@ impl DampedDynamics {
                 break Stop::NoMinimum;
             }
         };
+        // Of the last step, wherever it stopped.
+        motion.assembly.evaluate();
         let net_forces = match self.net_force {
             NetForce::Elastic => &motion.assembly.forces[..mobile],
             NetForce::Total => &motion.accelerations[..mobile],
@@ -195,7 +197,7 @@ impl DampedDynamics {
         let (residual, rounding_floor) = monitor.finish(&motion.assembly, net_forces);
         let cost = Cost {
             step_count,
-            force_evaluation_count: evaluation_count,
+            force_evaluation_count: evaluation_count + 1,
             rebuild_count: motion.assembly.rebuild_count(),
             seconds: start.elapsed().as_secs_f64(),
             ..Cost::default()
@@ -207,7 +209,7 @@ impl DampedDynamics {
 /// A packing in motion: disks of mass 1 under elastic and damping forces.
 #[derive(Debug, Clone)]
 pub struct Motion<const D: usize, L, C> {
-    /// Where the disks are, and the elastic forces.
+    /// Where the disks are; the elastic forces are those of its last evaluation, which a step is not.
     pub assembly: Assembly<D, L>,
     /// Velocities in working order; those of held disks stay 0 \[length / time\].
     pub velocities: Vec<Vector<D>>,
@@ -288,16 +290,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         if self.assembly.keep_listed(time_step * speed_squared.sqrt())? {
             self.set_damping_coefficients();
         }
-        self.assembly.evaluate();
-        self.accelerations.copy_from_slice(&self.assembly.forces);
-        let dissipation = add_damping(
-            &self.damping,
-            self.assembly.pairs(),
-            &self.damping_coefficient,
-            &self.assembly.displacements,
-            &self.predicted,
-            &mut self.accelerations,
-        );
+        let dissipation = self.accelerate();
         self.dissipated += half * (self.dissipation + dissipation);
         self.dissipation = dissipation;
         let (a, v) = (self.accelerations[..mobile].as_flattened(), self.velocities[..mobile].as_flattened_mut());
@@ -305,6 +298,26 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
             *v += half * a;
         }
         Ok(())
+    }
+
+    /// Net forces where the disks are, of damping by the predicted velocities; what is lost to it is returned.
+    fn accelerate(&mut self) -> f64 {
+        let Motion { assembly, damping, damping_coefficient, predicted, accelerations, .. } = self;
+        if L::ON_SITE {
+            // Contacts and sites, then damping.
+            assembly.evaluate();
+            accelerations.copy_from_slice(&assembly.forces);
+            return add_damping(
+                damping,
+                assembly.pairs(),
+                damping_coefficient,
+                &assembly.displacements,
+                predicted,
+                accelerations,
+            );
+        }
+        let laws = (assembly.law(), &*damping);
+        damped_forces(laws, assembly.pairs(), damping_coefficient, &assembly.displacements, predicted, accelerations)
     }
 
     /// Net forces, damping included, after the last step \[force\].
