@@ -188,8 +188,11 @@ impl DampedDynamics {
                 break Stop::NoMinimum;
             }
         };
-        // Of the last step, wherever it stopped.
-        motion.assembly.evaluate();
+        if matches!(stop, Stop::StepLimit | Stop::NoMinimum) {
+            // No look came before: the elastic forces are of an earlier step.
+            motion.assembly.evaluate();
+            evaluation_count += 1;
+        }
         let net_forces = match self.net_force {
             NetForce::Elastic => &motion.assembly.forces[..mobile],
             NetForce::Total => &motion.accelerations[..mobile],
@@ -197,7 +200,7 @@ impl DampedDynamics {
         let (residual, rounding_floor) = monitor.finish(&motion.assembly, net_forces);
         let cost = Cost {
             step_count,
-            force_evaluation_count: evaluation_count + 1,
+            force_evaluation_count: evaluation_count,
             rebuild_count: motion.assembly.rebuild_count(),
             seconds: start.elapsed().as_secs_f64(),
             ..Cost::default()

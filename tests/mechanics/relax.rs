@@ -420,6 +420,19 @@ fn looks_are_rare_until_forces_are_small() {
 }
 
 #[test]
+fn a_damped_motion_cut_short_tells_the_residual_where_it_is() {
+    // Between two looks, of which the last was 17 steps before.
+    let cut = DampedDynamics { step_limit: 37, ..damped(1e-12) };
+    let law = Hertzian::default();
+    let outcome = relax(&cut, points(64, 0.95, 16), &law);
+    assert_eq!(outcome.stop, Stop::StepLimit);
+    let told = outcome.residual.relative();
+    let there = relax(&DampedDynamics { step_limit: 0, ..cut }, outcome.state, &law).residual.relative();
+    // Sums of a few contact forces, each to 10⁻¹⁵ of itself.
+    assert!((told - there).abs() < 1e-12 * there, "{told} told, {there} there");
+}
+
+#[test]
 fn the_work_of_fixed_scenes_stays_what_it_was() {
     let counted = |what: &str, outcome: Outcome<Packing<2>>, steps: usize, evaluations: usize, lists: usize| {
         let cost = outcome.cost;
