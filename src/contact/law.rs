@@ -41,7 +41,8 @@ pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
     /// Repulsive force F(δ) for an overlap δ ≥ 0 \[force\]. A NaN stays one.
     fn force(&self, coefficient: f64, overlap: f64) -> f64;
 
-    /// [`force`](Self::force) of a vector of pairs, with the same bits; one after the other, where a law has nothing faster.
+    /// [`force`](Self::force) of a vector of pairs, one a lane, with the same bits \[force\]; one after the other, where a law has
+    /// nothing faster.
     #[inline(always)]
     fn forces<S: Simd>(&self, _simd: S, coefficients: S::f64s, overlaps: S::f64s) -> S::f64s {
         let mut forces = overlaps;
