@@ -108,7 +108,6 @@ pub mod displacement;
 pub mod fit;
 pub mod inflation;
 pub mod io;
-mod lanes;
 pub mod lattice;
 #[cfg(feature = "linear")]
 pub mod linear;
@@ -125,10 +124,10 @@ pub mod reference;
 pub mod relax;
 pub mod report;
 pub mod response;
-mod roots;
 pub mod run;
 pub mod scene;
 mod side_by_side;
+mod simd;
 #[cfg(feature = "linear")]
 pub mod sparse;
 pub mod study;

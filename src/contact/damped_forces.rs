@@ -6,12 +6,13 @@
 //!
 //! Blocks, rows and columns as in [`super::forces`]; tiles play no part.
 
+use crate::contact::columns::{Anchors, Columns, with_anchors};
 use crate::contact::damping::DampingLaw;
 use crate::contact::forces::geometry;
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, PairList};
 use crate::contact::rows::{gather, rows_of, scatter};
-use crate::lanes;
+use crate::simd::lanes;
 use crate::vector::Vector;
 
 /// Net forces of elastic and damping contacts on all disks; the power damping takes, Σ c v_n², is returned. `forces` is
@@ -32,49 +33,36 @@ pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
 ) -> f64 {
     forces.fill([0.0; D]);
     let mut power = 0.0;
-    let mut columns = Columns::<D> { pull: [[0.0; BLOCK]; D], apace: [[0.0; BLOCK]; D], power: [0.0; BLOCK] };
+    let (mut columns, mut apace) = (Columns::<D>::new(), [[0.0; D]; BLOCK]);
     for block in &pairs.blocks {
-        let range = block.pairs..block.pairs + block.pair_count;
-        let (rows, second) = (rows_of(pairs, block), &pairs.second[range.clone()]);
+        let listed = block.pairs..block.pairs + block.pair_count;
+        let (rows, second) = (rows_of(pairs, block), &pairs.second[listed.clone()]);
         gather(&mut columns.pull, block, (rows, second, 0), displacements);
-        gather(&mut columns.apace, block, (rows, second, 0), velocities);
-        let listed = Listed {
-            separation: pairs.separation.columns().map(|column| &column[range.clone()]),
-            distance: &pairs.distance[range.clone()],
-            overlap: &pairs.overlap[range.clone()],
-            coefficient: &pairs.coefficient[range.clone()],
-            damping: &damping_coefficient[range],
-        };
-        power += pulp::Arch::new().dispatch(Arithmetic { laws: (law, damping), columns: &mut columns, listed });
+        gather(&mut apace, block, (rows, second, 0), velocities);
+        let (apace, coefficient) = (&apace[..block.pair_count], &damping_coefficient[listed]);
+        power += with_anchors(pairs, block, |anchors| {
+            let damping = Damping { law: damping, coefficient, apace };
+            pulp::Arch::new().dispatch(Arithmetic { law, damping, columns: &mut columns, anchors })
+        });
         scatter(&columns.pull, block, (rows, second, 0), forces);
     }
     power
 }
 
-/// One block of pairs, column by column.
-#[repr(align(64))]
-struct Columns<const D: usize> {
-    /// Relative displacement of the pair, then the force on its first disk.
-    pull: [[f64; BLOCK]; D],
-    /// Relative velocity.
-    apace: [[f64; BLOCK]; D],
-    power: [f64; BLOCK],
-}
-
-/// What the list has of each pair of a block.
-struct Listed<'a, const D: usize> {
-    separation: [&'a [f64]; D],
-    distance: &'a [f64],
-    overlap: &'a [f64],
-    coefficient: &'a [f64],
-    damping: &'a [f64],
-}
-
 /// The arithmetic of a block, which returns the power.
 struct Arithmetic<'a, const D: usize, L, C> {
-    laws: (&'a L, &'a C),
+    law: &'a L,
+    damping: Damping<'a, D, C>,
     columns: &'a mut Columns<D>,
-    listed: Listed<'a, D>,
+    anchors: Anchors<'a, D>,
+}
+
+/// Damping of the pairs of a block.
+struct Damping<'a, const D: usize, C> {
+    law: &'a C,
+    coefficient: &'a [f64],
+    /// Relative velocities.
+    apace: &'a [Vector<D>],
 }
 
 impl<const D: usize, L: PairLaw, C: DampingLaw> pulp::WithSimd for Arithmetic<'_, D, L, C> {
@@ -82,47 +70,35 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> pulp::WithSimd for Arithmetic<'_
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> f64 {
-        evaluate(self.laws, self.columns, &self.listed);
-        lanes::sum(simd, &self.columns.power[..self.listed.distance.len()])
+        self.columns.measure(simd, &self.anchors);
+        self.columns.press(simd, self.law, &self.anchors);
+        let mut power = [0.0; BLOCK];
+        let count = self.damping.apace.len();
+        self.damping.resist(self.columns, &mut power[..count]);
+        self.columns.pull(simd);
+        lanes::sum(simd, &power[..count])
     }
 }
 
-#[inline(always)]
-fn evaluate<const D: usize, L: PairLaw, C: DampingLaw>(
-    (law, damping): (&L, &C),
-    columns: &mut Columns<D>,
-    listed: &Listed<'_, D>,
-) {
-    let count = listed.distance.len();
-    let pulls = columns.pull.each_mut().map(|column| &mut column[..count]);
-    let (apaces, powers) = (columns.apace.each_ref().map(|column| &column[..count]), &mut columns.power[..count]);
-    let (separations, overlaps) = (listed.separation.map(|column| &column[..count]), &listed.overlap[..count]);
-    let (coefficients, dampings) = (&listed.coefficient[..count], &listed.damping[..count]);
-    for k in 0..count {
-        let mut apart = [0.0; D];
-        let (mut squared, mut change, mut along) = (0.0, 0.0, 0.0);
-        for d in 0..D {
-            let (anchored, moved) = (separations[d][k], pulls[d][k]);
-            apart[d] = anchored + moved;
-            squared += apart[d] * apart[d];
-            change += moved * (anchored + apart[d]);
-            along += apaces[d][k] * apart[d];
-        }
-        let distance = squared.sqrt();
-        let both = distance + listed.distance[k];
-        // One division, as in the loop without damping.
-        let inverse = 1.0 / (distance * both);
-        let gap = overlaps[k] - change * (distance * inverse);
-        // Written so that NaN stays NaN.
-        let overlap = if gap < 0.0 { 0.0 } else { gap };
-        let over_distance = both * inverse;
-        let normal_velocity = along * over_distance;
-        let resistance = damping.damping(dampings[k], overlap);
-        let resisted = if gap > 0.0 { resistance * normal_velocity } else { 0.0 };
-        powers[k] = resisted * normal_velocity;
-        let factor = (law.force(coefficients[k], overlap) - resisted) * over_distance;
-        for d in 0..D {
-            pulls[d][k] = factor * apart[d];
+impl<const D: usize, C: DampingLaw> Damping<'_, D, C> {
+    /// Takes the damping from the forces of a block that is measured.
+    #[inline(always)]
+    fn resist(&self, columns: &mut Columns<D>, power: &mut [f64]) {
+        let count = power.len();
+        let (apace, coefficient) = (&self.apace[..count], &self.coefficient[..count]);
+        let apart = columns.apart.each_ref().map(|column| &column[..count]);
+        let (overlap, force) = (&columns.overlap[..count], &mut columns.force[..count]);
+        let over_distance = &columns.factor[..count];
+        for k in 0..count {
+            let mut along = 0.0;
+            for d in 0..D {
+                along += apace[k][d] * apart[d][k];
+            }
+            let normal_velocity = along * over_distance[k];
+            let resistance = self.law.damping(coefficient[k], overlap[k]);
+            let resisted = if overlap[k] > 0.0 { resistance * normal_velocity } else { 0.0 };
+            power[k] = resisted * normal_velocity;
+            force[k] -= resisted;
         }
     }
 }

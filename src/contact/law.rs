@@ -14,14 +14,12 @@
 //!
 //! The law is a type: the loop over contacts is compiled once for each and holds no branch on it.
 
-use std::slice::{from_mut, from_ref};
-
 use pulp::Simd;
 use pulp::bytemuck::{cast_slice, cast_slice_mut};
 use serde::{Deserialize, Serialize};
 
 use crate::contact::damping::{DampingLaw, MassDamping, ViscoelasticDamping, effective_radius};
-use crate::roots::square_root;
+use crate::simd::roots::square_roots;
 
 /// What happens where two disks touch: a pure function of the overlap and of a coefficient made once a pair.
 pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
@@ -41,13 +39,13 @@ pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
     /// Repulsive force F(δ) for an overlap δ ≥ 0 \[force\]. A NaN stays one.
     fn force(&self, coefficient: f64, overlap: f64) -> f64;
 
-    /// [`force`](Self::force) of a vector of pairs, one a lane, with the same bits \[force\]; one after the other, where a law has
-    /// nothing faster.
+    /// [`force`](Self::force) of two vectors of pairs, one pair a lane, with the same bits \[force\]; one after the other, where a law
+    /// has nothing faster.
     #[inline(always)]
-    fn forces<S: Simd>(&self, _simd: S, coefficients: S::f64s, overlaps: S::f64s) -> S::f64s {
+    fn forces<S: Simd>(&self, _simd: S, coefficients: [S::f64s; 2], overlaps: [S::f64s; 2]) -> [S::f64s; 2] {
         let mut forces = overlaps;
-        let each: &[f64] = cast_slice(from_ref(&coefficients));
-        for (force, &coefficient) in cast_slice_mut(from_mut(&mut forces)).iter_mut().zip(each) {
+        let each: &[f64] = cast_slice(&coefficients);
+        for (force, &coefficient) in cast_slice_mut(&mut forces).iter_mut().zip(each) {
             *force = self.force(coefficient, *force);
         }
         forces
@@ -156,8 +154,9 @@ impl PairLaw for Hertzian {
         coefficient * overlap * overlap.sqrt()
     }
     #[inline(always)]
-    fn forces<S: Simd>(&self, simd: S, coefficients: S::f64s, overlaps: S::f64s) -> S::f64s {
-        simd.mul_f64s(simd.mul_f64s(coefficients, overlaps), square_root(simd, overlaps))
+    fn forces<S: Simd>(&self, simd: S, [c, d]: [S::f64s; 2], overlaps: [S::f64s; 2]) -> [S::f64s; 2] {
+        let ([a, b], [a_root, b_root]) = (overlaps, square_roots(simd, overlaps));
+        [simd.mul_f64s(simd.mul_f64s(c, a), a_root), simd.mul_f64s(simd.mul_f64s(d, b), b_root)]
     }
     #[inline(always)]
     fn exponent(&self) -> f64 {
@@ -185,8 +184,9 @@ impl PairLaw for Hookean {
         self.stiffness * overlap
     }
     #[inline(always)]
-    fn forces<S: Simd>(&self, simd: S, _coefficients: S::f64s, overlaps: S::f64s) -> S::f64s {
-        simd.mul_f64s(simd.splat_f64s(self.stiffness), overlaps)
+    fn forces<S: Simd>(&self, simd: S, _coefficients: [S::f64s; 2], [a, b]: [S::f64s; 2]) -> [S::f64s; 2] {
+        let stiffness = simd.splat_f64s(self.stiffness);
+        [simd.mul_f64s(stiffness, a), simd.mul_f64s(stiffness, b)]
     }
     #[inline(always)]
     fn exponent(&self) -> f64 {
@@ -325,23 +325,25 @@ mod tests {
         check_law(PowerLaw { energy_scale: 3.0, exponent: 3.7 });
     }
 
-    /// The forces of eight pairs, as vectors.
-    struct Forces<'a, L>(&'a L, [f64; 8], [f64; 8]);
+    /// The forces of sixteen pairs, as vectors.
+    struct Forces<'a, L>(&'a L, [f64; 16], [f64; 16]);
 
     impl<L: PairLaw> pulp::WithSimd for Forces<'_, L> {
         type Output = Vec<f64>;
 
         fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
             let Forces(law, coefficients, overlaps) = self;
-            let vectors = S::as_simd_f64s(&coefficients).0.iter().zip(S::as_simd_f64s(&overlaps).0);
-            let forces: Vec<S::f64s> = vectors.map(|(&c, &overlap)| law.forces(simd, c, overlap)).collect();
+            let (coefficients, overlaps) = (S::as_simd_f64s(&coefficients).0, S::as_simd_f64s(&overlaps).0);
+            let vectors = coefficients.as_chunks().0.iter().zip(overlaps.as_chunks().0);
+            let forces: Vec<S::f64s> = vectors.flat_map(|(&c, &overlap)| law.forces(simd, c, overlap)).collect();
             cast_slice(&forces).to_vec()
         }
     }
 
     fn check_vectors(law: &impl PairLaw) {
-        let overlaps = [0.0, 1e-20, 1e-9, 3e-3, 0.01, 0.1, 0.3, f64::NAN];
-        let coefficients = [0.3, 0.5, 0.7, 0.9, 1.1, 1.3, 1.5, 1.7].map(|radius| law.coefficient(radius, 0.5));
+        let some = [0.0, 1e-20, 1e-9, 3e-3, 0.01, 0.1, 0.3, f64::NAN];
+        let overlaps = std::array::from_fn(|pair| some[(pair + pair / 8) % 8]);
+        let coefficients = std::array::from_fn(|pair| law.coefficient(0.3 + 0.1 * pair as f64, 0.5));
         let found = pulp::Arch::new().dispatch(Forces(law, coefficients, overlaps));
         for ((force, coefficient), overlap) in found.iter().zip(coefficients).zip(overlaps) {
             let alone = law.force(coefficient, overlap);

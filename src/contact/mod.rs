@@ -4,6 +4,7 @@
 
 pub mod advance;
 pub mod assembly;
+mod columns;
 pub mod damped_forces;
 pub mod damping;
 pub mod forces;

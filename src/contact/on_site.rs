@@ -66,7 +66,7 @@ impl<L: PairLaw> PairLaw for OnSite<L> {
         self.law.force(coefficient, overlap)
     }
     #[inline(always)]
-    fn forces<S: pulp::Simd>(&self, simd: S, coefficients: S::f64s, overlaps: S::f64s) -> S::f64s {
+    fn forces<S: pulp::Simd>(&self, simd: S, coefficients: [S::f64s; 2], overlaps: [S::f64s; 2]) -> [S::f64s; 2] {
         self.law.forces(simd, coefficients, overlaps)
     }
     #[inline(always)]

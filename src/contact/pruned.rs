@@ -56,7 +56,7 @@ struct Pruned<'a, const D: usize> {
 impl<const D: usize> Pruned<'_, D> {
     /// Puts the near pairs of blocks in line, row by row.
     fn line_up(&mut self, blocks: &[Block], list: &mut PairList<D>, arranger: &mut Arranger<D>) {
-        let mut moved = [[0.0; BLOCK]; D];
+        let mut moved = [[0.0; D]; BLOCK];
         let mut excess = [0.0; BLOCK];
         for block in blocks {
             let range = block.pairs..block.pairs + block.pair_count;
@@ -98,7 +98,7 @@ impl<const D: usize> Source<D> for Pruned<'_, D> {
 struct Excess<'a, const D: usize> {
     near: &'a Pruned<'a, D>,
     first: usize,
-    moved: &'a [[f64; BLOCK]; D],
+    moved: &'a [Vector<D>; BLOCK],
     excess: &'a mut [f64],
 }
 
@@ -112,11 +112,11 @@ impl<const D: usize> pulp::WithSimd for Excess<'_, D> {
         let range = self.first..self.first + count;
         let separation = whole.separation.columns().map(|column| &column[range.clone()]);
         let (distance, overlap) = (&whole.distance[range.clone()], &whole.overlap[range]);
-        let moved = self.moved.each_ref().map(|column| &column[..count]);
+        let moved = &self.moved[..count];
         for k in 0..count {
             let mut squared = 0.0;
             for d in 0..D {
-                let apart = separation[d][k] + moved[d][k];
+                let apart = separation[d][k] + moved[k][d];
                 squared += apart * apart;
             }
             // R_i + R_j = |D| + δ⁰, to rounding: far less than a skin can spare.

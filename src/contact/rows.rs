@@ -29,7 +29,7 @@ macro_rules! with_length {
 
 /// Relative displacements of the pairs of a block; disks are counted from `offset`.
 pub(super) fn gather<const D: usize>(
-    moved: &mut [[f64; BLOCK]; D],
+    moved: &mut [Vector<D>; BLOCK],
     block: &Block,
     (rows, second, offset): (&[u32], &[u32], u32),
     displacements: &[Vector<D>],
@@ -39,28 +39,25 @@ pub(super) fn gather<const D: usize>(
 
 #[inline(always)]
 fn gather_rows<const D: usize, const LENGTH: usize>(
-    moved: &mut [[f64; BLOCK]; D],
+    moved: &mut [Vector<D>; BLOCK],
     (rows, second, offset): (&[u32], &[u32], u32),
     displacements: &[Vector<D>],
 ) {
     // Columns of one length and a plain index: of chained iterators some stay calls.
     let count = rows.len();
-    let moved = moved.each_mut().map(|column| &mut column.as_chunks_mut::<LENGTH>().0[..count]);
+    let moved = &mut moved.as_chunks_mut::<LENGTH>().0[..count];
     let second = &second.as_chunks::<LENGTH>().0[..count];
     for row in 0..count {
         let a = displacements[(rows[row] - offset) as usize];
         for k in 0..LENGTH {
-            let apart = difference(a, displacements[(second[row][k] - offset) as usize]);
-            for d in 0..D {
-                moved[d][row][k] = apart[d];
-            }
+            moved[row][k] = difference(a, displacements[(second[row][k] - offset) as usize]);
         }
     }
 }
 
 /// Adds the force of each pair of a block to its first disk and takes it from the second; disks are counted from `offset`.
 pub(super) fn scatter<const D: usize>(
-    pull: &[[f64; BLOCK]; D],
+    pull: &[Vector<D>; BLOCK],
     block: &Block,
     (rows, second, offset): (&[u32], &[u32], u32),
     forces: &mut [Vector<D>],
@@ -70,18 +67,18 @@ pub(super) fn scatter<const D: usize>(
 
 #[inline(always)]
 fn scatter_rows<const D: usize, const LENGTH: usize>(
-    pull: &[[f64; BLOCK]; D],
+    pull: &[Vector<D>; BLOCK],
     (rows, second, offset): (&[u32], &[u32], u32),
     forces: &mut [Vector<D>],
 ) {
     let count = rows.len();
-    let pull = pull.each_ref().map(|column| &column.as_chunks::<LENGTH>().0[..count]);
+    let pull = &pull.as_chunks::<LENGTH>().0[..count];
     let second = &second.as_chunks::<LENGTH>().0[..count];
     for row in 0..count {
         let first = (rows[row] - offset) as usize;
         let mut total = forces[first];
         for k in 0..LENGTH {
-            let pull: Vector<D> = std::array::from_fn(|d| pull[d][row][k]);
+            let pull = pull[row][k];
             total = sum(total, pull);
             let other = &mut forces[(second[row][k] - offset) as usize];
             *other = difference(*other, pull);

@@ -1,6 +1,7 @@
 //! Sums of stiffness over the contacts of each disk, by the blocks and tiles of the hot loop.
 
-use crate::contact::forces::{Columns, fill};
+use crate::contact::columns::Columns;
+use crate::contact::forces::fill;
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, PairList, Tile};
 use crate::side_by_side;
@@ -54,7 +55,7 @@ impl<const D: usize, L: PairLaw, W: Fn(usize, f64, f64) -> f64> Task<'_, D, L, W
         for block in tile.inner.start..tile.border.end {
             let border = tile.border.contains(&block);
             let block = &pairs.blocks[block];
-            let _ = fill::<D, L, true>(self.law, pairs, (self.displacements, 0), block, &mut columns);
+            let _ = fill(self.law, pairs, (self.displacements, 0), block, &mut columns);
             pulp::Arch::new().dispatch(Stiffnesses { law: self.law, columns: &columns, stiffness });
             for (k, &stiffness) in stiffness[..block.pair_count].iter().enumerate() {
                 let pair = block.pairs + k;

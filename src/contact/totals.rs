@@ -1,9 +1,9 @@
 //! [`Totals`]: energy, virial and contact forces, summed block by block in the pass that finds the forces.
 
-use crate::contact::forces::Columns;
+use crate::contact::columns::Columns;
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::BLOCK;
-use crate::lanes;
+use crate::simd::lanes;
 
 /// What the loop sums beside the forces.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,8 @@
 //! Sums over flat columns in a fixed order, in lanes the compiler can turn into vector instructions. Long columns are cut into
 //! pieces of a fixed length, which may be worked on side by side; their sums are added in order.
 
-use crate::lanes;
 use crate::side_by_side;
+use crate::simd::lanes;
 use crate::vector::larger;
 
 /// Length of a piece of a long column; fixed, so the bits do not depend on the number of threads.

@@ -1,8 +1,8 @@
 //! Square roots and reciprocals of vectors with the bits of the machine's own instructions, and faster where these are slow.
 //!
 //! Processors with vectors of 512 bits have an instruction for eight square roots and one for eight quotients that take 16 to 30
-//! cycles, one at a time, and begin two fused products each cycle. There a first guess of 14 bits is refined by products, beside what
-//! the unit for roots and quotients is doing:
+//! cycles, one at a time, and begin two fused products each cycle. There a first guess of 14 bits is refined by products, and every
+//! other root left to the unit for roots, which works beside them:
 //!
 //! ```text
 //! √a    g = a y, h = y/2, y ≈ 1/√a      twice: e = 1/2 − g h, g ← g + g e, h ← h + h e      at last: g + (a − g²) h
@@ -18,14 +18,15 @@
 
 use pulp::Simd;
 
-/// √a of numbers a ≥ 0, the bits of [`f64::sqrt`] for 0 and from 2⁻⁹⁶⁰ to 2¹⁰⁰⁰; below within a unit in the last place, above perhaps NaN.
+/// √a of two vectors of numbers a ≥ 0, the bits of [`f64::sqrt`] for 0 and from 2⁻⁹⁶⁰ to 2¹⁰⁰⁰; below within a unit in the last place,
+/// above perhaps NaN. The unit for roots takes one of them meanwhile.
 #[inline(always)]
-pub fn square_root<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
+pub fn square_roots<S: Simd>(simd: S, [a, b]: [S::f64s; 2]) -> [S::f64s; 2] {
     #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = long::vectors(&simd) {
-        return pulp::bytemuck::cast(long::square_root(simd, pulp::bytemuck::cast(a)));
+    if let Some(long) = super::of_512_bits(simd) {
+        return [pulp::bytemuck::cast(long::square_root(long, pulp::bytemuck::cast(a))), simd.sqrt_f64s(b)];
     }
-    simd.sqrt_f64s(a)
+    [simd.sqrt_f64s(a), simd.sqrt_f64s(b)]
 }
 
 /// 1/a, the bits of a division for |a| from 2⁻¹⁰⁰⁰ to 2¹⁰⁰⁰, except for the last number below a power of two, where it may be the
@@ -33,7 +34,7 @@ pub fn square_root<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
 #[inline(always)]
 pub fn reciprocal<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
     #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = long::vectors(&simd) {
+    if let Some(simd) = super::of_512_bits(simd) {
         return pulp::bytemuck::cast(long::reciprocal(simd, pulp::bytemuck::cast(a)));
     }
     simd.div_f64s(simd.splat_f64s(1.0), a)
@@ -44,7 +45,7 @@ pub fn reciprocal<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
 pub fn positive_part<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
     let zero = simd.splat_f64s(0.0);
     #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = long::vectors(&simd) {
+    if let Some(simd) = super::of_512_bits(simd) {
         // Of two numbers of which one is NaN, this instruction takes the second.
         let (zero, a) = (pulp::bytemuck::cast(zero), pulp::bytemuck::cast(a));
         return pulp::bytemuck::cast(simd.avx512f._mm512_max_pd(zero, a));
@@ -54,16 +55,9 @@ pub fn positive_part<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
 
 #[cfg(target_arch = "x86_64")]
 mod long {
-    use std::any::Any;
     use std::arch::x86_64::{__m512d, _CMP_NEQ_UQ};
 
     use pulp::x86::V4;
-
-    /// Vectors of 512 bits, if that is what `simd` stands for: known when the code is made.
-    #[inline(always)]
-    pub fn vectors<S: Any>(simd: &S) -> Option<V4> {
-        (simd as &dyn Any).downcast_ref::<V4>().copied()
-    }
 
     #[inline(always)]
     pub fn square_root(simd: V4, a: __m512d) -> __m512d {
@@ -116,7 +110,11 @@ mod tests {
                 let vectors: Vec<S::f64s> = column.iter().map(|&a| of(a)).collect();
                 pulp::bytemuck::cast_slice(&vectors).to_vec()
             };
-            [list(&|a| square_root(simd, a)), list(&|a| reciprocal(simd, a)), list(&|a| positive_part(simd, a))]
+            [
+                list(&|a| square_roots(simd, [a, a])[0]),
+                list(&|a| reciprocal(simd, a)),
+                list(&|a| positive_part(simd, a)),
+            ]
         }
     }
 

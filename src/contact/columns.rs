@@ -1,0 +1,162 @@
+//! One block of pairs, column by column: how far apart its disks are and how much they overlap.
+//!
+//! ```text
+//! r_ij = D_ij + w     w = u_i − u_j     δ = δ⁰_ij − w·(D_ij + r_ij) / (|r_ij| + |D_ij|)
+//! ```
+//!
+//! D_ij is the separation of the anchors, u a displacement from them, δ⁰_ij the overlap at the anchors, known to full
+//! relative accuracy. The overlap follows from its change, so it carries the rounding of the displacements (10⁻¹⁶ w) and of
+//! itself, not that of the distance (10⁻¹⁶), nor that of positions in a box (10⁻¹⁴ and more).
+//!
+//! The arithmetic goes through the block several times, a few operations each: those of one vector of pairs wait for each other, and
+//! a processor has few of the next ones in view if they are many. Meanwhile it asks for what the list has of the block after this one;
+//! coefficients, one column that some laws do not read, it finds by itself.
+
+use pulp::Simd;
+
+use crate::contact::law::PairLaw;
+use crate::contact::pair_list::{BLOCK, Block, PairList};
+use crate::simd::roots::{positive_part, reciprocal, square_roots};
+use crate::simd::{components, prefetch};
+use crate::vector::Vector;
+
+/// One block of pairs, column by column.
+#[repr(align(64))]
+pub(super) struct Columns<const D: usize> {
+    /// Relative displacement of the pair, then the force on its first disk: vectors one after the other.
+    pub pull: [Vector<D>; BLOCK],
+    /// Separation.
+    pub apart: [[f64; BLOCK]; D],
+    /// Overlap, 0 of disks apart.
+    pub overlap: [f64; BLOCK],
+    pub force: [f64; BLOCK],
+    /// One over the distance, then force over distance.
+    pub factor: [f64; BLOCK],
+}
+
+/// What the list has of each pair of a block: whole columns, whatever stands in the places of a block that is not full.
+pub(super) struct Anchors<'a, const D: usize> {
+    separation: [&'a [f64]; D],
+    distance: &'a [f64],
+    overlap: &'a [f64],
+    coefficient: &'a [f64],
+}
+
+/// Calls a function of what a list has of a block.
+#[inline(always)]
+pub(super) fn with_anchors<const D: usize, T>(
+    pairs: &PairList<D>,
+    block: &Block,
+    call: impl FnOnce(Anchors<'_, D>) -> T,
+) -> T {
+    let whole = block.pairs..block.pairs + BLOCK;
+    if whole.end <= pairs.len() {
+        // A block that is not full goes on into the next one; what comes of that is not used.
+        return call(Anchors {
+            separation: pairs.separation.columns().map(|column| &column[whole.clone()]),
+            distance: &pairs.distance[whole.clone()],
+            overlap: &pairs.overlap[whole.clone()],
+            coefficient: &pairs.coefficient[whole],
+        });
+    }
+    let padded = |column: &[f64]| {
+        let mut whole = [1.0; BLOCK];
+        whole[..block.pair_count].copy_from_slice(&column[block.pairs..block.pairs + block.pair_count]);
+        whole
+    };
+    let separation = pairs.separation.columns().map(padded);
+    call(Anchors {
+        separation: separation.each_ref().map(|column| &column[..]),
+        distance: &padded(&pairs.distance),
+        overlap: &padded(&pairs.overlap),
+        coefficient: &padded(&pairs.coefficient),
+    })
+}
+
+impl<const D: usize> Columns<D> {
+    #[inline(always)]
+    pub fn new() -> Self {
+        Columns {
+            pull: [[0.0; D]; BLOCK],
+            apart: [[0.0; BLOCK]; D],
+            overlap: [0.0; BLOCK],
+            force: [0.0; BLOCK],
+            factor: [0.0; BLOCK],
+        }
+    }
+
+    /// From the relative displacements: separations, overlaps, and in `factor` one over the distances.
+    #[inline(always)]
+    pub fn measure<S: Simd>(&mut self, simd: S, anchors: &Anchors<'_, D>) {
+        // As many turns as a block has places, known beforehand: no check.
+        let count = BLOCK / S::F64_LANES;
+        let read = |column| &S::as_simd_f64s(column).0[..count];
+        let anchor_separation = anchors.separation.map(read);
+        let (anchor_distance, anchor_overlap) = (read(anchors.distance), read(anchors.overlap));
+        let moved = &S::as_simd_f64s(self.pull.as_flattened()).0[..D * count];
+        let apart = self.apart.each_mut().map(|column| S::as_mut_simd_f64s(column).0);
+        let (overlap, _) = S::as_mut_simd_f64s(&mut self.overlap);
+        let (factor, _) = S::as_mut_simd_f64s(&mut self.factor);
+        let zero = simd.splat_f64s(0.0);
+        for k in (0..count).step_by(2) {
+            let mut squares = [zero; 2];
+            for (half, square) in squares.iter_mut().enumerate() {
+                let k = k + half;
+                let moved = components::split::<S, D>(simd, &moved[D * k..D * (k + 1)]);
+                let mut change = zero;
+                for d in 0..D {
+                    let anchored = anchor_separation[d][k];
+                    let along = simd.add_f64s(anchored, moved[d]);
+                    *square = simd.add_f64s(*square, simd.mul_f64s(along, along));
+                    change = simd.add_f64s(change, simd.mul_f64s(moved[d], simd.add_f64s(anchored, along)));
+                    apart[d][k] = along;
+                    prefetch(simd, anchors.separation[d], BLOCK + k * S::F64_LANES);
+                }
+                overlap[k] = change;
+            }
+            [factor[k], factor[k + 1]] = square_roots(simd, squares);
+        }
+        for k in 0..count {
+            let distance = factor[k];
+            let both = simd.add_f64s(distance, anchor_distance[k]);
+            // One reciprocal for change / both and 1 / distance: divisions and roots are what the loop waits for.
+            let inverse = reciprocal(simd, simd.mul_f64s(distance, both));
+            let change = simd.mul_f64s(overlap[k], simd.mul_f64s(distance, inverse));
+            overlap[k] = positive_part(simd, simd.sub_f64s(anchor_overlap[k], change));
+            factor[k] = simd.mul_f64s(both, inverse);
+            prefetch(simd, anchors.distance, BLOCK + k * S::F64_LANES);
+            prefetch(simd, anchors.overlap, BLOCK + k * S::F64_LANES);
+        }
+    }
+
+    /// From the overlaps: the forces of a law.
+    #[inline(always)]
+    pub fn press<S: Simd>(&mut self, simd: S, law: &impl PairLaw, anchors: &Anchors<'_, D>) {
+        let count = BLOCK / S::F64_LANES;
+        let coefficient = &S::as_simd_f64s(anchors.coefficient).0[..count];
+        let overlap = &S::as_simd_f64s(&self.overlap).0[..count];
+        let (force, _) = S::as_mut_simd_f64s(&mut self.force);
+        for k in (0..count).step_by(2) {
+            let (coefficients, overlaps) = ([coefficient[k], coefficient[k + 1]], [overlap[k], overlap[k + 1]]);
+            [force[k], force[k + 1]] = law.forces(simd, coefficients, overlaps);
+        }
+    }
+
+    /// From the forces: force over distance in `factor`, and the force on each first disk in `pull`.
+    #[inline(always)]
+    pub fn pull<S: Simd>(&mut self, simd: S) {
+        let count = BLOCK / S::F64_LANES;
+        let apart = self.apart.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
+        let force = &S::as_simd_f64s(&self.force).0[..count];
+        let factor = &mut S::as_mut_simd_f64s(&mut self.factor).0[..count];
+        let pull = &mut S::as_mut_simd_f64s(self.pull.as_flattened_mut()).0[..D * count];
+        for k in 0..count {
+            factor[k] = simd.mul_f64s(force[k], factor[k]);
+            let mut along = [factor[k]; D];
+            for d in 0..D {
+                along[d] = simd.mul_f64s(factor[k], apart[d][k]);
+            }
+            components::join(simd, &along, &mut pull[D * k..D * (k + 1)]);
+        }
+    }
+}
