@@ -11,7 +11,7 @@ use crate::contact::damping::DampingLaw;
 use crate::contact::forces::geometry;
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, PairList};
-use crate::contact::rows::{gather, rows_of, scatter};
+use crate::contact::rows::{gather, scatter};
 use crate::simd::lanes;
 use crate::vector::Vector;
 
@@ -36,15 +36,14 @@ pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
     let (mut columns, mut apace) = (Columns::<D>::new(), [[0.0; D]; BLOCK]);
     for block in &pairs.blocks {
         let listed = block.pairs..block.pairs + block.pair_count;
-        let (rows, second) = (rows_of(pairs, block), &pairs.second[listed.clone()]);
-        gather(&mut columns.pull, block, (rows, second, 0), displacements);
-        gather(&mut apace, block, (rows, second, 0), velocities);
+        gather(&mut columns.pull, pairs, block, (displacements, 0));
+        gather(&mut apace, pairs, block, (velocities, 0));
         let (apace, coefficient) = (&apace[..block.pair_count], &damping_coefficient[listed]);
         power += with_anchors(pairs, block, |anchors| {
             let damping = Damping { law: damping, coefficient, apace };
             pulp::Arch::new().dispatch(Arithmetic { law, damping, columns: &mut columns, anchors })
         });
-        scatter(&columns.pull, block, (rows, second, 0), forces);
+        scatter(&columns.pull, pairs, block, (forces, 0));
     }
     power
 }

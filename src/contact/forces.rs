@@ -12,7 +12,7 @@
 use crate::contact::columns::{Anchors, Columns, with_anchors};
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, Block, PairList, Tile};
-use crate::contact::rows::{gather, rows_of, scatter};
+use crate::contact::rows::{gather, scatter};
 use crate::contact::totals::{Tally, Totals};
 use crate::side_by_side;
 use crate::vector::{Vector, difference, sum};
@@ -115,8 +115,8 @@ pub(super) fn sweep_inner<const D: usize, L: PairLaw, const TOTALS: bool>(
     forces.fill([0.0; D]);
     let mut columns = Columns::<D>::new();
     for block in &task.pairs.blocks[task.tile.inner.clone()] {
-        let seconds = evaluate_block(task, block, &mut columns, TOTALS.then_some(&mut *totals));
-        scatter(&columns.pull, block, (rows_of(task.pairs, block), seconds, task.offset), forces);
+        evaluate_block(task, block, &mut columns, TOTALS.then_some(&mut *totals));
+        scatter(&columns.pull, task.pairs, block, (forces, task.offset));
     }
 }
 
@@ -129,7 +129,7 @@ pub(super) fn sweep_border<const D: usize, L: PairLaw, const TOTALS: bool>(
 ) {
     let mut columns = Columns::<D>::new();
     for block in &task.pairs.blocks[task.tile.border.clone()] {
-        let _ = evaluate_block(task, block, &mut columns, TOTALS.then_some(&mut *totals));
+        evaluate_block(task, block, &mut columns, TOTALS.then_some(&mut *totals));
         let first = &task.pairs.first[block.pairs..block.pairs + block.pair_count];
         let room = &mut across[block.pairs - task.tile.border_pairs.start..];
         scatter_to_border(&columns.pull, (first, task.offset), room, forces);
@@ -144,32 +144,29 @@ pub(super) fn add_incoming<const D: usize>(tile: &Tile, offset: usize, across: &
     }
 }
 
-/// Fills the columns of a block and adds to the totals, if they are asked for; its second disks are returned.
-fn evaluate_block<'a, const D: usize, L: PairLaw>(
-    task: &Task<'a, D, L>,
+/// Fills the columns of a block and adds to the totals, if they are asked for.
+fn evaluate_block<const D: usize, L: PairLaw>(
+    task: &Task<'_, D, L>,
     block: &Block,
     columns: &mut Columns<D>,
     totals: Option<&mut Totals<D>>,
-) -> &'a [u32] {
-    let second = fill(task.law, task.pairs, task.displacements, block, columns);
+) {
+    fill(task.law, task.pairs, task.displacements, block, columns);
     if let Some(totals) = totals {
         pulp::Arch::new().dispatch(Tally { law: task.law, columns, count: block.pair_count, totals });
     }
-    second
 }
 
-/// Fills the columns of a block; its second disks are returned.
-pub(super) fn fill<'a, const D: usize, L: PairLaw>(
+/// Fills the columns of a block from displacements that begin with those of a disk.
+pub(super) fn fill<const D: usize, L: PairLaw>(
     law: &L,
-    pairs: &'a PairList<D>,
-    (displacements, offset): (&[Vector<D>], u32),
+    pairs: &PairList<D>,
+    displacements: (&[Vector<D>], u32),
     block: &Block,
     columns: &mut Columns<D>,
-) -> &'a [u32] {
-    let second = &pairs.second[block.pairs..block.pairs + block.pair_count];
-    gather(&mut columns.pull, block, (rows_of(pairs, block), second, offset), displacements);
+) {
+    gather(&mut columns.pull, pairs, block, displacements);
     with_anchors(pairs, block, |anchors| pulp::Arch::new().dispatch(Arithmetic { law, columns, anchors }));
-    second
 }
 
 /// The arithmetic of a block as a job that is compiled for each vector width the machine may have, and started for the widest

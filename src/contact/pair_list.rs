@@ -44,8 +44,9 @@ pub struct PairList<const D: usize> {
     pub overlap: Vec<f64>,
     /// Coefficient of the contact law for this pair \[force / length^(α−1)\].
     pub coefficient: Vec<f64>,
-    /// First disk of each row.
+    /// First disk of each row and second disk of each pair, counted from the origin of the block.
     pub(super) rows: Vec<u32>,
+    pub(super) ends: Vec<u32>,
     pub(super) blocks: Vec<Block>,
     pub(super) tiles: Vec<Tile>,
     /// Disks of a tile.
@@ -79,7 +80,8 @@ impl<const D: usize> Separations<D> {
     }
 }
 
-/// A block: where its pairs and rows begin, how many rows it has and how many pairs each of them.
+/// A block: where its pairs and rows begin, how many rows it has and how many pairs each of them; and the disk from which its rows
+/// and ends are counted, the first one of the tile where all of them are in one, so that the loop over a tile has nothing to take off.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block {
     pub pairs: usize,
@@ -87,6 +89,7 @@ pub(super) struct Block {
     pub rows: usize,
     pub row_count: usize,
     pub row_length: usize,
+    pub origin: u32,
 }
 
 /// A tile: its blocks, and what comes to its disks from others.
@@ -147,6 +150,8 @@ pub(super) struct Arranger<const D: usize> {
     /// Room for the rows of the group that is being closed, and for its block.
     by_length: Vec<Row>,
     measured: Measured<D>,
+    /// Origin of the blocks that are made.
+    origin: u32,
 }
 
 impl<const D: usize> Arranger<D> {
@@ -290,19 +295,22 @@ impl<const D: usize> PairList<D> {
         }
     }
 
-    /// Adds the blocks of a tile: what `inner` puts in line within it, then what `border` puts in line across its border.
+    /// Adds the blocks of a tile, which begins with disk `origin`: what `inner` puts in line within it, then what `border` puts in
+    /// line across its border.
     pub(super) fn add_blocks<S: Source<D>>(
         &mut self,
-        tile: &mut Tile,
+        (tile, origin): (&mut Tile, usize),
         source: &mut S,
         inner: impl FnOnce(&mut Self, &mut Arranger<D>, &mut S),
         border: impl FnOnce(&mut Self, &mut Arranger<D>, &mut S),
     ) {
         let mut arranger = std::mem::take(&mut self.arranger);
         let begin = self.blocks.len();
+        arranger.origin = origin as u32;
         inner(self, &mut arranger, source);
         self.close_group(&mut arranger, source);
         let (middle, border_pairs) = (self.blocks.len(), self.len());
+        arranger.origin = 0;
         border(self, &mut arranger, source);
         self.close_group(&mut arranger, source);
         (tile.inner, tile.border) = (begin..middle, middle..self.blocks.len());
@@ -333,7 +341,7 @@ impl<const D: usize> PairList<D> {
             waiting.clear();
             arranger.border = waiting;
         };
-        self.add_blocks(tile, &mut search, inner, border);
+        self.add_blocks((tile, disks.start), &mut search, inner, border);
     }
 
     /// Puts lists of one tile each one after the other.
@@ -351,6 +359,7 @@ impl<const D: usize> PairList<D> {
         }
         join_column(&mut self.first, 0, parts, |part| &part.first);
         join_column(&mut self.second, 0, parts, |part| &part.second);
+        join_column(&mut self.ends, 0, parts, |part| &part.ends);
         for d in 0..D {
             join_column(&mut self.separation.0[d], 0.0, parts, |part| &part.separation.0[d]);
         }
@@ -367,6 +376,7 @@ impl<const D: usize> PairList<D> {
         self.overlap.clear();
         self.coefficient.clear();
         self.rows.clear();
+        self.ends.clear();
         self.blocks.clear();
         self.arranger.group.clear();
         self.arranger.border.clear();
@@ -394,7 +404,7 @@ impl<const D: usize> PairList<D> {
 
     /// Writes the rows that wait as blocks, the short ones first; pairs that are not in a row yet go on waiting.
     fn close_group(&mut self, arranger: &mut Arranger<D>, source: &mut impl Source<D>) {
-        let Arranger { group: Waiting { pairs, rows }, by_length, measured, .. } = arranger;
+        let Arranger { group: Waiting { pairs, rows }, by_length, measured, origin, .. } = arranger;
         let Some(&Row { begin, length, .. }) = rows.last() else { return };
         sort_by_length(rows, by_length);
         let mut rest = by_length.as_slice();
@@ -402,7 +412,7 @@ impl<const D: usize> PairList<D> {
             let length = rest[0].length;
             let fits = |row: &&Row| row.length == length;
             let (block, later) = rest.split_at(rest.iter().take(BLOCK / length).take_while(fits).count());
-            self.add_block(block, pairs, measured, source);
+            self.add_block((block, *origin), pairs, measured, source);
             rest = later;
         }
         rows.clear();
@@ -410,7 +420,13 @@ impl<const D: usize> PairList<D> {
     }
 
     /// Writes rows of one length as a block.
-    fn add_block(&mut self, rows: &[Row], waiting: &[u32], measured: &mut Measured<D>, source: &mut impl Source<D>) {
+    fn add_block(
+        &mut self,
+        (rows, origin): (&[Row], u32),
+        waiting: &[u32],
+        measured: &mut Measured<D>,
+        source: &mut impl Source<D>,
+    ) {
         let (begin, first_row) = (self.len(), self.rows.len());
         let row_length = rows[0].length;
         let count = rows.len() * row_length;
@@ -421,7 +437,7 @@ impl<const D: usize> PairList<D> {
             (&mut self.rows[first_row..], &mut self.first[begin..], &mut self.second[begin..]);
         let mut pair = 0;
         for (row, &Row { first: disk, begin, length }) in of_rows.iter_mut().zip(rows) {
-            *row = disk;
+            *row = disk - origin;
             // Three pairs in the mean: a copy by a call takes longer.
             for place in 0..length {
                 first[pair + place] = disk;
@@ -429,11 +445,13 @@ impl<const D: usize> PairList<D> {
             }
             pair += length;
         }
-        self.blocks.push(Block { pairs: begin, pair_count: count, rows: first_row, row_count: rows.len(), row_length });
+        let (pair_count, row_count) = (count, rows.len());
+        self.blocks.push(Block { pairs: begin, pair_count, rows: first_row, row_count, row_length, origin });
         source.measure(first, second, measured);
-        for pair in second {
+        for pair in &mut *second {
             *pair = source.second(*pair);
         }
+        self.ends.extend(second.iter().map(|&disk| disk - origin));
         for (column, measured) in self.separation.0.iter_mut().zip(&measured.separation) {
             column.extend_from_slice(&measured[..count]);
         }

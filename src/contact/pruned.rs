@@ -37,7 +37,7 @@ impl<const D: usize> PairList<D> {
         self.fill_tiles(whole.tiles.len(), whole.tile_size, |list, place, tile| {
             let blocks = &whole.tiles[place];
             list.add_blocks(
-                tile,
+                (tile, place * whole.tile_size),
                 &mut Pruned { whole, displacements, skin },
                 |list, arranger, near| near.line_up(&whole.blocks[blocks.inner.clone()], list, arranger),
                 |list, arranger, near| near.line_up(&whole.blocks[blocks.border.clone()], list, arranger),
@@ -59,13 +59,12 @@ impl<const D: usize> Pruned<'_, D> {
         let mut moved = [[0.0; D]; BLOCK];
         let mut excess = [0.0; BLOCK];
         for block in blocks {
-            let range = block.pairs..block.pairs + block.pair_count;
-            let rows = rows_of(self.whole, block);
-            gather(&mut moved, block, (rows, &self.whole.second[range.clone()], 0), self.displacements);
+            let first_pair = block.pairs;
+            gather(&mut moved, self.whole, block, (self.displacements, 0));
             let excess = &mut excess[..block.pair_count];
-            pulp::Arch::new().dispatch(Excess { near: self, first: range.start, moved: &moved, excess });
-            let mut pair = range.start as u32;
-            for (&first, excess) in rows.iter().zip(excess.chunks_exact(block.row_length)) {
+            pulp::Arch::new().dispatch(Excess { near: self, first: first_pair, moved: &moved, excess });
+            let mut pair = first_pair as u32;
+            for (&row, excess) in rows_of(self.whole, block).iter().zip(excess.chunks_exact(block.row_length)) {
                 // Which are near cannot be guessed: they are picked without a branch. NaN counts as near.
                 let (mut near, mut near_count) = ([0; LONGEST_ROW], 0);
                 for &excess in excess {
@@ -76,7 +75,7 @@ impl<const D: usize> Pruned<'_, D> {
                 }
                 let begin = arranger.group.pairs.len();
                 arranger.group.pairs.extend(near.iter().take(near_count));
-                list.add_rows(first, begin, arranger, self);
+                list.add_rows(block.origin + row, begin, arranger, self);
             }
         }
     }

@@ -5,10 +5,16 @@
 use crate::contact::pair_list::{BLOCK, Block, LONGEST_ROW, PairList};
 use crate::vector::{Vector, difference, sum};
 
-/// First disks of the rows of a block.
+/// First disks of the rows of a block, counted from its origin.
 #[inline(always)]
 pub(super) fn rows_of<'a, const D: usize>(pairs: &'a PairList<D>, block: &Block) -> &'a [u32] {
     &pairs.rows[block.rows..block.rows + block.row_count]
+}
+
+/// Second disks of the pairs of a block, counted from its origin.
+#[inline(always)]
+fn ends_of<'a, const D: usize>(pairs: &'a PairList<D>, block: &Block) -> &'a [u32] {
+    &pairs.ends[block.pairs..block.pairs + block.pair_count]
 }
 
 /// Calls a function of the length of the rows of a block, as a constant.
@@ -27,60 +33,64 @@ macro_rules! with_length {
     };
 }
 
-/// Relative displacements of the pairs of a block; disks are counted from `offset`.
+/// Relative displacements of the pairs of a block; the array begins with disk `begin`.
 pub(super) fn gather<const D: usize>(
     moved: &mut [Vector<D>; BLOCK],
+    pairs: &PairList<D>,
     block: &Block,
-    (rows, second, offset): (&[u32], &[u32], u32),
-    displacements: &[Vector<D>],
+    (displacements, begin): (&[Vector<D>], u32),
 ) {
-    with_length!(block, gather_rows(moved, (rows, second, offset), displacements));
+    let (rows, ends) = (rows_of(pairs, block), ends_of(pairs, block));
+    let displacements = &displacements[(block.origin - begin) as usize..];
+    with_length!(block, gather_rows(moved, (rows, ends), displacements));
 }
 
 #[inline(always)]
 fn gather_rows<const D: usize, const LENGTH: usize>(
     moved: &mut [Vector<D>; BLOCK],
-    (rows, second, offset): (&[u32], &[u32], u32),
+    (rows, ends): (&[u32], &[u32]),
     displacements: &[Vector<D>],
 ) {
     // Columns of one length and a plain index: of chained iterators some stay calls.
     let count = rows.len();
     let moved = &mut moved.as_chunks_mut::<LENGTH>().0[..count];
-    let second = &second.as_chunks::<LENGTH>().0[..count];
+    let ends = &ends.as_chunks::<LENGTH>().0[..count];
     for row in 0..count {
-        let a = displacements[(rows[row] - offset) as usize];
+        let a = displacements[rows[row] as usize];
         for k in 0..LENGTH {
-            moved[row][k] = difference(a, displacements[(second[row][k] - offset) as usize]);
+            moved[row][k] = difference(a, displacements[ends[row][k] as usize]);
         }
     }
 }
 
-/// Adds the force of each pair of a block to its first disk and takes it from the second; disks are counted from `offset`.
+/// Adds the force of each pair of a block to its first disk and takes it from the second; the array begins with disk `begin`.
 pub(super) fn scatter<const D: usize>(
     pull: &[Vector<D>; BLOCK],
+    pairs: &PairList<D>,
     block: &Block,
-    (rows, second, offset): (&[u32], &[u32], u32),
-    forces: &mut [Vector<D>],
+    (forces, begin): (&mut [Vector<D>], u32),
 ) {
-    with_length!(block, scatter_rows(pull, (rows, second, offset), forces));
+    let (rows, ends) = (rows_of(pairs, block), ends_of(pairs, block));
+    let forces = &mut forces[(block.origin - begin) as usize..];
+    with_length!(block, scatter_rows(pull, (rows, ends), forces));
 }
 
 #[inline(always)]
 fn scatter_rows<const D: usize, const LENGTH: usize>(
     pull: &[Vector<D>; BLOCK],
-    (rows, second, offset): (&[u32], &[u32], u32),
+    (rows, ends): (&[u32], &[u32]),
     forces: &mut [Vector<D>],
 ) {
     let count = rows.len();
     let pull = &pull.as_chunks::<LENGTH>().0[..count];
-    let second = &second.as_chunks::<LENGTH>().0[..count];
+    let ends = &ends.as_chunks::<LENGTH>().0[..count];
     for row in 0..count {
-        let first = (rows[row] - offset) as usize;
+        let first = rows[row] as usize;
         let mut total = forces[first];
         for k in 0..LENGTH {
             let pull = pull[row][k];
             total = sum(total, pull);
-            let other = &mut forces[(second[row][k] - offset) as usize];
+            let other = &mut forces[ends[row][k] as usize];
             *other = difference(*other, pull);
         }
         forces[first] = total;

@@ -55,7 +55,7 @@ impl<const D: usize, L: PairLaw, W: Fn(usize, f64, f64) -> f64> Task<'_, D, L, W
         for block in tile.inner.start..tile.border.end {
             let border = tile.border.contains(&block);
             let block = &pairs.blocks[block];
-            let _ = fill(self.law, pairs, (self.displacements, 0), block, &mut columns);
+            fill(self.law, pairs, (self.displacements, 0), block, &mut columns);
             pulp::Arch::new().dispatch(Stiffnesses { law: self.law, columns: &columns, stiffness });
             for (k, &stiffness) in stiffness[..block.pair_count].iter().enumerate() {
                 let pair = block.pairs + k;
