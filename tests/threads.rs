@@ -7,6 +7,8 @@ mod tiled;
 
 use std::sync::Once;
 
+use jamscope::contact::damped_forces::{add_damping, damped_forces};
+use jamscope::contact::damping::{ConstantDamping, DampingLaw};
 use jamscope::contact::{Assembly, Hertzian, PairLaw};
 use jamscope::io::read_packing;
 use jamscope::packing::Packing;
@@ -72,6 +74,27 @@ fn forces_across_tiles_are_those_of_the_plain_loop() {
     for (index, (found, plain)) in assembly.forces.iter().zip(&plain).enumerate() {
         let error = norm(difference(*found, *plain));
         assert!(error < 1e-11 * largest, "disk {index}: {error:e} of {largest:e}");
+    }
+}
+
+#[test]
+fn damped_forces_across_tiles_are_elastic_forces_and_damping() {
+    let mut assembly = Assembly::new(&large(), Hertzian::default()).expect("disks apart");
+    assembly.evaluate();
+    let (law, damping, pairs) = (*assembly.law(), ConstantDamping { rate: 500.0 }, assembly.pairs());
+    let coefficients = vec![damping.coefficient(0.5, 0.5); pairs.len()];
+    let wave = |disk: usize| [1e-2 * (disk as f64).sin(), 1e-2 * (2.0 * disk as f64).cos()];
+    let (at, velocities) = (&assembly.displacements, (0..assembly.len()).map(wave).collect::<Vec<_>>());
+    let mut apart = assembly.forces.clone();
+    let power = add_damping(&damping, pairs, &coefficients, at, &velocities, &mut apart);
+    let mut together = vec![[f64::NAN; 2]; assembly.len()];
+    let found = damped_forces((&law, &damping), pairs, &coefficients, at, &velocities, &mut together);
+    // Sums of 10⁵ terms of one sign in another order, 10⁻¹⁶ each.
+    assert!((found - power).abs() < 1e-11 * power && power > 0.0, "{found} for {power}");
+    let largest = apart.iter().map(|&force| norm(force)).fold(0.0, f64::max);
+    for (disk, (one, two)) in apart.iter().zip(&together).enumerate() {
+        // As above: forces of contacts carry 10⁻¹², a pair left out would be of the order of the largest.
+        assert!(norm(difference(*one, *two)) < 1e-11 * largest, "disk {disk}: {one:?} {two:?}");
     }
 }
 
