@@ -7,11 +7,12 @@
 #
 # A case is `random-SEED` (random points) or a packing in whose middle a disk grows; without any, those of the README.
 # jamscope writes the start; LAMMPS's first time step and tolerance are chosen by runs that do not count. Then the three take
-# turns REPEATS times. JSON lines of all runs go to standard error, the table of medians to standard output.
+# turns REPEATS times. JSON lines of all runs go to standard error, the table of medians to standard output, and a line for all
+# random points together: the programs end in different minima, and how many steps it takes to one is a matter of luck.
 set -eu
 repeats=${1:-3}
 [ $# -eq 0 ] || shift
-[ $# -gt 0 ] || set -- random-1 random-2 random-3 fixtures/packings/hertz_N5548_p100.xyz fixtures/packings/hertz_N5548_p10.xyz
+[ $# -gt 0 ] || set -- $(seq -f 'random-%g' 8) fixtures/packings/hertz_N5548_p100.xyz fixtures/packings/hertz_N5548_p10.xyz
 export OMP_NUM_THREADS=1 RAYON_NUM_THREADS=1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -50,9 +51,12 @@ for run in read("runs"):
     runs.setdefault(run["case"], {}).setdefault((run["code"], run["relaxer"]), []).append(run)
 print("| case | pressure | code | CPU seconds | evaluations | of them until the backbone is first below | factorisations | residual | over jamscope's FIRE | over its staged |")
 print("|---|---|---|---|---|---|---|---|---|---|")
+random = []
 for case, codes in runs.items():
     median = {code: statistics.median(run["cpu_seconds"] for run in of_code) for code, of_code in codes.items()}
     fire, staged = median["jamscope", "fire"], median["jamscope", "staged"]
+    if case.startswith("random"):
+        random.append([fire, *(seconds for (code, _), seconds in median.items() if code.startswith("LAMMPS"))])
     for (code, relaxer), of_code in codes.items():
         run, seconds, first = of_code[0], median[code, relaxer], ""
         what = f"{code.split()[0]}, {'FIRE' if relaxer == 'fire' else 'staged'}"
@@ -62,4 +66,9 @@ for case, codes in runs.items():
         evaluations = run.get("force_evaluations", run["steps"] + 1)
         print(f"| {case} | {run['pressure']:.1f} | {what} | {seconds:.2f} | {evaluations} | {first} | {run.get('factorisations', 0)} "
               f"| {run['residual']:.1e} | {seconds / fire:.2f} | {seconds / staged:.2f} |")
+if len(random) > 1:
+    ours, theirs = map(sum, zip(*random))
+    ratios = sorted(b / a for a, b in random)
+    print(f"\n{len(random)} starts from random points together: {ours:.2f} s and {theirs:.2f} s, ratio {theirs / ours:.1f}; "
+          f"single ones {ratios[0]:.1f} to {ratios[-1]:.1f}, median {statistics.median(ratios):.1f}")
 PYTHON
