@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Pairs are taken in blocks of [`BLOCK`]: first the relative displacements are gathered, then all arithmetic is done on whole vectors
-//! of pairs, column by column ([`Columns`]), and puts the force of each pair in the place of its displacement, then the forces are
+//! of pairs, column by column (`columns.rs`), and puts the force of each pair in the place of its displacement, then the forces are
 //! scattered. So gathering and scattering, which know no vectors, move as little as they can. The order of every sum is fixed and every
 //! operation rounded as IEEE 754 has it (`src/simd`), so the bits do not depend on the width of the machine's vectors.
 
