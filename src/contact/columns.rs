@@ -1,12 +1,4 @@
-//! One block of pairs, column by column: how far apart its disks are and how much they overlap.
-//!
-//! ```text
-//! r_ij = D_ij + w     w = u_i − u_j     δ = δ⁰_ij − w·(D_ij + r_ij) / (|r_ij| + |D_ij|)
-//! ```
-//!
-//! D_ij is the separation of the anchors, u a displacement from them, δ⁰_ij the overlap at the anchors, known to full
-//! relative accuracy. The overlap follows from its change, so it carries the rounding of the displacements (10⁻¹⁶ w) and of
-//! itself, not that of the distance (10⁻¹⁶), nor that of positions in a box (10⁻¹⁴ and more).
+//! One block of pairs, column by column: how far apart its disks are and how much they overlap; the formulas are those of [`super::forces`].
 //!
 //! The arithmetic goes through the block several times, a few operations each: those of one vector of pairs wait for each other, and
 //! a processor has few of the next ones in view if they are many. Meanwhile it asks for what the list has of the block after this one;

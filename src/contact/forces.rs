@@ -1,8 +1,13 @@
 //! The hot loop: energy, forces and virial of all contacts in one pass.
 //!
 //! ```text
+//! r_ij = D_ij + w     w = u_i − u_j     δ = δ⁰_ij − w·(D_ij + r_ij) / (|r_ij| + |D_ij|)
 //! f_i += F(δ) r_ij/|r_ij|,  f_j −= the same
 //! ```
+//!
+//! D_ij is the separation of the anchors, u a displacement from them, δ⁰_ij the overlap at the anchors, known to full
+//! relative accuracy. The overlap follows from its change, so it carries the rounding of the displacements (10⁻¹⁶ w) and of
+//! itself, not that of the distance (10⁻¹⁶), nor that of positions in a box (10⁻¹⁴ and more).
 //!
 //! Pairs are taken in blocks of [`BLOCK`]: first the relative displacements are gathered, then all arithmetic is done on whole vectors
 //! of pairs, column by column (`columns.rs`), and puts the force of each pair in the place of its displacement, then the forces are
