@@ -136,7 +136,7 @@ impl<const D: usize> Columns<D> {
 
     /// From the forces: force over distance in `factor`, and the force on each first disk in `pull`.
     #[inline(always)]
-    pub fn pull<S: Simd>(&mut self, simd: S) {
+    pub fn resolve<S: Simd>(&mut self, simd: S) {
         let count = BLOCK / S::F64_LANES;
         let apart = self.apart.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
         let force = &S::as_simd_f64s(&self.force).0[..count];

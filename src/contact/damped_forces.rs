@@ -74,7 +74,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> pulp::WithSimd for Arithmetic<'_
         let mut power = [0.0; BLOCK];
         let count = self.damping.apace.len();
         self.damping.resist(self.columns, &mut power[..count]);
-        self.columns.pull(simd);
+        self.columns.resolve(simd);
         lanes::sum(simd, &power[..count])
     }
 }

@@ -189,7 +189,7 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         self.columns.measure(simd, &self.anchors);
         self.columns.press(simd, self.law, &self.anchors);
-        self.columns.pull(simd);
+        self.columns.resolve(simd);
     }
 }
 
