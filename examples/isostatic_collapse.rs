@@ -9,7 +9,9 @@
 //! over samples, which one sample with a large plastic event rules, and the geometric mean, which none does: of bonds under the relaxed inflation, of bonds under the linear response to one, and of d_r. Printed for each: y/y_plateau
 //! at some x = r ΔZ, and C by the plateau rule: ℓ_iso is where y has risen to a share of its plateau, the median of y between two
 //! radii; the first such radius, and the one from which on y stays there up to the plateau's own radii (of rings next to the centre few
-//! bonds say anything, and one of them is soon above). Where y comes down to its plateau, the radius from which on it is within 1.3 of it. Then how far the pressures lie apart: the standard deviation of ln y between them, rms over x = 3 to 6, y as it is (h over d_0)
+//! bonds say anything, and one of them is soon above). Where y comes down to its plateau, the radius from which on it is within 1.3 of it.
+//! Then h r², which is level in an elastic medium (d_r ∼ 1/r), in bands of R/24: its plateau, the median between 0.3 R and 0.8 R, and x and r
+//! where it has risen to shares of it. Then how far the pressures lie apart: the standard deviation of ln y between them, rms over x = 3 to 6, y as it is (h over d_0)
 //! and y over h_0 near the centre.
 
 use std::error::Error;
@@ -33,10 +35,11 @@ use rayon::prelude::*;
 const PRESSURES: [f64; 4] = [100.0, 300.0, 1000.0, 3000.0];
 
 /// Which of a sample's fluctuations are averaged, how, and their name.
-const CURVES: [(usize, Average, &str); 5] = [
+const CURVES: [(usize, Average, &str); 6] = [
     (0, Average::Squares, "h_∥ relaxed, squares"),
     (0, Average::Logarithms, "h_∥ relaxed, logarithms"),
     (1, Average::Squares, "h_∥ linear, squares"),
+    (1, Average::Logarithms, "h_∥ linear, logarithms"),
     (2, Average::Squares, "h_r relaxed, squares"),
     (2, Average::Logarithms, "h_r relaxed, logarithms"),
 ];
@@ -55,6 +58,13 @@ const SHARES: [f64; 3] = [0.8, 0.9, 1.0];
 
 /// y over its plateau from which on it counts as there where it comes from above.
 const NEAR_PLATEAU: f64 = 1.3;
+
+/// Bands of h r² in a radius, and the shares of R between which its plateau lies.
+const BANDS: usize = 24;
+const ELASTIC_PLATEAU: [f64; 2] = [0.3, 0.8];
+
+/// Shares of the plateau of h r².
+const ELASTIC_SHARES: [f64; 3] = [0.5, 0.7, 0.9];
 
 /// One sample: ΔZ, R, and h_∥ relaxed, h_∥ of the linear response, h_r relaxed.
 struct Sample {
@@ -167,6 +177,39 @@ fn last_crossing(length: &IsostaticLength, threshold: f64, side: impl Fn(&Isosta
     Some(a.scaled_radius + share * (b.scaled_radius - a.scaled_radius))
 }
 
+/// h r² of bands, geometric means over rings, with the mean radius.
+fn squared(fluctuations: &Fluctuations, outer_radius: f64) -> Vec<[f64; 2]> {
+    let mut bands = [[0.0; 3]; BANDS];
+    for ring in fluctuations.rings.iter().filter(|ring| ring.radius >= IsostaticSettings::default().from) {
+        let band = ((ring.radius / outer_radius * BANDS as f64) as usize).min(BANDS - 1);
+        let value = ring.fluctuation * ring.radius * ring.radius;
+        let [count, radius, logarithm] = &mut bands[band];
+        (*count, *radius, *logarithm) = (*count + 1.0, *radius + ring.radius, *logarithm + value.ln());
+    }
+    let filled = bands.iter().filter(|[count, ..]| *count > 0.0);
+    filled.map(|[count, radius, logarithm]| [radius / count, (logarithm / count).exp()]).collect()
+}
+
+/// The plateau of h r², and the radii where it has risen to shares of it.
+fn elastic_tail(
+    fluctuations: &Fluctuations,
+    outer_radius: f64,
+) -> Result<(f64, [f64; ELASTIC_SHARES.len()]), &'static str> {
+    let bands = squared(fluctuations, outer_radius);
+    let there = |radius: f64| (ELASTIC_PLATEAU[0]..=ELASTIC_PLATEAU[1]).contains(&(radius / outer_radius));
+    let mut values: Vec<f64> = bands.iter().filter(|[radius, _]| there(*radius)).map(|[_, value]| *value).collect();
+    values.sort_by(f64::total_cmp);
+    let plateau = *values.get(values.len() / 2).ok_or("no plateau of h r²")?;
+    let radii = ELASTIC_SHARES.map(|share| {
+        let rise = bands.windows(2).find(|pair| pair[0][1] < share * plateau && pair[1][1] >= share * plateau);
+        rise.map_or(f64::NAN, |pair| {
+            let [[r, low], [next, high]] = [pair[0], pair[1]];
+            r + (share * plateau - low) / (high - low) * (next - r)
+        })
+    });
+    Ok((plateau, radii))
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments: Vec<String> = std::env::args().skip(1).collect();
     let damped = arguments.first().is_some_and(|word| word == "damped");
@@ -222,6 +265,10 @@ fn main() -> Result<(), Box<dyn Error>> {
                 Some(x) => println!("; down to {NEAR_PLATEAU}: {x:.2}"),
                 None => println!("; never above {NEAR_PLATEAU}"),
             }
+            let (plateau, radii) = elastic_tail(&fluctuations, outer_radius)?;
+            print!("{:26}h r²: plateau {:.3} d_0; at shares {ELASTIC_SHARES:?}:", "", plateau / increase);
+            radii.iter().for_each(|radius| print!(" x = {:.1} (r = {radius:.1})", radius * excess));
+            println!();
         }
     }
     for ((_, _, name), [plain, near]) in CURVES.iter().zip(&curves) {

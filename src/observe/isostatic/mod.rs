@@ -4,7 +4,8 @@
 //! x = r ΔZ        y = (h_∥(r)/h_0) x        ℓ_iso: the smallest r at which y rises to a threshold        C = ℓ_iso ΔZ
 //! ```
 //!
-//! Beyond ℓ_iso h_∥ falls as 1/r, so y stays on a plateau until the held rim bends it down. h_0 makes h_∥ a number,
+//! As the study finds, h_∥ falls as 1/r beyond ℓ_iso, and y stays on a plateau until the held rim bends it down; in an elastic medium
+//! h_∥ falls as 1/r², and y has none (the chapter has what packings do). h_0 makes h_∥ a number,
 //! [`Normalisation`]; the threshold is one given or a share of the plateau, [`IsostaticRule`]. Between two rings y is taken as a straight line.
 //!
 //! # Source

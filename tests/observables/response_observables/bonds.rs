@@ -2,7 +2,7 @@ use jamscope::contact::{ContactNetwork, Hertzian};
 use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
 use jamscope::observe::bond_changes::{BondChanges, BondSet};
-use jamscope::observe::fluctuations::Fluctuations;
+use jamscope::observe::fluctuations::{BondMeasure, Fluctuations};
 use jamscope::observe::{RadialProfile, State};
 use jamscope::packing::{Domain, Packing};
 use jamscope::vector::{Vector, dot, norm};
@@ -120,6 +120,45 @@ fn the_fluctuation_of_a_pure_shear_on_a_triangular_lattice_is_known() {
     assert_eq!((rings.len(), rings[0].count), (1, 120));
     assert!((rings[0].radius - 5.3).abs() < 1e-14);
     assert!((rings[0].fluctuation / expected - 1.0).abs() < 1e-14 && rings[0].mean.abs() < 1e-18);
+}
+
+#[test]
+fn bonds_in_an_elastic_medium_stretch_as_the_inverse_square_of_the_distance() {
+    // d = (A/r) r̂ strains by ∓A/r² along and across: d_∥ = −(A s/r²) cos 2φ of a bond at φ to the radius, mean 0, h_∥ = A √⟨s²⟩/(√2 r²).
+    let packing = read_packing::<2>("fixtures/packings/hertz_N5548_p100.xyz").expect("a fixture");
+    let (circle, law) = (Circle::cut(&packing, 17, 40.0).expect("a circle"), Hertzian::default());
+    let (amplitude, origin) = (1e-4, circle.packing.positions()[circle.centre]);
+    let flowed = circle.packing.positions().iter().map(|&x| {
+        let out = [x[0] - origin[0], x[1] - origin[1]];
+        let along = amplitude / dot(out, out).max(1e-9);
+        [x[0] + along * out[0], x[1] + along * out[1]]
+    });
+    let after = Packing::new(Domain::Open, flowed.collect(), circle.packing.radii().to_vec())
+        .and_then(|packing| packing.with_held(circle.packing.held().to_vec()))
+        .expect("sound disks");
+    let before = State::new(&circle.packing, &law).expect("sound disks");
+    let after = State::new(&after, &law).expect("sound disks");
+    let changes = BondChanges::between(&before, &after, circle.centre, BondSet::Before);
+    let squares = changes.bonds.iter().map(|bond| dot(bond.separation, bond.separation));
+    let length = (squares.sum::<f64>() / changes.bonds.len() as f64).sqrt();
+    let rings = Fluctuations::of_bonds(&changes, BondMeasure::Parallel, 40.0, 1.0).rings;
+    // Bonds are short against r from here on: (s/2r)² is below a third of a per cent.
+    let (mut weights, mut sum) = (0.0, 0.0);
+    for ring in rings.iter().filter(|ring| ring.radius > 10.0) {
+        let expected = amplitude * length / (2f64.sqrt() * ring.radius.powi(2));
+        let error = ring.standard_error / ring.fluctuation;
+        // Five standard errors, and r² over a ring of width 1 goes up and down by a tenth at r = 10, which moves its mean by 1/3 %.
+        assert!((ring.fluctuation / expected - 1.0).abs() < 5.0 * error + 0.01, "r = {}", ring.radius);
+        weights += error.powi(-2);
+        sum += error.powi(-2) * (ring.fluctuation / expected);
+    }
+    // Of all rings: the same, with their common error.
+    assert!(
+        (sum / weights - 1.0).abs() < 4.0 / weights.sqrt() + 0.005,
+        "{} ± {}",
+        sum / weights,
+        weights.sqrt().recip()
+    );
 }
 
 #[test]
