@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! cargo run --release --features measurements --example angular_study -- --out DIR [--disks 5548] [--samples 20] [--reduced 1e6,1e7,1e8,1e9] [--seed 1]
+//!     [--relaxer staged|damped] [--packing-fraction PHI]
 //! ```
 //!
 //! Hertzian disks from random points, brought to the pressure p = p̂/N^(3/2), N = n π (R/L)² those inside the circle of R/L = 0.480
 //! (0.486 and 0.491 from 10 000 and 50 000 disks on). A small disk is inflated by 0.1, then deflated. Everything relaxes by FIRE and
-//! Newton in turn (`Staged`), to 10⁻⁸ of the mean contact force.
+//! Newton in turn (`Staged`), to 10⁻⁸ of the mean contact force; with `--relaxer damped` by the damped dynamics of the study
+//! (`ImplicitDynamics`). With `--packing-fraction` packings are quenched there, as in the study, and p̂ asked for is only their name.
 //!
 //! Each sample is a row of `DIR/samples.jsonl`, written when it is done, the ring r̂ = 0.5 ± 0.03 of its displacement field with it. A run
 //! that was killed goes on where it was; more samples or pressures go to the same file. From the rows come the table on standard output,
@@ -36,12 +38,15 @@ struct Arguments {
     sample_count: u64,
     reduced_pressures: Vec<f64>,
     first_seed: u64,
+    damped: bool,
+    packing_fraction: Option<f64>,
 }
 
 impl Arguments {
     fn read() -> Result<Self, Box<dyn Error>> {
         let (mut folder, mut disk_count, mut sample_count, mut first_seed) = (None, 5548, 20, 1);
         let mut reduced_pressures = vec![1e6, 1e7, 1e8, 1e9];
+        let (mut damped, mut packing_fraction) = (false, None);
         let mut words = std::env::args().skip(1);
         while let Some(flag) = words.next() {
             let value = words.next().ok_or_else(|| format!("{flag} needs a value"))?;
@@ -51,17 +56,29 @@ impl Arguments {
                 "--samples" => sample_count = value.parse()?,
                 "--seed" => first_seed = value.parse()?,
                 "--reduced" => reduced_pressures = value.split(',').map(str::parse).collect::<Result<_, _>>()?,
-                _ => return Err(format!("{flag}: not --out, --disks, --samples, --reduced or --seed").into()),
+                "--packing-fraction" => packing_fraction = Some(value.parse()?),
+                "--relaxer" => {
+                    damped = match value.as_str() {
+                        "staged" => false,
+                        "damped" => true,
+                        _ => return Err(format!("--relaxer: staged or damped, not {value}").into()),
+                    }
+                }
+                _ => {
+                    let known = "--out, --disks, --samples, --reduced, --seed, --relaxer or --packing-fraction";
+                    return Err(format!("{flag}: not {known}").into());
+                }
             }
         }
         let folder = folder.ok_or("--out DIR is needed")?;
-        Ok(Arguments { folder, disk_count, sample_count, reduced_pressures, first_seed })
+        Ok(Arguments { folder, disk_count, sample_count, reduced_pressures, first_seed, damped, packing_fraction })
     }
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let Arguments { folder, disk_count, sample_count, reduced_pressures, first_seed } = Arguments::read()?;
-    let plan = Plan::of(disk_count);
+    let Arguments { folder, disk_count, sample_count, reduced_pressures, first_seed, damped, packing_fraction } =
+        Arguments::read()?;
+    let plan = Plan::of(disk_count, damped, packing_fraction);
     let store = Store::open(&folder, &plan)?;
     let seeds = first_seed..first_seed + sample_count;
     let asked = |row: &Row| reduced_pressures.contains(&row.reduced_pressure) && seeds.contains(&row.seed);

@@ -12,7 +12,7 @@ use jamscope::observe::multipoles::{MultipoleFit, MultipoleSettings, Multipoles}
 use jamscope::observe::{ContactCycle, PressureChange};
 use jamscope::packing::Mixture;
 use jamscope::preparation::{Preparation, Target, prepare};
-use jamscope::relax::Staged;
+use jamscope::relax::{ImplicitDynamics, Relaxer, Staged};
 use serde::{Deserialize, Serialize};
 
 /// What all samples of a file have in common.
@@ -24,8 +24,14 @@ pub struct Plan {
     pub outer_radius_over_side: f64,
     /// d_0.
     pub increase: f64,
-    /// The relaxer of everything.
+    /// The relaxer of everything,
     pub relaxer: Staged,
+    /// unless all moves by damped dynamics.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dynamics: Option<ImplicitDynamics>,
+    /// φ of packings that are quenched there and not brought to a pressure.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub packing_fraction: Option<f64>,
 }
 
 /// One sample.
@@ -59,14 +65,22 @@ pub struct Measured {
 }
 
 impl Plan {
-    /// The geometry of the study.
-    pub fn of(disk_count: usize) -> Self {
+    /// The geometry of the study; `damped`: its dynamics as well; with a packing fraction its packings.
+    pub fn of(disk_count: usize, damped: bool, packing_fraction: Option<f64>) -> Self {
         let outer_radius_over_side = match disk_count {
             ..10_000 => 0.480,
             10_000..50_000 => 0.486,
             _ => 0.491,
         };
-        Plan { disk_count, outer_radius_over_side, increase: 0.1, relaxer: Staged::default() }
+        let dynamics = damped.then(ImplicitDynamics::default);
+        Plan {
+            disk_count,
+            outer_radius_over_side,
+            increase: 0.1,
+            relaxer: Staged::default(),
+            dynamics,
+            packing_fraction,
+        }
     }
 
     /// N, expected.
@@ -82,18 +96,22 @@ impl Plan {
     }
 
     fn measured(&self, reduced_pressure: f64, seed: u64) -> Result<Measured, Box<dyn Error>> {
+        match &self.dynamics {
+            Some(dynamics) => self.relaxed(reduced_pressure, seed, dynamics),
+            None => self.relaxed(reduced_pressure, seed, &self.relaxer),
+        }
+    }
+
+    fn relaxed(&self, reduced_pressure: f64, seed: u64, relaxer: &impl Relaxer) -> Result<Measured, Box<dyn Error>> {
         let law = Hertzian::default();
-        let preparation = Preparation {
-            disk_count: self.disk_count,
-            mixture: Mixture::default(),
-            target: Target::Pressure(reduced_pressure / self.mobile_count().powf(1.5)),
-            tolerance: 0.01,
-            seed,
-        };
-        let prepared = prepare::<2, _>(&preparation, &law, &self.relaxer, &mut ())?;
+        let pressure = reduced_pressure / self.mobile_count().powf(1.5);
+        let target = self.packing_fraction.map_or(Target::Pressure(pressure), Target::PackingFraction);
+        let preparation =
+            Preparation { disk_count: self.disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed };
+        let prepared = prepare::<2, _>(&preparation, &law, relaxer, &mut ())?;
         let boundary = Boundary::HeldRim { outer_radius_over_side: self.outer_radius_over_side };
         let inflation = Inflation { increase: self.increase, boundary, deflate: true, ..Inflation::default() };
-        let inflated = inflate(&inflation, prepared.packing.get(), &law, &self.relaxer, seed, &mut ())?;
+        let inflated = inflate(&inflation, prepared.packing.get(), &law, relaxer, seed, &mut ())?;
         let (ring, shares) = ring(&inflated)?;
         let cycle = ContactCycle::of(&inflated, &law)?.ok_or("it was deflated")?;
         let changes = &cycle.inflation;
