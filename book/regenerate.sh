@@ -18,8 +18,9 @@ jamscope=target/release/jamscope
 list() {
     cat <<'LIST'
 first_run            quick  jamscope --out DIR (the built-in scene)
-angular_5548         long   angular_study --out DIR --disks 5548 --samples 40 --reduced 1e6,1e7,3e7,1e8,3e8,1e9,3e9
+angular_5548         long   angular_study --out DIR --disks 5548 --samples 100 --reduced 1e6,1e7,3e7,1e8,3e8,1e9,3e9
 angular_22184        long   angular_study --out DIR --disks 22184 --samples 10 --reduced 1e7,1e8,1e9
+angular_88776        long   angular_study --out DIR --disks 88776 --samples 24 --reduced 1e8
 transition           long   jamscope study --recipe order-parameters --scale medium --out DIR
 exact_routes         table  exact_routes
 lorentzian_routes    table  lorentzian_routes
@@ -73,8 +74,9 @@ angular() {
     take "$work/angular_$disks/correlation.svg" "$images/angular_correlation_$disks.svg"
     record "angular_*_$disks.svg" "cargo run --release --features measurements --example angular_study -- --out DIR --disks $disks --samples $samples --reduced $reduced" "1 to $samples"
 }
-angular_5548() { angular 5548 40 1e6,1e7,3e7,1e8,3e8,1e9,3e9; }
+angular_5548() { angular 5548 100 1e6,1e7,3e7,1e8,3e8,1e9,3e9; }
 angular_22184() { angular 22184 10 1e7,1e8,1e9; }
+angular_88776() { angular 88776 24 1e8; }
 
 transition() {
     "$jamscope" study --recipe order-parameters --scale medium --out "$work/transition"
