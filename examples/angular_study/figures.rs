@@ -16,14 +16,15 @@ use crate::summary::Summary;
 /// Size of a picture \[px\].
 const SIZE: (u32, u32) = (760, 520);
 
-/// Okabe, Ito (2008), without yellow and black: told apart by the colour-blind.
-const COLOURS: [RGBColor; 6] = [
+/// Okabe, Ito (2008), without yellow and black, and a grey: told apart by the colour-blind.
+const COLOURS: [RGBColor; 7] = [
     RGBColor(0xD5, 0x5E, 0x00),
     RGBColor(0x00, 0x72, 0xB2),
     RGBColor(0x00, 0x9E, 0x73),
     RGBColor(0xCC, 0x79, 0xA7),
     RGBColor(0xE6, 0x9F, 0x00),
     RGBColor(0x56, 0xB4, 0xE9),
+    RGBColor(0x77, 0x77, 0x77),
 ];
 
 /// One curve.
@@ -72,7 +73,15 @@ pub fn correlation(path: &Path, plan: &Plan, summaries: &[Summary]) -> Result<()
         .x_label_area_size(40)
         .y_label_area_size(56)
         .build_cartesian_2d(0.0..1.0, -1.05..1.05)?;
-    chart.configure_mesh().disable_mesh().x_desc("θ/π").y_desc("G").label_style(("sans-serif", 14)).draw()?;
+    chart
+        .configure_mesh()
+        .disable_mesh()
+        .x_desc("θ/π")
+        .y_desc("G")
+        // Adding nothing to a negative zero makes it one without a sign.
+        .y_label_formatter(&|g: &f64| format!("{:.1}", (10.0 * g).round() / 10.0 + 0.0))
+        .label_style(("sans-serif", 14))
+        .draw()?;
     chart.draw_series([PathElement::new([(0.0, 0.0), (1.0, 0.0)], BLACK.mix(0.3))])?;
     for curve in &curves {
         chart.draw_series([band(curve, f64::MIN)])?;
