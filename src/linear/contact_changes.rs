@@ -10,7 +10,7 @@
 use crate::contact::{ContactNetwork, PairLaw};
 use crate::linear::LinearResponse;
 use crate::packing::{Packing, PackingError};
-use crate::vector::{difference, dot, norm};
+use crate::vector::{Vector, difference, dot, norm, scaled, sum};
 
 /// One contact in a linear response, per unit of the load.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,6 +84,50 @@ impl<const D: usize> LinearResponse<D> {
             })
         });
         Ok(changes.collect())
+    }
+
+    /// Change of the force that its contacts put on a disk, per load \[force / length\] where a disk grows, else \[force\]: nothing on
+    /// a disk that can move, but what a force put on it balances; on a held one what holds it has to take up.
+    ///
+    /// ```text
+    /// Σ_(contacts) [dF n + F (1 − n nᵀ)(u_i − u_j)/r_ij]        n from the other disk j to the disk i
+    /// ```
+    ///
+    /// `packing` and `law` are those the response was made from, with its prestress.
+    ///
+    /// # Errors
+    /// As [`ContactNetwork::new`].
+    ///
+    /// # Panics
+    /// If the packing has another number of disks.
+    pub fn force_change<L: PairLaw>(
+        &self,
+        packing: &Packing<D>,
+        law: &L,
+        disk: usize,
+    ) -> Result<Vector<D>, PackingError> {
+        let network = ContactNetwork::new(packing, law)?;
+        let changes = self.contact_changes(packing, law)?;
+        let mut contacts = network.contacts.iter().peekable();
+        let mut total = [0.0; D];
+        for change in changes {
+            let pair = (change.first, change.second);
+            while contacts.next_if(|contact| (contact.first, contact.second) < pair).is_some() {}
+            let ends = (change.first as usize, change.second as usize);
+            let Some(contact) = contacts.next() else { break };
+            let sign = match disk {
+                _ if disk == ends.0 => 1.0,
+                _ if disk == ends.1 => -1.0,
+                _ => continue,
+            };
+            let distance = norm(contact.separation);
+            let along = scaled(1.0 / distance, contact.separation);
+            let moved = difference(self.displacements[ends.0], self.displacements[ends.1]);
+            let across = difference(moved, scaled(dot(moved, along), along));
+            let force = sum(scaled(change.force_change, along), scaled(contact.force / distance, across));
+            total = sum(total, scaled(sign, force));
+        }
+        Ok(total)
     }
 }
 

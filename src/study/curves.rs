@@ -42,10 +42,11 @@ pub(super) fn curves(scene: &Scene, response: &Response) -> BTreeMap<String, Vec
     if let Some(isostatic) = response.isostatic_length.as_ref().and_then(|it| it.measured()) {
         let points = isostatic.curve.iter().map(|point| [point.scaled_radius, point.scaled_fluctuation]);
         put("isostatic_fluctuation".into(), points.collect());
-        // y = (h_∥/h_0) x, undone.
+        // y = (h_∥/h_0) xⁿ, undone.
         let unit = isostatic.unit.unwrap_or(f64::NAN);
-        let stretching =
-            isostatic.curve.iter().map(|point| [point.radius, unit * point.scaled_fluctuation / point.scaled_radius]);
+        let stretching = isostatic.curve.iter().map(|point| {
+            [point.radius, unit * point.scaled_fluctuation / point.scaled_radius.powi(isostatic.tail.power())]
+        });
         put("stretching_fluctuation".into(), stretching.collect());
         let width = scene.observables.isostatic_length.map_or(1.0, |settings| settings.ring_width);
         let rings = Fluctuations::of_radial(&response.field, width).rings;

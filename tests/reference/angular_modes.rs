@@ -5,6 +5,7 @@ mod annulus_mode;
 mod bessel;
 mod equation;
 mod outcomes;
+mod point_force;
 
 use annulus_mode::Twin;
 use jamscope::reference::Annulus;

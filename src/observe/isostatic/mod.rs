@@ -1,11 +1,12 @@
 //! [`IsostaticLength`]: from where on the stretching of bonds varies around a ring as in a continuum, ℓ_iso.
 //!
 //! ```text
-//! x = r ΔZ        y = (h_∥(r)/h_0) x        ℓ_iso: the smallest r at which y rises to a threshold        C = ℓ_iso ΔZ
+//! x = r ΔZ        y = (h_∥(r)/h_0) xⁿ        ℓ_iso: the smallest r at which y rises to a threshold        C = ℓ_iso ΔZ
 //! ```
 //!
-//! As the study finds, h_∥ falls as 1/r beyond ℓ_iso, and y stays on a plateau until the held rim bends it down; in an elastic medium
-//! h_∥ falls as 1/r², and y has none (the chapter has what packings do). h_0 makes h_∥ a number,
+//! n is that of the [`Tail`] which makes y level beyond ℓ_iso. In an elastic medium a disk that grows strains it as 1/r²; one
+//! that is held in its place as well, as in the study, is pushed by its neighbours with a force that strains it as 1/r
+//! ([`PointForce`](crate::reference::angular_modes::point_force::PointForce)), farther out than any ℓ_iso: the chapter has both. h_0 makes h_∥ a number,
 //! [`Normalisation`]; the threshold is one given or a share of the plateau, [`IsostaticRule`]. Between two rings y is taken as a straight line.
 //!
 //! # Source
@@ -15,7 +16,7 @@ mod settings;
 
 use serde::{Deserialize, Serialize};
 
-pub use settings::{IsostaticError, IsostaticRule, IsostaticSettings, Normalisation};
+pub use settings::{IsostaticError, IsostaticRule, IsostaticSettings, Normalisation, Tail};
 
 use crate::contact::PairLaw;
 use crate::inflation::Inflated;
@@ -32,7 +33,7 @@ pub struct IsostaticPoint {
     pub radius: f64,
     /// x = r ΔZ \[1\].
     pub scaled_radius: f64,
-    /// y = (h_∥/h_0) r ΔZ \[1\].
+    /// y = (h_∥/h_0) xⁿ \[1\].
     pub scaled_fluctuation: f64,
     /// Standard error of y from that of h_∥, h_0 taken as exact \[1\].
     pub standard_error: f64,
@@ -85,6 +86,9 @@ pub struct IsostaticLength {
     /// h_0, where there is a curve \[length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<f64>,
+    /// n: 1 or 2.
+    #[serde(default)]
+    pub tail: Tail,
     /// The threshold, given or from the plateau \[1\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub threshold: Option<f64>,
@@ -150,6 +154,7 @@ impl IsostaticLength {
         let mut found = IsostaticLength {
             excess,
             unit: None,
+            tail: settings.tail,
             threshold: None,
             curve: Vec::new(),
             outcome: IsostaticOutcome::NoBackbone,
@@ -170,7 +175,7 @@ impl IsostaticLength {
             return Ok(found);
         }
         found.unit = Some(unit);
-        found.curve = rings.iter().map(|ring| IsostaticPoint::of(ring, excess, unit)).collect();
+        found.curve = rings.iter().map(|ring| IsostaticPoint::of(ring, excess, unit, settings.tail)).collect();
         let Some(threshold) = settings.rule.threshold(&found.curve, outer_radius) else {
             found.outcome = IsostaticOutcome::NoPlateau;
             return Ok(found);
@@ -199,13 +204,14 @@ fn outcome(curve: &[IsostaticPoint], threshold: f64, excess: f64) -> IsostaticOu
 }
 
 impl IsostaticPoint {
-    fn of(ring: &FluctuationRing, excess: f64, unit: f64) -> Self {
+    fn of(ring: &FluctuationRing, excess: f64, unit: f64, tail: Tail) -> Self {
         let scaled_radius = ring.radius * excess;
+        let factor = scaled_radius.powi(tail.power());
         IsostaticPoint {
             radius: ring.radius,
             scaled_radius,
-            scaled_fluctuation: ring.fluctuation / unit * scaled_radius,
-            standard_error: ring.standard_error / unit * scaled_radius,
+            scaled_fluctuation: ring.fluctuation / unit * factor,
+            standard_error: ring.standard_error / unit * factor,
         }
     }
 }

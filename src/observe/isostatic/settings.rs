@@ -22,6 +22,27 @@ pub enum Normalisation {
     Length,
 }
 
+/// How h_∥ falls beyond ℓ_iso.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Tail {
+    /// As 1/r: the inflated disk is held in its place, and what holds it takes up a force.
+    #[default]
+    InverseDistance,
+    /// As 1/r²: the inflated disk is free, as in the periodic box, and the forces of its contacts add up to nothing.
+    InverseSquare,
+}
+
+impl Tail {
+    /// The power of 1/r.
+    pub fn power(self) -> i32 {
+        match self {
+            Tail::InverseDistance => 1,
+            Tail::InverseSquare => 2,
+        }
+    }
+}
+
 /// The y that ends the disordered region.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -53,13 +74,15 @@ pub struct IsostaticSettings {
     pub from: f64,
     /// h_0.
     pub normalisation: Normalisation,
+    /// The tail that makes y level.
+    pub tail: Tail,
     /// The threshold.
     pub rule: IsostaticRule,
 }
 
 impl Default for IsostaticSettings {
     /// Source: the study for the threshold, 1.3. It does not say what h_∥ is divided by; of the three only `NearCentre`
-    /// brings y near the threshold (the chapter has the numbers), so that is our reading.
+    /// brings y near the threshold (the chapter has the numbers), so that is our reading. Its tail is 1/r.
     fn default() -> Self {
         IsostaticSettings {
             bonds: BondSet::default(),
@@ -67,6 +90,7 @@ impl Default for IsostaticSettings {
             ring_width: 1.0,
             from: 1.0,
             normalisation: Normalisation::NearCentre { radius: 1.5 },
+            tail: Tail::default(),
             rule: IsostaticRule::Threshold(1.3),
         }
     }

@@ -185,7 +185,7 @@ impl AngularSolution for ElasticMode {
 }
 
 /// ln(larger/smaller) to rounding, next to 1 too.
-fn log_ratio(larger: f64, smaller: f64) -> f64 {
+pub(super) fn log_ratio(larger: f64, smaller: f64) -> f64 {
     let ratio = larger / smaller;
     if smaller > 0.5 * larger {
         -libm::log1p(-(larger - smaller) / larger)

@@ -14,9 +14,10 @@
 //! Δu + (λ+μ)/μ ∇(∇·u) + Γ u = 0        Γ = [[Γ_e, −Γ_o], [Γ_o, Γ_e]]
 //! ```
 //!
-//! [`ElasticMode`](elastic::ElasticMode) has Γ = 0 in closed form; [`ScreenedMode`](screened::ScreenedMode) has any
-//! even and odd screening, the latter turning radial inflation (n = 0) into radial and transverse displacement. Both
-//! implement [`AngularSolution`]. Start from [`ElasticMode::new`](elastic::ElasticMode::new).
+//! [`ElasticMode`](elastic::ElasticMode) has Γ = 0 in closed form, [`PointForce`](point_force::PointForce) that mode of n = 1 which a force
+//! in the middle makes; [`ScreenedMode`](screened::ScreenedMode) has any
+//! even and odd screening, the latter turning radial inflation (n = 0) into radial and transverse displacement. All
+//! implement [`AngularSolution`], which knows how bonds are stretched as well. Start from [`ElasticMode::new`](elastic::ElasticMode::new).
 //!
 //! # Poisson's ratio
 //!
@@ -30,6 +31,7 @@
 pub mod elastic;
 mod exponential_gap;
 mod frame;
+pub mod point_force;
 pub mod screened;
 mod system;
 
@@ -131,6 +133,32 @@ pub trait AngularSolution {
     fn displacement(&self, radius: f64, angle: f64) -> [f64; 2] {
         self.at(radius).value.at_angle(self.mode(), angle)
     }
+
+    /// How much the stretching of short bonds of all directions varies around the circle at `radius`, over their length \[1\]: for
+    /// bonds of length s, [h_∥](crate::observe::fluctuations) = s times this.
+    ///
+    /// ```text
+    /// n·ε·n = ε_rr cos²φ + ε_θθ sin²φ + 2 ε_rθ sin φ cos φ        φ: from the radius to the bond
+    /// h_∥²/s² = ⟨(n·ε·n)²⟩ − ⟨n·ε·n⟩² = (3|E_rr|² + 3|E_θθ|² + 2 Re E_rr E_θθ* + 4|E_rθ|²)/16        n ≥ 1
+    ///         = ((E_rr − E_θθ)² + 4 E_rθ²)/8        n = 0
+    /// E_rr = U'        E_θθ = (U + inV)/r        2 E_rθ = V' + (inU − V)/r
+    /// ```
+    ///
+    /// Modes of different n add up in squares.
+    fn stretch_fluctuation(&self, radius: f64) -> f64 {
+        let ModeState { value, derivative } = self.at(radius);
+        let n = f64::from(self.mode());
+        let [radial, around] = [derivative.radial, (value.radial + times_i(value.transverse) * n) / radius];
+        let twice_shear = derivative.transverse + (times_i(value.radial) * n - value.transverse) / radius;
+        let variance = if self.mode() == 0 {
+            // At angle 0 it is as everywhere.
+            ((radial.re - around.re).powi(2) + twice_shear.re.powi(2)) / 8.0
+        } else {
+            let both = (radial * around.conj()).re;
+            (3.0 * radial.norm_sqr() + 3.0 * around.norm_sqr() + 2.0 * both + twice_shear.norm_sqr()) / 16.0
+        };
+        variance.sqrt()
+    }
 }
 
 /// Why a mode could not be set up.
@@ -150,6 +178,12 @@ pub enum AngularModeError {
         radial: Complex<f64>,
         /// V_a given \[length\].
         transverse: Complex<f64>,
+    },
+    /// A force is not a number.
+    #[error("the force over the shear modulus must be finite, it is {force_over_shear}")]
+    ForceNotFinite {
+        /// F/μ given \[length\].
+        force_over_shear: f64,
     },
     /// A screening coefficient is not a number.
     #[error("the screening must be finite, it is {even} (even) and {odd} (odd)")]
@@ -203,6 +237,10 @@ fn compliance_ratio(poisson_ratio: f64) -> Result<f64, AngularModeError> {
     } else {
         Err(AngularModeError::PoissonRatioOutside { poisson_ratio })
     }
+}
+
+fn finite_force(force_over_shear: f64) -> Result<(), AngularModeError> {
+    if force_over_shear.is_finite() { Ok(()) } else { Err(AngularModeError::ForceNotFinite { force_over_shear }) }
 }
 
 fn finite_amplitudes(boundary: ModeAmplitudes) -> Result<(), AngularModeError> {

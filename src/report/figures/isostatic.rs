@@ -1,9 +1,9 @@
-//! [`isostatic_figure`]: (h_∥/h_0) r ΔZ against r ΔZ.
+//! [`isostatic_figure`]: (h_∥/h_0) (r ΔZ)ⁿ against r ΔZ.
 
 use plotters::prelude::*;
 
 use crate::observe::IsostaticLength;
-use crate::observe::isostatic::IsostaticOutcome;
+use crate::observe::isostatic::{IsostaticOutcome, Tail};
 use crate::report::figures::chart::{Chart, Entry, LegendLine, SCALE, Sign};
 use crate::report::figures::palette::SEQUENCE;
 use crate::report::figures::radial::with_margin;
@@ -13,13 +13,25 @@ use crate::report::number::significant;
 /// Entries of the legend in one line.
 const ENTRIES_A_LINE: usize = 2;
 
-/// Axis labels as SVG text.
+/// Axis label.
 const ACROSS: &str = "r ΔZ";
-const UP: &str = "(h<tspan dy=\"3\" font-size=\"10\">∥</tspan><tspan dy=\"-3\"> / h</tspan><tspan dy=\"3\" \
-                  font-size=\"10\">0</tspan><tspan dy=\"-3\">) r ΔZ</tspan>";
+
+/// Axis label as SVG text.
+fn up(tail: Tail) -> &'static str {
+    match tail {
+        Tail::InverseDistance => {
+            "(h<tspan dy=\"3\" font-size=\"10\">∥</tspan><tspan dy=\"-3\"> / h</tspan><tspan dy=\"3\" \
+             font-size=\"10\">0</tspan><tspan dy=\"-3\">) r ΔZ</tspan>"
+        }
+        Tail::InverseSquare => {
+            "(h<tspan dy=\"3\" font-size=\"10\">∥</tspan><tspan dy=\"-3\"> / h</tspan><tspan dy=\"3\" \
+             font-size=\"10\">0</tspan><tspan dy=\"-3\">) (r ΔZ)²</tspan>"
+        }
+    }
+}
 
 /// Curves of any number of samples or pressures, each with its name, rings joined, with standard errors; the thresholds
-/// dashed, and a ring around the place where a curve reaches its own.
+/// dashed, and a ring around the place where a curve reaches its own. All have the tail of the first.
 ///
 /// # Errors
 /// Curves without a finite number.
@@ -45,7 +57,7 @@ pub fn isostatic_figure(name: &str, curves: &[(&str, &IsostaticLength)]) -> Resu
         ),
         x_label: ACROSS,
         x_range: [0.0, 1.02 * widest],
-        y_label: UP,
+        y_label: up(curves.first().map_or(Tail::default(), |(_, length)| length.tail)),
         y_unit: "1",
         y_range: with_margin(heights.chain(thresholds())),
         legend: legend.collect(),

@@ -4,7 +4,7 @@ use jamscope::io::read_packing;
 use jamscope::observe::bond_changes::BondSet;
 use jamscope::observe::fluctuations::{FluctuationRing, Fluctuations};
 use jamscope::observe::isostatic::{
-    IsostaticError, IsostaticLength, IsostaticOutcome, IsostaticRule, IsostaticSettings, Normalisation,
+    IsostaticError, IsostaticLength, IsostaticOutcome, IsostaticRule, IsostaticSettings, Normalisation, Tail,
 };
 use jamscope::relax::Fire;
 
@@ -69,6 +69,24 @@ fn the_plateau_sets_the_threshold_itself() {
     assert!((length - 6.0).abs() < 1e-14);
     let nowhere = IsostaticRule::Plateau { from: 0.9995, to: 1.0, share: 0.5 };
     assert_eq!(found(&rings, &IsostaticSettings { rule: nowhere, ..settings }).outcome, IsostaticOutcome::NoPlateau);
+}
+
+#[test]
+fn with_the_tail_of_a_free_disk_what_falls_as_the_inverse_square_is_level() {
+    // h = 24/r² beyond r = 12 and constant before: y = h (r/2)² up to a plateau of 6.
+    let rings = rings(|r| if r < 12.0 { 24.0 / 144.0 } else { 24.0 / (r * r) });
+    let rule = IsostaticRule::Plateau { from: 0.4, to: 0.9, share: 0.25 };
+    let settings = IsostaticSettings { normalisation: Normalisation::Length, rule, ..IsostaticSettings::default() };
+    let result = found(&rings, &IsostaticSettings { tail: Tail::InverseSquare, ..settings });
+    assert_eq!(result.tail, Tail::InverseSquare);
+    assert!((result.threshold.expect("a plateau") - 1.5).abs() < 1e-14);
+    assert!(result.curve.iter().skip(12).all(|point| (point.scaled_fluctuation - 6.0).abs() < 1e-13));
+    // y = r²/24 = 1.5 at r = 6; on the straight line between rings at 5.5 and 6.5 at 5.5 + (1.5 − 30.25/24)·24/12.
+    let IsostaticOutcome::Reached { length, .. } = result.outcome else { panic!("{result:?}") };
+    assert!((length - (5.5 + (36.0 - 30.25) / 12.0)).abs() < 1e-13, "{length}");
+    // With the other tail the same curve is never level: its median, 12/26, says nothing, and a quarter of it is less than y = r/12
+    // in the first ring.
+    assert_eq!(found(&rings, &settings).outcome, IsostaticOutcome::AboveFromTheStart { innermost: 1.5 });
 }
 
 #[test]

@@ -10,7 +10,7 @@ use super::{CLAIMED_ELASTIC, boundaries, elastic, screened, screening, size};
 use crate::annulus;
 
 /// The displacement in Cartesian components at a point.
-fn cartesian(medium: &dyn AngularSolution, [x, y]: [f64; 2]) -> [f64; 2] {
+pub(super) fn cartesian(medium: &dyn AngularSolution, [x, y]: [f64; 2]) -> [f64; 2] {
     let (radius, angle) = (x.hypot(y), y.atan2(x));
     let [radial, transverse] = medium.displacement(radius, angle);
     let (sine, cosine) = angle.sin_cos();

@@ -1,0 +1,92 @@
+//! [`PointForce`]: what a force on the middle of a held circle does to an elastic medium.
+
+use crate::reference::Annulus;
+use crate::reference::angular_modes::elastic::log_ratio;
+use crate::reference::angular_modes::{
+    AngularModeError, AngularSolution, ModeAmplitudes, ModeState, compliance_ratio, finite_force,
+};
+
+/// The displacement of an isotropic elastic medium in a held circle, pushed in its middle by a force along θ = 0.
+///
+/// ```text
+/// μ Δu + (λ+μ) ∇(∇·u) + F x̂ δ(r) = 0        u(R) = 0        n = 1
+/// u_r = c [k ln(R/r) − A (1 − x²)] cos θ        u_θ = −c [k ln(R/r) − (1+A) (1 − x²)] sin θ
+/// c = F/(2πμ (1+k))        k = (λ+3μ)/(λ+μ) = (3−ν)/(1+ν)        A = (2−k)/(2k)        x = r/R
+/// ```
+///
+/// Kelvin's solution and what the rim adds to it. The strain falls as 1/r; that of a disk that grows, whose forces add up to
+/// nothing, falls as 1/r². A disk that grows and is held in its place does both: its neighbours, which are not the
+/// same on all sides, push it with a force that goes through the medium to the rim.
+///
+/// # Units
+/// Radii in lengths; the force over μ, a length in two dimensions.
+///
+/// # Source
+/// Love (1927), A Treatise on the Mathematical Theory of Elasticity, §148, for the force; what the rim adds is derived here:
+/// a translation and the solution ∝ r² of mode 1.
+///
+/// # Accuracy
+/// U and V relative to |U| + |V| + r |U'| + r |V'|, the derivatives times r to the same: below 10⁻¹⁴ against
+/// [`ElasticMode`](super::elastic::ElasticMode), of which up to 7.5·10⁻¹⁵ may be its own; 3·10⁻¹⁵ found.
+///
+/// # Example
+/// ```
+/// use jamscope::reference::Annulus;
+/// use jamscope::reference::angular_modes::{AngularSolution, point_force::PointForce};
+/// let force = PointForce::new(Annulus::new(0.5, 1000.0)?, 0.3, 0.1)?;
+/// // The strain falls as 1/r.
+/// let ratio = force.stretch_fluctuation(10.0) / force.stretch_fluctuation(20.0);
+/// assert!((ratio - 2.0).abs() < 1e-2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointForce {
+    annulus: Annulus,
+    /// k.
+    kelvin: f64,
+    /// c \[length\].
+    size: f64,
+}
+
+impl PointForce {
+    /// A force F along θ = 0, given as F/μ \[length\], in a circle whose rim is held; ν of two dimensions. The inner radius only says where the solution
+    /// is of use: nearer it is not defined.
+    ///
+    /// # Errors
+    /// A Poisson's ratio that is not between −1 and 1; a force that is not finite.
+    pub fn new(annulus: Annulus, poisson_ratio: f64, force_over_shear: f64) -> Result<Self, AngularModeError> {
+        let epsilon = compliance_ratio(poisson_ratio)?;
+        finite_force(force_over_shear)?;
+        // (1+k) (1−ε) = 2.
+        let size = force_over_shear * (1.0 - epsilon) / (4.0 * std::f64::consts::PI);
+        Ok(PointForce { annulus, kelvin: (1.0 + epsilon) / (1.0 - epsilon), size })
+    }
+
+    /// The circle it is in.
+    pub fn annulus(&self) -> Annulus {
+        self.annulus
+    }
+}
+
+impl AngularSolution for PointForce {
+    fn mode(&self) -> u32 {
+        1
+    }
+
+    fn at(&self, radius: f64) -> ModeState {
+        if !self.annulus.contains(radius) {
+            return ModeState::undefined();
+        }
+        let (outer, k, c) = (self.annulus.outer_radius(), self.kelvin, self.size);
+        let x = radius / outer;
+        let logarithm = k * log_ratio(outer, radius);
+        let gap = (outer - radius) / outer * (1.0 + x);
+        let along = 0.5 * (2.0 - k) / k;
+        let across = 0.5 * (2.0 + k) / k;
+        let slope = |share: f64| c / radius * (2.0 * share * x * x - k);
+        ModeState {
+            value: ModeAmplitudes::in_phase(c * (logarithm - along * gap), -c * (logarithm - across * gap)),
+            derivative: ModeAmplitudes::in_phase(slope(along), -slope(across)),
+        }
+    }
+}
