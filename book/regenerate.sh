@@ -33,7 +33,7 @@ stability_map        table  stability_map
 excess_coordination  table  excess_coordination 1000 8
 scaling              table  scaling --out target/book/scaling
 angular_coverage     long   angular_coverage
-isostatic_collapse   long   isostatic_collapse 5548 10 0.1
+isostatic_collapse   long   isostatic_collapse figure book/src/images/isostatic/collapse_22184.svg 22184 8 50 30 100 300 1000
 relaxers             long   relaxers
 same_minimum         long   same_minimum --tolerances 0.01,0.02,0.005
 LIST

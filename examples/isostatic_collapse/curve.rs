@@ -12,20 +12,20 @@ use rand_pcg::Pcg64;
 
 use crate::sample::{Sample, radius_of};
 
-/// The plateau: between these shares of L/2.
-const PLATEAU: [f64; 2] = [0.3, 0.8];
+/// The plateau: from x to x, so that it is read at the same scaled distances at every pressure.
+const PLATEAU: [f64; 2] = [8.0, 16.0];
+
+/// x up to which the figure goes.
+const DRAWN_TO: f64 = 20.0;
+
+/// Share of L/2 within which it must end: farther out periodic images bend the field.
+const WITHIN: f64 = 0.7;
 
 /// Shares of it that end the disordered region.
 pub const SHARES: [f64; 3] = [0.7, 0.8, 0.9];
 
 /// Samples drawn anew for an error.
 const DRAWN: usize = 200;
-
-/// Where pressures are compared, from x to x.
-const COMPARED: [f64; 2] = [3.0, 10.0];
-
-/// Points of the comparison.
-const POINTS: usize = 9;
 
 /// What is looked at: h_∥ r² or h_r r.
 #[derive(Clone, Copy)]
@@ -93,7 +93,7 @@ pub struct Lengths {
 
 impl Lengths {
     /// Of all samples of a pressure.
-    pub fn of(samples: &[Sample], field: Field, average: Average) -> Result<Self, IsostaticError> {
+    pub fn of(samples: &[Sample], (field, average): (Field, Average)) -> Result<Self, IsostaticError> {
         let all: Vec<&Sample> = samples.iter().collect();
         let (plateau, products) = read(&all, field, average)?;
         let mut generator = Pcg64::seed_from_u64(1);
@@ -141,6 +141,10 @@ fn read(
     average: Average,
 ) -> Result<(f64, [Option<f64>; SHARES.len()]), IsostaticError> {
     let (excess, outer_radius) = (samples[0].excess, samples[0].outer_radius);
+    let [from, to] = PLATEAU.map(|x| x / (excess * outer_radius));
+    if to > WITHIN {
+        return Ok((f64::NAN, [None; SHARES.len()]));
+    }
     let power = field.tail().power();
     let rings = mean(samples, field, average).into_iter().map(|(radius, value)| {
         let fluctuation = value / radius.powi(power);
@@ -153,7 +157,7 @@ fn read(
         let settings = IsostaticSettings {
             normalisation: Normalisation::Length,
             tail: field.tail(),
-            rule: IsostaticRule::Plateau { from: PLATEAU[0], to: PLATEAU[1], share },
+            rule: IsostaticRule::Plateau { from, to, share },
             ..IsostaticSettings::default()
         };
         let length = IsostaticLength::of(&rings, Some(excess), 1.0, outer_radius, &settings)?;
@@ -165,31 +169,44 @@ fn read(
     Ok((plateau, products))
 }
 
-/// How far pressures lie apart as functions of x, over their plateaux: the standard deviation of the logarithm, rms over x.
-pub fn spread(pressures: &[Vec<Sample>], field: Field, average: Average) -> f64 {
-    let step = (COMPARED[1] / COMPARED[0]).powf(1.0 / (POINTS - 1) as f64);
-    let curve = |samples: &Vec<Sample>| -> Vec<f64> {
-        let (excess, outer_radius) = (samples[0].excess, samples[0].outer_radius);
-        let curve = mean(&samples.iter().collect::<Vec<_>>(), field, average);
-        let inside = |radius: f64| (PLATEAU[0]..=PLATEAU[1]).contains(&(radius / outer_radius));
-        let mut level: Vec<f64> = curve.iter().filter(|point| inside(point.0)).map(|point| point.1).collect();
-        level.sort_by(f64::total_cmp);
-        let plateau = level[level.len() / 2];
-        let radius = |point: usize| COMPARED[0] * step.powi(point as i32) / excess;
-        (0..POINTS).map(|point| (at(&curve, radius(point)) / plateau).ln()).collect()
+/// y = h_∥ r² over its plateau against x, from the geometric mean, and C at the last of the shares: for the figure.
+pub fn scaled(samples: &[Sample]) -> Result<IsostaticLength, IsostaticError> {
+    let (excess, outer_radius) = (samples[0].excess, samples[0].outer_radius);
+    let all: Vec<&Sample> = samples.iter().collect();
+    let (plateau, _) = read(&all, Field::Stretching, Average::Logarithms)?;
+    let drawn = mean(&all, Field::Stretching, Average::Logarithms).into_iter().filter(|(r, _)| r * excess < DRAWN_TO);
+    let ring = |(radius, value): (f64, f64)| FluctuationRing {
+        radius,
+        count: samples.len(),
+        mean: 0.0,
+        fluctuation: value / plateau / (radius * excess).powi(2),
+        standard_error: 0.0,
     };
-    let curves: Vec<Vec<f64>> = pressures.iter().map(curve).collect();
-    let count = curves.len() as f64;
-    let variance = |point: usize| {
-        let mean = curves.iter().map(|curve| curve[point]).sum::<f64>() / count;
-        curves.iter().map(|curve| (curve[point] - mean).powi(2)).sum::<f64>() / (count - 1.0)
+    let settings = IsostaticSettings {
+        normalisation: Normalisation::Length,
+        tail: Tail::InverseSquare,
+        rule: IsostaticRule::Threshold(SHARES[SHARES.len() - 1]),
+        ..IsostaticSettings::default()
     };
-    ((0..POINTS).map(variance).sum::<f64>() / POINTS as f64).sqrt()
+    IsostaticLength::of(&Fluctuations { rings: drawn.map(ring).collect() }, Some(excess), 1.0, outer_radius, &settings)
 }
 
-/// A curve at a radius, linear between its points.
-fn at(curve: &[(f64, f64)], radius: f64) -> f64 {
-    let after = curve.iter().position(|point| point.0 >= radius).unwrap_or(curve.len() - 1).max(1);
-    let ((r, low), (next, high)) = (curve[after - 1], curve[after]);
-    low + (radius - r) / (next - r) * (high - low)
+/// The power of ΔZ that ℓ follows at every share, with its standard error, from pressures that have one: weighted least squares
+/// of ln ℓ against ln ΔZ.
+pub fn powers(pressures: &[(f64, Lengths)]) -> [Option<(f64, f64)>; SHARES.len()] {
+    std::array::from_fn(|place| {
+        let points: Vec<[f64; 3]> = pressures
+            .iter()
+            .filter_map(|(excess, lengths)| {
+                let (product, error) = lengths.products[place]?;
+                Some([excess.ln(), (product / excess).ln(), (product / error).powi(2)])
+            })
+            .collect();
+        let total: f64 = points.iter().map(|[_, _, weight]| weight).sum();
+        let mean = |of: usize| points.iter().map(|point| point[2] * point[of]).sum::<f64>() / total;
+        let (x, y) = (mean(0), mean(1));
+        let square: f64 = points.iter().map(|point| point[2] * (point[0] - x).powi(2)).sum();
+        let slope = points.iter().map(|point| point[2] * (point[0] - x) * (point[1] - y)).sum::<f64>() / square;
+        (points.len() > 1).then(|| (slope, square.sqrt().recip()))
+    })
 }

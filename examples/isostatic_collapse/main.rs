@@ -6,9 +6,10 @@
 //!
 //! Without more: 22184 Hertzian disks, 2 packings, 150 centres each, p = 10, 30, 100, 300, 1000. The packing is periodic and the disk free, so
 //! that far away h_∥ falls as 1/r². Printed for every pressure: ΔZ, the plateau of h_∥ r² over d_0 and C at some shares of it, with errors from a
-//! bootstrap over centres; means over centres are those of h² and geometric ones. Then how far the pressures lie apart.
+//! bootstrap over centres; means over centres are those of h² and geometric ones. The same for h_r r. Then the power of ΔZ that the length follows.
 //!
 //! - `relaxed D_0`, `damped D_0`: the disk grows by D_0 and the packing relaxes, by FIRE and Newton or by damped dynamics; else the linear response.
+//! - `figure FILE`: h_∥ r² over its plateau against r ΔZ, geometric means, into an SVG file.
 //! - `held`: a circle with a held rim, its centre held or free; beside what is measured, what a point force makes of the difference.
 
 mod curve;
@@ -19,8 +20,10 @@ use std::error::Error;
 
 use jamscope::contact::{Hertzian, Prestress};
 use jamscope::linear::{ElasticModuli, LinearError};
+use jamscope::observe::IsostaticLength;
+use jamscope::report::figures::isostatic::isostatic_figure;
 
-use curve::{Average, Field, Lengths, SHARES, spread};
+use curve::{Average, Field, Lengths, SHARES, powers, scaled};
 use held::print_held;
 use sample::{Growth, Sample, prepared};
 
@@ -39,6 +42,7 @@ const LOOKED_AT: [(Field, Average); 4] = [
 struct Arguments {
     growth: Growth,
     held: bool,
+    figure: Option<String>,
     disk_count: usize,
     packing_count: u64,
     centre_count: usize,
@@ -48,7 +52,7 @@ struct Arguments {
 impl Arguments {
     fn read() -> Result<Self, Box<dyn Error>> {
         let mut words = std::env::args().skip(1).peekable();
-        let (mut growth, mut held) = (Growth::Linear, false);
+        let (mut growth, mut held, mut figure) = (Growth::Linear, false, None);
         while let Some(option) = words.next_if(|word| word.parse::<f64>().is_err()) {
             let mut increase = || {
                 words
@@ -59,9 +63,10 @@ impl Arguments {
             };
             match option.as_str() {
                 "held" => held = true,
+                "figure" => figure = Some(words.next().ok_or("figure needs a file")?),
                 "relaxed" => growth = Growth::Relaxed { increase: increase()?, damped: false },
                 "damped" => growth = Growth::Relaxed { increase: increase()?, damped: true },
-                _ => return Err(format!("{option:?} is none of relaxed, damped, held").into()),
+                _ => return Err(format!("{option:?} is none of relaxed, damped, figure, held").into()),
             }
         }
         let numbers: Vec<f64> = words.map(|word| word.parse()).collect::<Result<_, _>>()?;
@@ -70,6 +75,7 @@ impl Arguments {
         Ok(Arguments {
             growth,
             held,
+            figure,
             disk_count: number(0, 22184.0) as usize,
             packing_count: number(1, 2.0) as u64,
             centre_count: number(2, 150.0) as usize,
@@ -79,9 +85,10 @@ impl Arguments {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let Arguments { growth, held, disk_count, packing_count, centre_count, pressures } = Arguments::read()?;
+    let Arguments { growth, held, figure, disk_count, packing_count, centre_count, pressures } = Arguments::read()?;
     println!("{disk_count} disks, {packing_count} packings, {centre_count} centres each, {growth}");
     let mut curves = Vec::new();
+    let mut lengths: [Vec<(f64, Lengths)>; LOOKED_AT.len()] = Default::default();
     for &pressure in &pressures {
         let packings = prepared(disk_count, packing_count, pressure)?;
         if held {
@@ -95,16 +102,29 @@ fn main() -> Result<(), Box<dyn Error>> {
             "p = {pressure}: ΔZ = {excess:.4}, L/2 = {radius:.1}, K = {bulk:.0}, G = {shear:.0}, {} centres; C at shares {SHARES:?}",
             samples.len()
         );
-        for (field, average) in LOOKED_AT {
-            println!("  {field:<6}, {average:<16}: {}", Lengths::of(&samples, field, average)?);
+        for (looked_at, all) in LOOKED_AT.into_iter().zip(&mut lengths) {
+            let found = Lengths::of(&samples, looked_at)?;
+            println!("  {:<6}, {:<16}: {found}", looked_at.0, looked_at.1);
+            all.push((excess, found));
         }
         curves.push(samples);
     }
-    if curves.len() > 1 {
-        for (field, average) in LOOKED_AT {
-            let apart = spread(&curves, field, average);
-            println!("pressures apart in ln of {field} over its plateau, {average}: {apart:.3}");
+    for ((field, average), lengths) in LOOKED_AT.iter().zip(&lengths) {
+        print!("the power of ΔZ that ℓ follows, {field:<6}, {average:<16}:");
+        for power in powers(lengths) {
+            match power {
+                Some((power, error)) => print!(" {power:.2} ± {error:.2}"),
+                None => print!(" none"),
+            }
         }
+        println!();
+    }
+    if let Some(file) = figure {
+        let all =
+            pressures.iter().zip(&curves).map(|(pressure, samples)| Ok((format!("p = {pressure}"), scaled(samples)?)));
+        let all = all.collect::<Result<Vec<_>, Box<dyn Error>>>()?;
+        let curves: Vec<(&str, &IsostaticLength)> = all.iter().map(|(name, length)| (name.as_str(), length)).collect();
+        std::fs::write(&file, isostatic_figure(&format!("{disk_count} disks, free centre"), &curves)?.to_svg())?;
     }
     Ok(())
 }
