@@ -33,6 +33,7 @@ stability_map        table  stability_map
 excess_coordination  table  excess_coordination 1000 8
 scaling              table  scaling --out target/book/scaling
 angular_coverage     long   angular_coverage
+isostatic_held       table  isostatic_collapse held 5548 10 20 40 400 4000
 isostatic_collapse   long   isostatic_collapse figure book/src/images/isostatic/collapse_22184.svg 22184 8 50 30 100 300 1000
 relaxers             long   relaxers
 same_minimum         long   same_minimum --tolerances 0.01,0.02,0.005
@@ -82,6 +83,12 @@ transition() {
     "$jamscope" study --recipe order-parameters --scale medium --out "$work/transition"
     python3 book/pictures.py study "$work/transition/report.html" "$images"
     record "transition/*.svg" "jamscope study --recipe order-parameters --scale medium --out DIR && python3 book/pictures.py study DIR/report.html $images" "from 1 on"
+}
+
+isostatic_collapse() {
+    local command="isostatic_collapse figure $images/isostatic/collapse_22184.svg 22184 8 50 30 100 300 1000"
+    table isostatic_collapse "$command"
+    record "isostatic/collapse_22184.svg" "cargo run --release --features measurements --example ${command/ / -- }" "1 to 8"
 }
 
 # The output behind a table, with what made it above it.

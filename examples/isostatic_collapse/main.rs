@@ -71,6 +71,9 @@ impl Arguments {
         }
         let numbers: Vec<f64> = words.map(|word| word.parse()).collect::<Result<_, _>>()?;
         let number = |index: usize, default: f64| numbers.get(index).copied().unwrap_or(default);
+        if numbers.iter().any(|&value| value.is_nan() || value <= 0.0) {
+            return Err("numbers of disks, packings and centres, and pressures, are positive".into());
+        }
         let pressures = if numbers.len() > 3 { numbers[3..].to_vec() } else { PRESSURES.to_vec() };
         Ok(Arguments {
             growth,

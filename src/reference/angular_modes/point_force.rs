@@ -22,8 +22,8 @@ use crate::reference::angular_modes::{
 /// Radii in lengths; the force over μ, a length in two dimensions.
 ///
 /// # Source
-/// Love (1927), A Treatise on the Mathematical Theory of Elasticity, §148, for the force; what the rim adds is derived here:
-/// a translation and the solution ∝ r² of mode 1.
+/// Timoshenko & Goodier (1970), Theory of Elasticity, ch. 4, for the force; what the rim adds is derived here: a translation and
+/// the solution ∝ r² of mode 1.
 ///
 /// # Accuracy
 /// U and V relative to |U| + |V| + r |U'| + r |V'|, the derivatives times r to the same: below 10⁻¹⁴ against
