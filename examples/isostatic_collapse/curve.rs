@@ -116,6 +116,9 @@ impl Lengths {
 
 impl fmt::Display for Lengths {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.plateau.is_nan() {
+            return write!(formatter, "the box is too small for a plateau at x = {} to {}", PLATEAU[0], PLATEAU[1]);
+        }
         write!(formatter, "plateau {:.2} d_0; C =", self.plateau)?;
         self.products.iter().try_for_each(|product| match product {
             Some((product, error)) => write!(formatter, " {product:.2} ± {error:.2}"),
