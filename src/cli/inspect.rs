@@ -134,7 +134,9 @@ fn of<const D: usize, L: PairLaw>(
         mean_contact_force: network.mean_contact_force(),
         largest_contact_force: largest(&mut contacts.iter().map(|contact| contact.force)),
         largest_net_force: network.largest_net_force(),
-        mean_overlap: contacts.iter().map(|contact| contact.overlap).sum::<f64>() / contacts.len().max(1) as f64,
+        // From a positive zero: an empty sum of floats is a negative one.
+        mean_overlap: contacts.iter().map(|contact| contact.overlap).fold(0.0, |sum, overlap| sum + overlap)
+            / contacts.len().max(1) as f64,
         largest_overlap: largest(&mut contacts.iter().map(|contact| contact.overlap)),
         certificate: Certificate::of(packing, law, None)?,
         forces: ForceDistribution::of(&network),
