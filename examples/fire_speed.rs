@@ -1,7 +1,7 @@
 //! Time of a particle step of FIRE, printed as one JSON line; jamscope's side of `benches/peers/lammps/compare.sh`.
 //!
 //! ```text
-//! cargo run --release --features measurements --example fire_speed -- PACKING [--steps N] [--replicate K] [--law hertz|hooke]
+//! cargo run --release --features measurements --example fire_speed -- PACKING [--steps N] [--replicate K] [--law hertz|hooke] [--precision double|mixed]
 //! ```
 //!
 //! The packing (extended XYZ, periodic) is tiled K × K, the smallest disk nearest to the middle of the box grows by 0.1
@@ -20,7 +20,7 @@ use std::error::Error;
 use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw};
 use jamscope::io::read_packing;
 use jamscope::packing::Packing;
-use jamscope::relax::{Fire, ForceLimit, Relaxer};
+use jamscope::relax::{Fire, ForceLimit, Precision, Relaxer};
 
 use middle::inflated;
 use processor::cpu_seconds;
@@ -31,6 +31,7 @@ const HOOKEAN_STIFFNESS: f64 = 1e4;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (mut path, mut law) = (None, String::from("hertz"));
+    let mut precision = String::from("double");
     let (mut steps, mut replicate) = (2000usize, 1usize);
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
@@ -40,22 +41,32 @@ fn main() -> Result<(), Box<dyn Error>> {
         match argument.as_str() {
             "--steps" => steps = number()?,
             "--replicate" => replicate = number()?,
+            "--precision" => precision = arguments.next().ok_or("--precision needs a name")?,
             "--law" => law = arguments.next().ok_or("--law needs a name")?,
             _ => path = Some(argument),
         }
     }
     let path = path.unwrap_or_else(|| "fixtures/packings/hertz_N5548_p100.xyz".into());
     let packing = inflated(tiled(&read_packing::<2>(&path)?, replicate)?)?;
+    let precision = match precision.as_str() {
+        "double" => Precision::Double,
+        "mixed" => Precision::Mixed,
+        other => return Err(format!("--precision: double or mixed, not {other}").into()),
+    };
     match law.as_str() {
-        "hertz" => timed(packing, &Hertzian::default(), steps),
-        "hooke" => timed(packing, &Hookean { stiffness: HOOKEAN_STIFFNESS }, steps),
+        "hertz" => timed(packing, &Hertzian::default(), (steps, precision)),
+        "hooke" => timed(packing, &Hookean { stiffness: HOOKEAN_STIFFNESS }, (steps, precision)),
         other => Err(format!("--law: hertz or hooke, not {other}").into()),
     }
 }
 
-fn timed<L: PairLaw>(packing: Packing<2>, law: &L, steps: usize) -> Result<(), Box<dyn Error>> {
+fn timed<L: PairLaw>(
+    packing: Packing<2>,
+    law: &L,
+    (steps, precision): (usize, Precision),
+) -> Result<(), Box<dyn Error>> {
     let disks = packing.len();
-    let fire = Fire { limit: ForceLimit::Relative(0.0), step_limit: steps, ..Fire::default() };
+    let fire = Fire { limit: ForceLimit::Relative(0.0), step_limit: steps, precision, ..Fire::default() };
     // One thread does all the work (RAYON_NUM_THREADS=1), so its time is the time of the relaxation.
     let before = cpu_seconds();
     let outcome = fire.relax(packing, law, &mut ())?;

@@ -3,15 +3,23 @@
 //! A position is kept as an unevaluated sum `high + low` of two vectors, so that the distance of two touching disks is
 //! known to the rounding of the distance itself (2·10⁻¹⁶), not to that of the side of the box (10⁻¹⁴ and more).
 
+use std::ops::{Add, Sub};
+
 /// A vector of D components.
 pub type Vector<const D: usize> = [f64; D];
+
+/// What the loop over contacts may reckon with: `f64`, or `f32` while disks are far from rest.
+pub trait Number: Copy + Default + Send + Sync + Add<Output = Self> + Sub<Output = Self> {}
+
+impl Number for f32 {}
+impl Number for f64 {}
 
 // Plain loops: a closure a component may stay a call inside the hot loop.
 
 /// `a + b`, component by component.
 #[inline(always)]
-pub fn sum<const D: usize>(a: Vector<D>, b: Vector<D>) -> Vector<D> {
-    let mut result = [0.0; D];
+pub fn sum<T: Number, const D: usize>(a: [T; D], b: [T; D]) -> [T; D] {
+    let mut result = [T::default(); D];
     for d in 0..D {
         result[d] = a[d] + b[d];
     }
@@ -20,8 +28,8 @@ pub fn sum<const D: usize>(a: Vector<D>, b: Vector<D>) -> Vector<D> {
 
 /// `a − b`, component by component.
 #[inline(always)]
-pub fn difference<const D: usize>(a: Vector<D>, b: Vector<D>) -> Vector<D> {
-    let mut result = [0.0; D];
+pub fn difference<T: Number, const D: usize>(a: [T; D], b: [T; D]) -> [T; D] {
+    let mut result = [T::default(); D];
     for d in 0..D {
         result[d] = a[d] - b[d];
     }

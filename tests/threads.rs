@@ -12,7 +12,7 @@ use jamscope::contact::damping::{ConstantDamping, DampingLaw};
 use jamscope::contact::{Assembly, Hertzian, PairLaw};
 use jamscope::io::read_packing;
 use jamscope::packing::Packing;
-use jamscope::relax::{Fire, ForceLimit, Relaxer};
+use jamscope::relax::{Fire, ForceLimit, Precision, Relaxer};
 use jamscope::vector::{difference, norm, scaled, sum};
 
 static THREADS: Once = Once::new();
@@ -100,16 +100,18 @@ fn damped_forces_across_tiles_are_elastic_forces_and_damping() {
 
 #[test]
 fn a_relaxation_has_the_bits_of_one_thread() {
-    let fire = Fire { limit: ForceLimit::Relative(0.0), step_limit: 150, ..Fire::default() };
-    let start = large();
-    let law = Hertzian::default();
-    let here = fire.relax(start.clone(), &law, &mut ()).expect("disks apart");
-    let alone = on_one_thread(|| fire.relax(start, &law, &mut ())).expect("disks apart");
-    assert!(here.cost.rebuild_count > 1, "no list was made anew");
-    assert_eq!(here.cost.force_evaluation_count, alone.cost.force_evaluation_count);
-    assert_eq!(here.state.positions(), alone.state.positions());
-    assert_eq!(here.state.corrections(), alone.state.corrections());
-    assert_eq!(here.residual, alone.residual);
+    for precision in [Precision::Double, Precision::Mixed] {
+        let fire = Fire { limit: ForceLimit::Relative(0.0), step_limit: 150, precision, ..Fire::default() };
+        let start = large();
+        let law = Hertzian::default();
+        let here = fire.relax(start.clone(), &law, &mut ()).expect("disks apart");
+        let alone = on_one_thread(|| fire.relax(start, &law, &mut ())).expect("disks apart");
+        assert!(here.cost.rebuild_count > 1, "no list was made anew");
+        assert_eq!(here.cost.force_evaluation_count, alone.cost.force_evaluation_count);
+        assert_eq!(here.state.positions(), alone.state.positions());
+        assert_eq!(here.state.corrections(), alone.state.corrections());
+        assert_eq!(here.residual, alone.residual);
+    }
 }
 
 /// Velocities of the mobile disks, as if they had been moving.

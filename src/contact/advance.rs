@@ -5,21 +5,18 @@
 
 use std::iter::repeat_with;
 
-use crate::contact::forces::{Across, Task, add_incoming, sweep_border, sweep_inner};
-use crate::contact::law::PairLaw;
+use crate::contact::forces::{Across, Kernel, Task, add_incoming, sweep_border, sweep_inner};
 use crate::contact::pair_list::PairList;
-use crate::contact::totals::Totals;
 use crate::side_by_side;
-use crate::vector::Vector;
 
 /// What moves, and what acts on it.
-pub struct Movers<'a, const D: usize> {
+pub struct Movers<'a, T, const D: usize> {
     /// Velocities of the mobile disks \[length / time\].
-    pub velocities: &'a mut [Vector<D>],
+    pub velocities: &'a mut [[T; D]],
     /// Displacements of all disks \[length\].
-    pub displacements: &'a mut [Vector<D>],
+    pub displacements: &'a mut [[T; D]],
     /// Forces on all disks, before the step and then after it \[force\].
-    pub forces: &'a mut [Vector<D>],
+    pub forces: &'a mut [[T; D]],
 }
 
 /// Moves all mobile disks by `kick` (forces, velocities, displacements of some of them) and evaluates the forces where they then
@@ -27,19 +24,17 @@ pub struct Movers<'a, const D: usize> {
 /// the mobile disks, in a fixed order.
 ///
 /// # Accuracy
-/// The bits of `kick` on whole arrays and [`forces`](super::forces::forces) after it.
-pub fn advance<const D: usize, L: PairLaw, K: Send, P: Send>(
-    law: &L,
+/// The bits of `kick` on whole arrays and the forces of the kernel after it.
+pub(super) fn advance<const D: usize, K: Kernel<D>, M: Send, P: Send>(
+    kernel: &K,
     pairs: &PairList<D>,
-    movers: Movers<'_, D>,
-    across: &mut Across<D>,
-    kick: impl Fn(&[Vector<D>], &mut [Vector<D>], &mut [Vector<D>]) -> K + Send + Sync,
-    look: impl Fn(&[Vector<D>], &[Vector<D>]) -> P + Send + Sync,
-) -> (Vec<K>, Vec<P>) {
+    movers: Movers<'_, K::Number, D>,
+    across: &mut Across<K::Number, D>,
+    kick: impl Fn(&[[K::Number; D]], &mut [[K::Number; D]], &mut [[K::Number; D]]) -> M + Send + Sync,
+    look: impl Fn(&[[K::Number; D]], &[[K::Number; D]]) -> P + Send + Sync,
+) -> (Vec<M>, Vec<P>) {
     let Movers { velocities, displacements, forces } = movers;
     let size = pairs.tile_size;
-    // Asked for by nobody.
-    let totals = || Totals::ZERO;
     // Tiles of held disks have no velocities.
     let arrays = displacements.chunks_mut(size).zip(forces.chunks_mut(size));
     let arrays = arrays.zip(velocities.chunks_mut(size).chain(repeat_with(Default::default)));
@@ -48,12 +43,12 @@ pub fn advance<const D: usize, L: PairLaw, K: Send, P: Send>(
         let mobile = velocities.len();
         let kicked = kick(&forces[..mobile], velocities, &mut displacements[..mobile]);
         let offset = (place * size) as u32;
-        let task = Task { law, pairs, displacements: (displacements, offset), tile, offset };
-        sweep_inner::<D, L, false>(&task, forces, &mut totals());
+        let task = Task { kernel, pairs, displacements: (displacements, offset), tile, offset };
+        sweep_inner(&task, forces);
         let (begin, end) = (tile.interior.start.min(mobile), tile.interior.end.min(mobile));
         (kicked, look(&forces[begin..end], &velocities[begin..end]))
     });
-    let (kicked, mut looked): (Vec<K>, Vec<P>) = inside.into_iter().unzip();
+    let (kicked, mut looked): (Vec<M>, Vec<P>) = inside.into_iter().unzip();
     if pairs.tiles.len() == 1 {
         return (kicked, looked);
     }
@@ -61,8 +56,8 @@ pub fn advance<const D: usize, L: PairLaw, K: Send, P: Send>(
     let displacements = &*displacements;
     let arrays = forces.chunks_mut(size).zip(&mut across.0);
     side_by_side::each(pairs.tiles.iter().zip(arrays).enumerate(), |(place, (tile, (forces, across)))| {
-        let task = Task { law, pairs, displacements: (displacements, 0), tile, offset: (place * size) as u32 };
-        sweep_border::<D, L, false>(&task, forces, across, &mut totals());
+        let task = Task { kernel, pairs, displacements: (displacements, 0), tile, offset: (place * size) as u32 };
+        sweep_border(&task, forces, across, &mut kernel.begin());
     });
     let arrays = forces.chunks_mut(size).zip(velocities.chunks(size).chain(repeat_with(Default::default)));
     let margins =

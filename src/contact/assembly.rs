@@ -11,7 +11,7 @@ mod upkeep;
 use std::iter::repeat_with;
 
 use crate::contact::advance::{Movers, advance};
-use crate::contact::forces::{self, Across};
+use crate::contact::forces::{self, Across, Plain};
 use crate::contact::law::PairLaw;
 use crate::contact::neighbours::{Disks, ListRoom, build_pairs, spatial_order};
 use crate::contact::pair_list::PairList;
@@ -52,7 +52,7 @@ pub struct Assembly<const D: usize, L> {
     /// Where the disks were at the last such look, and when that was.
     seen: Vec<Vector<D>>,
     seen_at: usize,
-    across: Across<D>,
+    across: Across<f64, D>,
     list_room: ListRoom<D>,
     smallest_radius: f64,
     /// Of the list of all pairs.
@@ -235,7 +235,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
         let pairs = in_use(self.near_skin, &self.near_pairs, &self.pairs);
         let movers = Movers { velocities, displacements: &mut self.displacements, forces: &mut self.forces };
-        Some(advance(&self.law, pairs, movers, &mut self.across, kick, look))
+        Some(advance(&Plain { law: &self.law, pairs }, pairs, movers, &mut self.across, kick, look))
     }
 
     /// Forces as by [`Assembly::evaluate`], with energy, virial and contact count.

@@ -20,18 +20,18 @@ use crate::contact::pair_list::{BLOCK, Block, PairList, Tile};
 use crate::contact::rows::{gather, scatter};
 use crate::contact::totals::{Tally, Totals};
 use crate::side_by_side;
-use crate::vector::{Vector, difference, sum};
+use crate::vector::{Number, Vector, difference, sum};
 
 /// Forces of pairs across the border of a tile, for each tile: those on the first disks. Room that is kept between two
 /// evaluations; what it holds before one does not matter.
 #[derive(Debug, Clone, Default)]
-pub struct Across<const D: usize>(pub(super) Vec<Vec<Vector<D>>>);
+pub struct Across<T, const D: usize>(pub(super) Vec<Vec<[T; D]>>);
 
-impl<const D: usize> Across<D> {
+impl<T: Number, const D: usize> Across<T, D> {
     pub(super) fn fit(&mut self, pairs: &PairList<D>) {
         self.0.resize(pairs.tiles.len(), Vec::new());
         for (room, tile) in self.0.iter_mut().zip(&pairs.tiles) {
-            room.resize(tile.border_pairs.len(), [0.0; D]);
+            room.resize(tile.border_pairs.len(), [T::default(); D]);
         }
     }
 }
@@ -47,10 +47,10 @@ pub fn forces<const D: usize, L: PairLaw>(
     law: &L,
     pairs: &PairList<D>,
     displacements: &[Vector<D>],
-    across: &mut Across<D>,
+    across: &mut Across<f64, D>,
     forces: &mut [Vector<D>],
 ) {
-    let _ = all_tiles::<D, L, false>(law, pairs, displacements, across, forces);
+    let _ = all_tiles(&Plain { law, pairs }, pairs, displacements, across, forces);
 }
 
 /// Forces as by [`forces`], with energy, virial, contact count and mean force in the same pass.
@@ -58,107 +58,170 @@ pub fn forces_and_totals<const D: usize, L: PairLaw>(
     law: &L,
     pairs: &PairList<D>,
     displacements: &[Vector<D>],
-    across: &mut Across<D>,
+    across: &mut Across<f64, D>,
     forces: &mut [Vector<D>],
 ) -> Totals<D> {
-    all_tiles::<D, L, true>(law, pairs, displacements, across, forces)
+    let mut totals = Totals::ZERO;
+    for part in all_tiles(&Summed { law, pairs }, pairs, displacements, across, forces) {
+        totals.add(&part);
+    }
+    totals
 }
 
-fn all_tiles<const D: usize, L: PairLaw, const TOTALS: bool>(
-    law: &L,
+/// What the loop does with a block of pairs.
+pub(super) trait Kernel<const D: usize>: Sync {
+    /// What it reckons with.
+    type Number: Number;
+    /// Room for a block.
+    type Columns;
+    /// What is summed over a tile beside the forces.
+    type Sums: Send;
+
+    /// Room and sums to begin a tile with.
+    fn begin(&self) -> (Self::Columns, Self::Sums);
+
+    /// The force of each pair of a block, from displacements that begin with those of a disk.
+    fn pull<'a>(
+        &self,
+        block: usize,
+        displacements: (&[[Self::Number; D]], u32),
+        room: &'a mut (Self::Columns, Self::Sums),
+    ) -> &'a [[Self::Number; D]; BLOCK];
+}
+
+/// Forces alone.
+pub(super) struct Plain<'a, const D: usize, L> {
+    pub law: &'a L,
+    pub pairs: &'a PairList<D>,
+}
+
+impl<const D: usize, L: PairLaw> Kernel<D> for Plain<'_, D, L> {
+    type Number = f64;
+    type Columns = Columns<D>;
+    type Sums = ();
+
+    fn begin(&self) -> (Columns<D>, ()) {
+        (Columns::new(), ())
+    }
+
+    fn pull<'a>(
+        &self,
+        block: usize,
+        displacements: (&[Vector<D>], u32),
+        (columns, ()): &'a mut (Columns<D>, ()),
+    ) -> &'a [Vector<D>; BLOCK] {
+        fill(self.law, self.pairs, displacements, &self.pairs.blocks[block], columns);
+        &columns.pull
+    }
+}
+
+/// Forces and totals.
+struct Summed<'a, const D: usize, L> {
+    law: &'a L,
+    pairs: &'a PairList<D>,
+}
+
+impl<const D: usize, L: PairLaw> Kernel<D> for Summed<'_, D, L> {
+    type Number = f64;
+    type Columns = Columns<D>;
+    type Sums = Totals<D>;
+
+    fn begin(&self) -> (Columns<D>, Totals<D>) {
+        (Columns::new(), Totals::ZERO)
+    }
+
+    fn pull<'a>(
+        &self,
+        block: usize,
+        displacements: (&[Vector<D>], u32),
+        (columns, totals): &'a mut (Columns<D>, Totals<D>),
+    ) -> &'a [Vector<D>; BLOCK] {
+        let block = &self.pairs.blocks[block];
+        fill(self.law, self.pairs, displacements, block, columns);
+        pulp::Arch::new().dispatch(Tally { law: self.law, columns: &*columns, count: block.pair_count, totals });
+        &columns.pull
+    }
+}
+
+/// Forces on all disks; the sums of each tile.
+pub(super) fn all_tiles<const D: usize, K: Kernel<D>>(
+    kernel: &K,
     pairs: &PairList<D>,
-    displacements: &[Vector<D>],
-    across: &mut Across<D>,
-    forces: &mut [Vector<D>],
-) -> Totals<D> {
+    displacements: &[[K::Number; D]],
+    across: &mut Across<K::Number, D>,
+    forces: &mut [[K::Number; D]],
+) -> Vec<K::Sums> {
     if let [tile] = pairs.tiles.as_slice() {
-        let mut totals = Totals::ZERO;
-        let task = Task { law, pairs, displacements: (displacements, 0), tile, offset: 0 };
-        sweep_inner::<D, L, TOTALS>(&task, forces, &mut totals);
-        return totals;
+        let task = Task { kernel, pairs, displacements: (displacements, 0), tile, offset: 0 };
+        return vec![sweep_inner(&task, forces).1];
     }
     across.fit(pairs);
     let room = forces.chunks_mut(pairs.tile_size).zip(&mut across.0);
-    let parts = side_by_side::each(pairs.tiles.iter().zip(room).enumerate(), |(place, (tile, (forces, across)))| {
-        let mut totals = Totals::ZERO;
+    let sums = side_by_side::each(pairs.tiles.iter().zip(room).enumerate(), |(place, (tile, (forces, across)))| {
         let offset = (place * pairs.tile_size) as u32;
-        let task = Task { law, pairs, displacements: (displacements, 0), tile, offset };
-        sweep_inner::<D, L, TOTALS>(&task, forces, &mut totals);
-        sweep_border::<D, L, TOTALS>(&task, forces, across, &mut totals);
-        totals
+        let task = Task { kernel, pairs, displacements: (displacements, 0), tile, offset };
+        let mut room = sweep_inner(&task, forces);
+        sweep_border(&task, forces, across, &mut room);
+        room.1
     });
     let tiles = pairs.tiles.iter().zip(forces.chunks_mut(pairs.tile_size)).enumerate();
     side_by_side::each(tiles, |(place, (tile, forces))| {
         add_incoming(tile, place * pairs.tile_size, across, forces);
     });
-    let mut totals = Totals::ZERO;
-    if TOTALS {
-        for part in &parts {
-            totals.add(part);
-        }
-    }
-    totals
+    sums
 }
 
 /// What the loop over a tile reads.
-pub(super) struct Task<'a, const D: usize, L> {
-    pub law: &'a L,
+pub(super) struct Task<'a, const D: usize, K: Kernel<D>> {
+    pub kernel: &'a K,
     pub pairs: &'a PairList<D>,
     /// Displacements from this disk on.
-    pub displacements: (&'a [Vector<D>], u32),
+    pub displacements: (&'a [[K::Number; D]], u32),
     pub tile: &'a Tile,
     /// First disk of the tile.
     pub offset: u32,
 }
 
 /// Forces of the pairs within a tile on its disks, which are overwritten.
-pub(super) fn sweep_inner<const D: usize, L: PairLaw, const TOTALS: bool>(
-    task: &Task<'_, D, L>,
-    forces: &mut [Vector<D>],
-    totals: &mut Totals<D>,
-) {
-    forces.fill([0.0; D]);
-    let mut columns = Columns::<D>::new();
-    for block in &task.pairs.blocks[task.tile.inner.clone()] {
-        evaluate_block(task, block, &mut columns, TOTALS.then_some(&mut *totals));
-        scatter(&columns.pull, task.pairs, block, (forces, task.offset));
+pub(super) fn sweep_inner<const D: usize, K: Kernel<D>>(
+    task: &Task<'_, D, K>,
+    forces: &mut [[K::Number; D]],
+) -> (K::Columns, K::Sums) {
+    forces.fill([K::Number::default(); D]);
+    let mut room = task.kernel.begin();
+    for block in task.tile.inner.clone() {
+        let pull = task.kernel.pull(block, task.displacements, &mut room);
+        scatter(pull, task.pairs, &task.pairs.blocks[block], (forces, task.offset));
     }
+    room
 }
 
 /// Adds the forces of the pairs across the border of a tile to its disks; those on the first disks are kept for the others.
-pub(super) fn sweep_border<const D: usize, L: PairLaw, const TOTALS: bool>(
-    task: &Task<'_, D, L>,
-    forces: &mut [Vector<D>],
-    across: &mut [Vector<D>],
-    totals: &mut Totals<D>,
+pub(super) fn sweep_border<const D: usize, K: Kernel<D>>(
+    task: &Task<'_, D, K>,
+    forces: &mut [[K::Number; D]],
+    across: &mut [[K::Number; D]],
+    room: &mut (K::Columns, K::Sums),
 ) {
-    let mut columns = Columns::<D>::new();
-    for block in &task.pairs.blocks[task.tile.border.clone()] {
-        evaluate_block(task, block, &mut columns, TOTALS.then_some(&mut *totals));
+    for place in task.tile.border.clone() {
+        let pull = task.kernel.pull(place, task.displacements, room);
+        let block = &task.pairs.blocks[place];
         let first = &task.pairs.first[block.pairs..block.pairs + block.pair_count];
-        let room = &mut across[block.pairs - task.tile.border_pairs.start..];
-        scatter_to_border(&columns.pull, (first, task.offset), room, forces);
+        let across = &mut across[block.pairs - task.tile.border_pairs.start..];
+        scatter_to_border(pull, (first, task.offset), across, forces);
     }
 }
 
 /// Adds the forces of pairs of other tiles to the disks of a tile, which begins with disk `offset`.
-pub(super) fn add_incoming<const D: usize>(tile: &Tile, offset: usize, across: &Across<D>, forces: &mut [Vector<D>]) {
+pub(super) fn add_incoming<T: Number, const D: usize>(
+    tile: &Tile,
+    offset: usize,
+    across: &Across<T, D>,
+    forces: &mut [[T; D]],
+) {
     for &(disk, from, pair) in &tile.incoming {
         let force = &mut forces[disk as usize - offset];
         *force = difference(*force, across.0[from as usize][pair as usize]);
-    }
-}
-
-/// Fills the columns of a block and adds to the totals, if they are asked for.
-fn evaluate_block<const D: usize, L: PairLaw>(
-    task: &Task<'_, D, L>,
-    block: &Block,
-    columns: &mut Columns<D>,
-    totals: Option<&mut Totals<D>>,
-) {
-    fill(task.law, task.pairs, task.displacements, block, columns);
-    if let Some(totals) = totals {
-        pulp::Arch::new().dispatch(Tally { law: task.law, columns, count: block.pair_count, totals });
     }
 }
 
@@ -194,11 +257,11 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
 }
 
 /// Few pairs: no rows of fixed length here.
-fn scatter_to_border<const D: usize>(
-    pull: &[Vector<D>; BLOCK],
+fn scatter_to_border<T: Number, const D: usize>(
+    pull: &[[T; D]; BLOCK],
     (first, offset): (&[u32], u32),
-    across: &mut [Vector<D>],
-    forces: &mut [Vector<D>],
+    across: &mut [[T; D]],
+    forces: &mut [[T; D]],
 ) {
     for ((&pull, &i), across) in pull.iter().zip(first).zip(across) {
         *across = pull;

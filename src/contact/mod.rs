@@ -19,6 +19,7 @@ mod pruned;
 mod rows;
 #[cfg(feature = "linear")]
 mod selected;
+pub mod single;
 pub mod stiffness;
 pub mod totals;
 

@@ -3,7 +3,7 @@
 //! Both know no vectors; a row reads and writes its first disk once.
 
 use crate::contact::pair_list::{BLOCK, Block, LONGEST_ROW, PairList};
-use crate::vector::{Vector, difference, sum};
+use crate::vector::{Number, difference, sum};
 
 /// First disks of the rows of a block, counted from its origin.
 #[inline(always)]
@@ -21,24 +21,24 @@ fn ends_of<'a, const D: usize>(pairs: &'a PairList<D>, block: &Block) -> &'a [u3
 macro_rules! with_length {
     ($block:expr, $call:ident($($argument:expr),*)) => {
         match $block.row_length {
-            1 => $call::<D, 1>($($argument),*),
-            2 => $call::<D, 2>($($argument),*),
-            3 => $call::<D, 3>($($argument),*),
-            4 => $call::<D, 4>($($argument),*),
-            5 => $call::<D, 5>($($argument),*),
-            6 => $call::<D, 6>($($argument),*),
-            7 => $call::<D, 7>($($argument),*),
-            _ => $call::<D, LONGEST_ROW>($($argument),*),
+            1 => $call::<T, D, 1>($($argument),*),
+            2 => $call::<T, D, 2>($($argument),*),
+            3 => $call::<T, D, 3>($($argument),*),
+            4 => $call::<T, D, 4>($($argument),*),
+            5 => $call::<T, D, 5>($($argument),*),
+            6 => $call::<T, D, 6>($($argument),*),
+            7 => $call::<T, D, 7>($($argument),*),
+            _ => $call::<T, D, LONGEST_ROW>($($argument),*),
         }
     };
 }
 
 /// Relative displacements of the pairs of a block; the array begins with disk `begin`.
-pub(super) fn gather<const D: usize>(
-    moved: &mut [Vector<D>; BLOCK],
+pub(super) fn gather<T: Number, const D: usize>(
+    moved: &mut [[T; D]; BLOCK],
     pairs: &PairList<D>,
     block: &Block,
-    (displacements, begin): (&[Vector<D>], u32),
+    (displacements, begin): (&[[T; D]], u32),
 ) {
     let (rows, ends) = (rows_of(pairs, block), ends_of(pairs, block));
     let displacements = &displacements[(block.origin - begin) as usize..];
@@ -46,10 +46,10 @@ pub(super) fn gather<const D: usize>(
 }
 
 #[inline(always)]
-fn gather_rows<const D: usize, const LENGTH: usize>(
-    moved: &mut [Vector<D>; BLOCK],
+fn gather_rows<T: Number, const D: usize, const LENGTH: usize>(
+    moved: &mut [[T; D]; BLOCK],
     (rows, ends): (&[u32], &[u32]),
-    displacements: &[Vector<D>],
+    displacements: &[[T; D]],
 ) {
     // Columns of one length and a plain index: of chained iterators some stay calls.
     let count = rows.len();
@@ -64,11 +64,11 @@ fn gather_rows<const D: usize, const LENGTH: usize>(
 }
 
 /// Adds the force of each pair of a block to its first disk and takes it from the second; the array begins with disk `begin`.
-pub(super) fn scatter<const D: usize>(
-    pull: &[Vector<D>; BLOCK],
+pub(super) fn scatter<T: Number, const D: usize>(
+    pull: &[[T; D]; BLOCK],
     pairs: &PairList<D>,
     block: &Block,
-    (forces, begin): (&mut [Vector<D>], u32),
+    (forces, begin): (&mut [[T; D]], u32),
 ) {
     let (rows, ends) = (rows_of(pairs, block), ends_of(pairs, block));
     let forces = &mut forces[(block.origin - begin) as usize..];
@@ -76,10 +76,10 @@ pub(super) fn scatter<const D: usize>(
 }
 
 #[inline(always)]
-fn scatter_rows<const D: usize, const LENGTH: usize>(
-    pull: &[Vector<D>; BLOCK],
+fn scatter_rows<T: Number, const D: usize, const LENGTH: usize>(
+    pull: &[[T; D]; BLOCK],
     (rows, ends): (&[u32], &[u32]),
-    forces: &mut [Vector<D>],
+    forces: &mut [[T; D]],
 ) {
     let count = rows.len();
     let pull = &pull.as_chunks::<LENGTH>().0[..count];

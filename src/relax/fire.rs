@@ -20,6 +20,8 @@
 //! Bitzek, Koskinen, Gähler, Moseler, Gumbsch (2006), Phys. Rev. Lett. 97, 170201; order of kick, mixing and drift
 //! (semi-implicit Euler): Guénolé et al. (2020), Comput. Mater. Sci. 175, 109584.
 
+mod motion;
+
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
@@ -27,10 +29,10 @@ use serde::{Deserialize, Serialize};
 use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
 use crate::packing::{Packing, PackingError};
-use crate::relax::flat::{Products, combine, kick_and_drift, products};
+use crate::relax::fire::motion::{Motion, Step};
+use crate::relax::flat::Products;
 use crate::relax::monitor::Monitor;
 use crate::relax::{Cost, ForceLimit, Look, Outcome, Relaxer, Stop, Trace};
-use crate::vector::{Vector, larger};
 
 /// FIRE. Defaults: Bitzek et al. (2006), Phys. Rev. Lett. 97, 170201, where no other origin is given.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -56,6 +58,28 @@ pub struct Fire {
     /// What happens where a step climbed.
     #[serde(skip_serializing_if = "Uphill::is_restart")]
     pub uphill: Uphill,
+    /// Precision of the steps. Changes results where minima lie close together.
+    #[serde(skip_serializing_if = "Precision::is_double")]
+    pub precision: Precision,
+}
+
+/// In what precision FIRE makes its steps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Precision {
+    /// Double throughout.
+    #[default]
+    Double,
+    /// Single while the residual is above 10⁻⁶, then double. Energies, residuals and bounds on the time step are taken in double
+    /// throughout, and so are the forces at rest.
+    Mixed,
+}
+
+impl Precision {
+    /// Whether it is the one that needs no mention.
+    pub(super) fn is_double(&self) -> bool {
+        *self == Precision::Double
+    }
 }
 
 /// What FIRE does where a step climbed.
@@ -105,12 +129,16 @@ impl Default for Fire {
             mixing: 0.1,
             mixing_decay: 0.99,
             uphill: Uphill::default(),
+            precision: Precision::default(),
         }
     }
 }
 
 /// Steps after which the bound on the time step is taken anew (design §7: 10 to 50 is enough).
 const BOUND_EVERY: usize = 40;
+
+/// Relative residual down to which steps may be made in single precision \[1\]: some ten times what its rounding makes of it.
+const SINGLE_LIMIT: f64 = 1e-6;
 
 /// First time step over the largest one \[1\].
 const FIRST_STEP: f64 = 0.1;
@@ -168,9 +196,26 @@ impl Run<'_> {
         monitor: &mut Monitor,
         trace: &mut impl Trace,
     ) -> Result<(Stop, Cost), PackingError> {
+        let mut motion = Motion::new(assembly, self.settings.precision == Precision::Mixed);
+        let stop = self.descend(assembly, &mut motion, monitor, trace)?;
+        if motion.is_single() {
+            // Who looks at the assembly finds the disks where they are, and their forces in double precision.
+            motion.settle(assembly);
+            assembly.evaluate();
+            self.evaluation_count += 1;
+        }
+        Ok((stop, self.cost()))
+    }
+
+    fn descend<const D: usize, L: PairLaw>(
+        &mut self,
+        assembly: &mut Assembly<D, L>,
+        motion: &mut Motion<D>,
+        monitor: &mut Monitor,
+        trace: &mut impl Trace,
+    ) -> Result<Stop, PackingError> {
         let settings = self.settings;
         let mobile = assembly.mobile_count();
-        let mut velocity = vec![[0.0; D]; mobile];
         let mut fastest = 0.0;
         // The products where the disks are, if the step to there has taken them.
         let mut taken: Option<Products> = None;
@@ -184,11 +229,18 @@ impl Run<'_> {
         let mut due = true;
         loop {
             let totals = if due { Some(assembly.evaluate_totals()) } else { None };
-            if !due && taken.is_none() {
-                assembly.evaluate();
-            }
             self.evaluation_count += 1;
-            let mut sums = taken.take().unwrap_or_else(|| of(&assembly.forces[..mobile], &velocity));
+            let mut sums = match taken.take() {
+                Some(sums) => sums,
+                None if due => motion.products(assembly),
+                None => motion.evaluate(assembly),
+            };
+            if motion.is_single() && !sums.is_finite() {
+                // Out of the range of single precision, as disks are whose centres nearly coincide.
+                motion.settle(assembly);
+                motion.refine();
+                sums = motion.evaluate(assembly);
+            }
             let restart = sums.power <= 0.0 && self.step_count > 0;
             if let Some(totals) = &totals {
                 let look = Look {
@@ -200,7 +252,7 @@ impl Run<'_> {
                     restart: false,
                 };
                 if let Some(stop) = monitor.look(assembly, &assembly.forces[..mobile], totals, look, trace) {
-                    return Ok((stop, self.cost()));
+                    return Ok(stop);
                 }
                 if self.step_count == 0 {
                     (rest_energy, rest_scale) = (totals.energy, totals.energy_scale());
@@ -209,22 +261,30 @@ impl Run<'_> {
                 if monitor.takes_new_anchors() {
                     assembly.reanchor()?;
                 }
+                motion.forget();
+                if motion.is_single() && monitor.residual().relative() <= SINGLE_LIMIT {
+                    motion.refine();
+                }
             }
             if self.step_count >= settings.step_limit {
-                return Ok((Stop::StepLimit, self.cost()));
+                return Ok(Stop::StepLimit);
             }
             if self.step_count.is_multiple_of(BOUND_EVERY) && self.step_count > 0 {
+                motion.settle(assembly);
                 largest_step = self.largest_step(assembly, &mut row);
                 time_step = time_step.min(largest_step);
             }
             if restart {
+                motion.settle(assembly);
+                motion.forget();
                 uphill += 1;
                 if let Uphill::StepBack(back) = settings.uphill {
                     if uphill > back.uphill_limit {
                         let floor = monitor.near_the_floor();
-                        return Ok((if floor { Stop::RoundingFloor } else { Stop::NoDescent }, self.cost()));
+                        return Ok(if floor { Stop::RoundingFloor } else { Stop::NoDescent });
                     }
-                    step_back(assembly, time_step, velocity.as_flattened(), sums.speed_squared)?;
+                    motion.step_back(assembly, time_step);
+                    assembly.keep_listed(0.5 * time_step * sums.speed_squared.sqrt())?;
                 }
                 let totals = match totals {
                     Some(totals) if settings.uphill == Uphill::Restart => totals,
@@ -240,6 +300,10 @@ impl Run<'_> {
                 } else {
                     energy > rest_energy * (1.0 + ENERGY_ROUNDING)
                 };
+                if energy >= rest_energy * (1.0 - ENERGY_ROUNDING) {
+                    // No lower than at the restart before: single precision leads no further.
+                    motion.refine();
+                }
                 if higher {
                     assembly.restore()?;
                     assembly.evaluate();
@@ -259,9 +323,9 @@ impl Run<'_> {
                     };
                     trace.look(&look);
                 }
-                velocity.fill([0.0; D]);
+                motion.rest();
                 fastest = 0.0;
-                sums = of(&assembly.forces[..mobile], &velocity);
+                sums = motion.products(assembly);
                 let kept =
                     matches!(settings.uphill, Uphill::StepBack(back) if self.step_count < back.start_delay && !higher);
                 if !kept {
@@ -281,29 +345,25 @@ impl Run<'_> {
             let turn = if sums.force_squared > 0.0 { mixing * (kicked / sums.force_squared).sqrt() } else { 0.0 };
             let keep = 1.0 - mixing;
             let push = keep * time_step + turn;
-            let kick = |forces: &[Vector<D>], velocities: &mut [Vector<D>], displacements: &mut [Vector<D>]| {
-                let (velocities, displacements) = (velocities.as_flattened_mut(), displacements.as_flattened_mut());
-                kick_and_drift(keep, push, time_step, forces.as_flattened(), velocities, displacements)
-            };
+            let step = Step { keep, push, time_step };
             // No disk goes farther than √D times the longest way along an axis.
             let reach = time_step * (D as f64).sqrt();
             self.step_count += 1;
             due = monitor.is_due(self.step_count, sums.largest_force);
             let bound = reach * (keep * fastest + push * sums.largest_force) * BOUND_ROUNDING;
             // A look takes totals, which take a pass of their own.
-            match if due { None } else { assembly.advance(&mut velocity, bound, kick, of) } {
-                Some((speeds, parts)) => {
-                    fastest = speeds.into_iter().fold(0.0, larger);
-                    taken = Some(parts.iter().fold(Products::ZERO, |sums, part| sums.with(part)));
+            match if due { None } else { motion.advance(assembly, step, bound) } {
+                Some((speed, products)) => {
+                    fastest = speed;
+                    taken = Some(products);
                 }
-                None => {
-                    let (forces, displacements) = (&assembly.forces[..mobile], &mut assembly.displacements[..mobile]);
-                    fastest = kick(forces, &mut velocity, displacements);
-                }
+                None => fastest = motion.kick(assembly, step),
             }
-            let new_list = assembly.keep_listed(reach * fastest)?;
-            if new_list && monitor.ran_away(assembly) {
-                return Ok((Stop::NoMinimum, self.cost()));
+            if assembly.keep_listed(reach * fastest)? {
+                motion.forget();
+                if monitor.ran_away(assembly) {
+                    return Ok(Stop::NoMinimum);
+                }
             }
         }
     }
@@ -322,23 +382,6 @@ impl Run<'_> {
     fn cost(&self) -> Cost {
         Cost { step_count: self.step_count, force_evaluation_count: self.evaluation_count, ..Cost::default() }
     }
-}
-
-/// `u ← u − (dt/2) v`: half of the step that climbed, back.
-fn step_back<const D: usize, L: PairLaw>(
-    assembly: &mut Assembly<D, L>,
-    time_step: f64,
-    velocity: &[f64],
-    speed_squared: f64,
-) -> Result<(), PackingError> {
-    let mobile = assembly.mobile_count();
-    combine(1.0, assembly.displacements[..mobile].as_flattened_mut(), -0.5 * time_step, velocity);
-    assembly.keep_listed(0.5 * time_step * speed_squared.sqrt()).map(|_| ())
-}
-
-/// The products of these disks.
-fn of<const D: usize>(forces: &[Vector<D>], velocities: &[Vector<D>]) -> Products {
-    products(forces.as_flattened(), velocities.as_flattened())
 }
 
 fn trace_is_active<T: Trace>(_trace: &T) -> bool {

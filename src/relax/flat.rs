@@ -25,6 +25,11 @@ impl Products {
     /// Those of no disk.
     pub const ZERO: Self = Products { power: 0.0, force_squared: 0.0, speed_squared: 0.0, largest_force: 0.0 };
 
+    /// Whether all of them are; a NaN among forces or velocities is seen.
+    pub fn is_finite(&self) -> bool {
+        (self.power + self.force_squared + self.speed_squared).is_finite()
+    }
+
     /// Those of both parts.
     pub fn with(&self, part: &Self) -> Self {
         Products {
@@ -113,6 +118,103 @@ impl pulp::WithSimd for KickAndDrift<'_> {
             fastest = larger(fastest, v.abs());
         }
         fastest
+    }
+}
+
+/// The same in single precision; sums of up to some thousand terms too, those of the parts in double.
+pub mod single {
+    use crate::relax::flat::{PIECE, Products};
+    use crate::side_by_side;
+    use crate::simd::lanes;
+    use crate::vector::larger;
+
+    /// Numbers that are summed in single precision: each lane has 64 of them.
+    const PART: usize = 64 * lanes::SINGLE_LANES;
+
+    /// F·v, F·F and v·v in one pass.
+    pub fn products(force: &[f32], velocity: &[f32]) -> Products {
+        let of_piece = |(force, velocity)| pulp::Arch::new().dispatch(ProductsOf { force, velocity });
+        if force.len() <= PIECE {
+            return of_piece((force, velocity));
+        }
+        let pieces = side_by_side::each(force.chunks(PIECE).zip(velocity.chunks(PIECE)), of_piece);
+        pieces.iter().fold(Products::ZERO, |sum, piece| sum.with(piece))
+    }
+
+    struct ProductsOf<'a> {
+        force: &'a [f32],
+        velocity: &'a [f32],
+    }
+
+    impl pulp::WithSimd for ProductsOf<'_> {
+        type Output = Products;
+
+        #[inline(always)]
+        fn with_simd<S: pulp::Simd>(self, simd: S) -> Products {
+            let mut sum = Products::ZERO;
+            for (force, velocity) in self.force.chunks(PART).zip(self.velocity.chunks(PART)) {
+                let ([power, force_squared, speed_squared], largest_force) =
+                    lanes::single_products(simd, force, velocity);
+                sum = sum.with(&Products { power, force_squared, speed_squared, largest_force });
+            }
+            sum
+        }
+    }
+
+    /// `v ← keep·v + push·F`, then `u ← u + dt·v`; the largest component of v, whatever its sign, is returned.
+    pub fn kick_and_drift(
+        keep: f64,
+        push: f64,
+        time_step: f64,
+        force: &[f32],
+        velocity: &mut [f32],
+        displacement: &mut [f32],
+    ) -> f64 {
+        let (keep, push, time_step) = (keep as f32, push as f32, time_step as f32);
+        let piece = |((force, velocity), displacement): ((&_, &mut _), &mut _)| {
+            pulp::Arch::new().dispatch(KickAndDrift { keep, push, time_step, force, velocity, displacement })
+        };
+        if force.len() <= PIECE {
+            return piece(((force, velocity), displacement));
+        }
+        let pieces = force.chunks(PIECE).zip(velocity.chunks_mut(PIECE)).zip(displacement.chunks_mut(PIECE));
+        side_by_side::each(pieces, piece).into_iter().fold(0.0, larger)
+    }
+
+    struct KickAndDrift<'a> {
+        keep: f32,
+        push: f32,
+        time_step: f32,
+        force: &'a [f32],
+        velocity: &'a mut [f32],
+        displacement: &'a mut [f32],
+    }
+
+    impl pulp::WithSimd for KickAndDrift<'_> {
+        type Output = f64;
+
+        #[inline(always)]
+        fn with_simd<S: pulp::Simd>(self, simd: S) -> f64 {
+            let splat = |value| simd.splat_f32s(value);
+            let (keep, push, time_step) = (splat(self.keep), splat(self.push), splat(self.time_step));
+            let (force, force_rest) = S::as_simd_f32s(self.force);
+            let (velocity, velocity_rest) = S::as_mut_simd_f32s(self.velocity);
+            let (displacement, displacement_rest) = S::as_mut_simd_f32s(self.displacement);
+            // A NaN may get lost here; it is in v and u.
+            let mut fastest = splat(0.0);
+            for ((&f, v), u) in force.iter().zip(velocity).zip(displacement) {
+                *v = simd.add_f32s(simd.mul_f32s(keep, *v), simd.mul_f32s(push, f));
+                *u = simd.add_f32s(*u, simd.mul_f32s(time_step, *v));
+                fastest = simd.max_f32s(fastest, simd.abs_f32s(*v));
+            }
+            let mut fastest = simd.reduce_max_f32s(fastest);
+            for ((f, v), u) in force_rest.iter().zip(velocity_rest).zip(displacement_rest) {
+                *v = self.keep * *v + self.push * f;
+                *u += self.time_step * *v;
+                fastest = fastest.max(v.abs());
+            }
+            f64::from(fastest)
+        }
     }
 }
 

@@ -29,7 +29,7 @@ use crate::packing::{Packing, PackingError};
 
 pub use conjugate_gradients::NonlinearConjugateGradients;
 pub use damped::{DampedDynamics, Motion, NetForce, TimeStep};
-pub use fire::{Fire, StepBack, Uphill};
+pub use fire::{Fire, Precision, StepBack, Uphill};
 #[cfg(feature = "linear")]
 pub use implicit::{GradientFlow, ImplicitDynamics};
 pub use monitor::rounding_floor;

@@ -14,7 +14,7 @@ use crate::contact::assembly::Assembly;
 use crate::packing::{Packing, PackingError};
 use crate::relax::monitor::Monitor;
 use crate::relax::newton::{Descent, End, Patience, WATCH};
-use crate::relax::{Cost, Criterion, Fire, ForceLimit, Look, Outcome, Relaxer, Stop, Trace};
+use crate::relax::{Cost, Criterion, Fire, ForceLimit, Look, Outcome, Precision, Relaxer, Stop, Trace};
 
 /// FIRE, then Newton's method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -30,6 +30,9 @@ pub struct Staged {
     pub factorisation_limit: usize,
     /// Longest way of a disk in one step of Newton over its radius \[1\].
     pub largest_step: f64,
+    /// Precision of FIRE's steps. Changes results where minima lie close together.
+    #[serde(skip_serializing_if = "Precision::is_double")]
+    pub precision: Precision,
 }
 
 impl Default for Staged {
@@ -40,6 +43,7 @@ impl Default for Staged {
             step_limit: Fire::default().step_limit,
             factorisation_limit: 300,
             largest_step: 0.1,
+            precision: Precision::default(),
         }
     }
 }
@@ -81,7 +85,8 @@ impl Staged {
                 _ => (ForceLimit::Relative(hand_over), false),
             };
             let mut monitor = Monitor::new(limit, assembly);
-            let fire = Fire { limit, step_limit: self.step_limit.saturating_sub(cost.step_count), ..Fire::default() };
+            let step_limit = self.step_limit.saturating_sub(cost.step_count);
+            let fire = Fire { limit, step_limit, precision: self.precision, ..Fire::default() };
             let (stop, part) = fire.run(assembly, &mut monitor, &mut later(trace, cost.step_count))?;
             cost = cost.plus(part);
             // An absolute limit may ask for less than what counts as no force.

@@ -5,6 +5,9 @@
 /// Lanes of a sum.
 pub const LANES: usize = 8;
 
+/// Lanes of a sum in single precision.
+pub const SINGLE_LANES: usize = 32;
+
 /// Σ a_k.
 #[inline(always)]
 pub fn sum<S: pulp::Simd>(simd: S, column: &[f64]) -> f64 {
@@ -62,6 +65,31 @@ pub fn products<S: pulp::Simd>(simd: S, a: &[f64], b: &[f64]) -> ([f64; 3], f64)
     (sums, a_rest.iter().fold(simd.reduce_max_f64s(most), |most, a| most.max(a.abs())))
 }
 
+/// [`products`] of numbers in single precision; the lanes are added up in double.
+#[inline(always)]
+pub fn single_products<S: pulp::Simd>(simd: S, a: &[f32], b: &[f32]) -> ([f64; 3], f64) {
+    let zero = [simd.splat_f32s(0.0); SINGLE_LANES];
+    let (mut both, mut a_squared, mut b_squared, mut most) = (zero, zero, zero, zero[0]);
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<SINGLE_LANES>(), b.as_chunks::<SINGLE_LANES>());
+    let (a, b) = (S::as_simd_f32s(a.as_flattened()).0, S::as_simd_f32s(b.as_flattened()).0);
+    let each = SINGLE_LANES / S::F32_LANES;
+    for (a, b) in a.chunks_exact(each).zip(b.chunks_exact(each)) {
+        for k in 0..each {
+            both[k] = simd.add_f32s(both[k], simd.mul_f32s(a[k], b[k]));
+            a_squared[k] = simd.add_f32s(a_squared[k], simd.mul_f32s(a[k], a[k]));
+            b_squared[k] = simd.add_f32s(b_squared[k], simd.mul_f32s(b[k], b[k]));
+            most = simd.max_f32s(most, simd.abs_f32s(a[k]));
+        }
+    }
+    let sum = |lanes: &[S::f32s; SINGLE_LANES], a: &[f32], b: &[f32]| {
+        let lanes: &[f32] = pulp::bytemuck::cast_slice(&lanes[..each]);
+        let rest = a.iter().zip(b).map(|(&a, &b)| f64::from(a) * f64::from(b));
+        lanes.iter().map(|&lane| f64::from(lane)).chain(rest).sum()
+    };
+    let sums = [sum(&both, a_rest, b_rest), sum(&a_squared, a_rest, a_rest), sum(&b_squared, b_rest, b_rest)];
+    (sums, f64::from(a_rest.iter().fold(simd.reduce_max_f32s(most), |most, a| most.max(a.abs()))))
+}
+
 /// The lanes of vectors, however many a vector has.
 #[inline(always)]
 fn lanes_of<S: pulp::Simd>(vectors: &[S::f64s; LANES]) -> [f64; LANES] {
@@ -88,6 +116,35 @@ mod tests {
         let mut lanes = [0.0; LANES];
         terms.enumerate().for_each(|(k, term)| lanes[k % LANES] += term);
         lanes.iter().sum()
+    }
+
+    #[test]
+    fn the_bits_of_single_precision_do_not_depend_on_it_either() {
+        for length in [0, 1, 31, 32, 33, 64, 1003] {
+            let column = |by: f64| (0..length).map(|k| (by * k as f64).sin() as f32).collect::<Vec<f32>>();
+            let (a, b) = (column(1.3), column(2.7));
+            let whole = length / SINGLE_LANES * SINGLE_LANES;
+            let product = |x: &[f32], y: &[f32]| {
+                let mut lanes = [0f32; SINGLE_LANES];
+                (0..whole).for_each(|k| lanes[k % SINGLE_LANES] += x[k] * y[k]);
+                let rest = (whole..length).map(|k| f64::from(x[k]) * f64::from(y[k]));
+                lanes.iter().map(|&lane| f64::from(lane)).chain(rest).sum::<f64>()
+            };
+            let most = a.iter().fold(0f32, |most, value| most.max(value.abs()));
+            let expected = ([product(&a, &b), product(&a, &a), product(&b, &b)], f64::from(most));
+            assert_eq!(pulp::Arch::new().dispatch(Single(&a, &b)), expected, "widest, {length}");
+            assert_eq!(pulp::WithSimd::with_simd(Single(&a, &b), pulp::Scalar::new()), expected, "scalar, {length}");
+        }
+    }
+
+    struct Single<'a>(&'a [f32], &'a [f32]);
+
+    impl pulp::WithSimd for Single<'_> {
+        type Output = ([f64; 3], f64);
+
+        fn with_simd<S: pulp::Simd>(self, simd: S) -> Self::Output {
+            single_products(simd, self.0, self.1)
+        }
     }
 
     struct All<'a>(&'a [f64], &'a [f64]);

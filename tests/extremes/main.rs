@@ -18,7 +18,8 @@ use jamscope::contact::PairLaw;
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::random_points;
 use jamscope::relax::{
-    Fire, ForceLimit, NonlinearConjugateGradients, Outcome, QuasiNewton, Relaxer, RelaxerChoice, StepBack, Uphill,
+    Fire, ForceLimit, NonlinearConjugateGradients, Outcome, Precision, QuasiNewton, Relaxer, RelaxerChoice, StepBack,
+    Uphill,
 };
 
 /// FIRE with this relative limit and no more than 200 000 steps: a hang would show as the step limit.
@@ -35,6 +36,7 @@ fn relaxers(limit: f64) -> Vec<RelaxerChoice> {
     vec![
         RelaxerChoice::Fire(fire),
         RelaxerChoice::Fire(Fire { uphill: Uphill::StepBack(StepBack::default()), ..fire }),
+        RelaxerChoice::Fire(Fire { precision: Precision::Mixed, ..fire }),
         RelaxerChoice::ConjugateGradients(gradients),
         RelaxerChoice::QuasiNewton(quasi_newton),
         #[cfg(feature = "linear")]

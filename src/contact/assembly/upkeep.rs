@@ -42,7 +42,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// Whether the list will neither be changed nor looked at when no disk has moved by more than `bound` at the next call of
     /// [`Assembly::keep_listed`].
-    pub(super) fn holds_beyond(&self, bound: f64) -> bool {
+    pub(in crate::contact) fn holds_beyond(&self, bound: f64) -> bool {
         let looks = self.prunes && self.age + 1 == self.look_at;
         // Written so that NaN does not hold.
         !looks && self.moved + bound <= LISTED * self.skin()

@@ -176,3 +176,4 @@ mod derivatives;
 mod invariance;
 mod network;
 mod refusals;
+mod single;

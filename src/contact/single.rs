@@ -1,0 +1,360 @@
+//! The hot loop in single precision, for disks that are far from rest.
+//!
+//! ```text
+//! u = b + m      r = D_b + (m_i − m_j)      δ = δ_b − (m_i − m_j)·(D_b + r) / (|r| + |D_b|)
+//! ```
+//!
+//! b, the base, are displacements in double precision; D_b and δ_b, separations and overlaps there, are found in double precision and then
+//! rounded. Only the ways m from the base, small ones, and what follows from them have 24 bits: a force is known to 2⁻²⁴ of itself and of what
+//! a relative way m_i − m_j changes it by. A net force is so much less exact than a contact force, so this
+//! is for residuals well above 10⁻⁷. Half of the bytes are moved, and twice as many pairs fit in a vector; the formulas are those of [`super::forces`].
+//!
+//! Units are powers of two near a radius and the force of its overlap, so that no number leaves the range of single precision, whatever
+//! units the packing has. Every operation is rounded as IEEE 754 has it, the same on any vectors.
+
+use pulp::Simd;
+
+use crate::contact::advance::{Movers, advance};
+use crate::contact::assembly::Assembly;
+use crate::contact::forces::{Across, Kernel, all_tiles, geometry};
+use crate::contact::law::PairLaw;
+use crate::contact::pair_list::{BLOCK, PairList};
+use crate::contact::rows::gather;
+use crate::side_by_side::{self, PIECE};
+use crate::simd::{components, prefetch};
+use crate::vector::Vector;
+
+/// Blocks of pairs rounded by one thread at a time.
+const PORTION: usize = 64;
+
+/// Units of numbers in single precision, powers of two.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Units {
+    /// Of lengths; the power is even, so that its root is one too \[length\].
+    pub length: f64,
+    /// Of forces \[force\].
+    pub force: f64,
+    /// Of times, for masses 1 \[time\].
+    pub time: f64,
+}
+
+impl Units {
+    /// Those of disks of this radius, which press on each other with this force; none if these are out of all proportion.
+    fn of(radius: f64, force: f64) -> Option<Self> {
+        let (length, force) = (exponent(radius)? & !1, exponent(force)?);
+        Some(Units {
+            length: power_of_two(length),
+            force: power_of_two(force),
+            time: power_of_two((length - force).div_euclid(2)),
+        })
+    }
+
+    /// Of velocities \[length / time\].
+    pub fn speed(&self) -> f64 {
+        self.length / self.time
+    }
+}
+
+/// The exponent of two in a number whose square has one too.
+fn exponent(value: f64) -> Option<i32> {
+    let exponent = ((value.abs().to_bits() >> 52) & 0x7ff) as i32 - 1023;
+    (exponent.abs() < 500).then_some(exponent)
+}
+
+fn power_of_two(exponent: i32) -> f64 {
+    2f64.powi(exponent)
+}
+
+/// What a list has of the pairs of a block.
+#[derive(Debug, Clone)]
+#[repr(align(64))]
+struct Rounded<const D: usize> {
+    separation: [[f32; BLOCK]; D],
+    distance: [f32; BLOCK],
+    overlap: [f32; BLOCK],
+    coefficient: [f32; BLOCK],
+}
+
+/// Disks in single precision, beside an [`Assembly`] that keeps their base. Holds as long as neither its list nor its displacements are
+/// changed by others; who does that calls [`Single::forget`].
+#[derive(Debug, Clone)]
+pub struct Single<const D: usize> {
+    units: Units,
+    blocks: Vec<Rounded<D>>,
+    base: Vec<Vector<D>>,
+    ways: Vec<[f32; D]>,
+    /// Forces of the last evaluation, all disks, in units of their own.
+    pub forces: Vec<[f32; D]>,
+    across: Across<f32, D>,
+    stale: bool,
+}
+
+impl<const D: usize> Single<D> {
+    /// For the disks of an assembly; none for a law with sites, and for numbers near the ends of what double precision has.
+    pub fn new<L: PairLaw>(assembly: &Assembly<D, L>) -> Option<Self> {
+        if L::ON_SITE {
+            return None;
+        }
+        let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
+        Some(Single {
+            units: Units::of(radius, assembly.law().force_scale(radius))?,
+            blocks: Vec::new(),
+            base: Vec::new(),
+            ways: vec![[0.0; D]; assembly.len()],
+            forces: vec![[0.0; D]; assembly.len()],
+            across: Across::default(),
+            stale: true,
+        })
+    }
+
+    /// Units of ways, forces and velocities.
+    pub fn units(&self) -> Units {
+        self.units
+    }
+
+    /// The assembly has other displacements or another list: they are the base of the next step.
+    pub fn forget(&mut self) {
+        self.stale = true;
+    }
+
+    /// Takes the forces of the assembly's last evaluation.
+    pub fn take_forces<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
+        let unit = 1.0 / self.units.force;
+        let pieces = self.forces.chunks_mut(PIECE).zip(assembly.forces.chunks(PIECE));
+        side_by_side::each(pieces, |(to, from)| {
+            for (to, from) in to.as_flattened_mut().iter_mut().zip(from.as_flattened()) {
+                *to = (unit * from) as f32;
+            }
+        });
+    }
+
+    /// Puts the disks of the assembly where these are.
+    pub fn settle<L: PairLaw>(&self, assembly: &mut Assembly<D, L>) {
+        if self.stale {
+            return;
+        }
+        let unit = self.units.length;
+        let pieces = assembly.displacements.chunks_mut(PIECE).zip(self.base.chunks(PIECE)).zip(self.ways.chunks(PIECE));
+        side_by_side::each(pieces, |((to, base), ways)| {
+            for ((to, base), way) in to.as_flattened_mut().iter_mut().zip(base.as_flattened()).zip(ways.as_flattened())
+            {
+                *to = base + unit * f64::from(*way);
+            }
+        });
+    }
+
+    /// Makes the displacements of the assembly the base, if they are not.
+    fn prepare<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
+        if !self.stale {
+            return;
+        }
+        self.stale = false;
+        self.base.clone_from(&assembly.displacements);
+        self.ways.fill([0.0; D]);
+        let empty = Rounded {
+            separation: [[1.0; BLOCK]; D],
+            distance: [1.0; BLOCK],
+            overlap: [0.0; BLOCK],
+            coefficient: [0.0; BLOCK],
+        };
+        let pairs = assembly.pairs();
+        self.blocks.resize(pairs.blocks.len(), empty);
+        let law = assembly.law();
+        let coefficient = libm::pow(self.units.length, law.exponent() - 1.0) / self.units.force;
+        let unit = 1.0 / self.units.length;
+        let portions = self.blocks.chunks_mut(PORTION).zip(pairs.blocks.chunks(PORTION));
+        side_by_side::each(portions, |(rounded, blocks)| {
+            for (rounded, block) in rounded.iter_mut().zip(blocks) {
+                for (place, pair) in (block.pairs..block.pairs + block.pair_count).enumerate() {
+                    let (apart, distance, overlap) = geometry(pairs, pair, &assembly.displacements);
+                    for d in 0..D {
+                        rounded.separation[d][place] = (unit * apart[d]) as f32;
+                    }
+                    rounded.distance[place] = (unit * distance) as f32;
+                    rounded.overlap[place] = (unit * overlap) as f32;
+                    rounded.coefficient[place] = (coefficient * pairs.coefficient[pair]) as f32;
+                }
+            }
+        });
+    }
+
+    /// Moves all mobile disks by `kick` (forces, velocities, ways of some of them) and evaluates the forces where they then are, as
+    /// [`Assembly::advance`] does. None, and nothing done, where that does nothing either.
+    pub fn advance<L: PairLaw, K: Send, P: Send>(
+        &mut self,
+        assembly: &Assembly<D, L>,
+        velocities: &mut [[f32; D]],
+        bound: f64,
+        kick: impl Fn(&[[f32; D]], &mut [[f32; D]], &mut [[f32; D]]) -> K + Send + Sync,
+        look: impl Fn(&[[f32; D]], &[[f32; D]]) -> P + Send + Sync,
+    ) -> Option<(Vec<K>, Vec<P>)> {
+        if !assembly.holds_beyond(bound) {
+            return None;
+        }
+        self.prepare(assembly);
+        let pairs = assembly.pairs();
+        let kernel = Pressed { law: assembly.law(), pairs, blocks: &self.blocks };
+        let movers = Movers { velocities, displacements: &mut self.ways, forces: &mut self.forces };
+        Some(advance(&kernel, pairs, movers, &mut self.across, kick, look))
+    }
+
+    /// Forces where the disks are.
+    pub fn evaluate<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
+        self.prepare(assembly);
+        let pairs = assembly.pairs();
+        let kernel = Pressed { law: assembly.law(), pairs, blocks: &self.blocks };
+        let _ = all_tiles(&kernel, pairs, &self.ways, &mut self.across, &mut self.forces);
+    }
+
+    /// Moves all mobile disks by `kick` alone.
+    pub fn kick<L: PairLaw, K>(
+        &mut self,
+        assembly: &Assembly<D, L>,
+        velocities: &mut [[f32; D]],
+        kick: impl FnOnce(&[[f32; D]], &mut [[f32; D]], &mut [[f32; D]]) -> K,
+    ) -> K {
+        self.prepare(assembly);
+        let mobile = assembly.mobile_count();
+        kick(&self.forces[..mobile], velocities, &mut self.ways[..mobile])
+    }
+}
+
+/// The force of each pair of a block.
+struct Pressed<'a, const D: usize, L> {
+    law: &'a L,
+    pairs: &'a PairList<D>,
+    blocks: &'a [Rounded<D>],
+}
+
+impl<const D: usize, L: PairLaw> Kernel<D> for Pressed<'_, D, L> {
+    type Number = f32;
+    type Columns = Columns<D>;
+    type Sums = ();
+
+    fn begin(&self) -> (Columns<D>, ()) {
+        (Columns::new(), ())
+    }
+
+    fn pull<'a>(
+        &self,
+        block: usize,
+        ways: (&[[f32; D]], u32),
+        (columns, ()): &'a mut (Columns<D>, ()),
+    ) -> &'a [[f32; D]; BLOCK] {
+        gather(&mut columns.pull, self.pairs, &self.pairs.blocks[block], ways);
+        let (law, listed) = (self.law, &self.blocks[block]);
+        pulp::Arch::new().dispatch(Arithmetic { law, listed, columns, asks: self.pairs.tiles.len() > 1 });
+        &columns.pull
+    }
+}
+
+/// One block of pairs, column by column, as in [`super::columns`].
+#[repr(align(64))]
+struct Columns<const D: usize> {
+    pull: [[f32; D]; BLOCK],
+    apart: [[f32; BLOCK]; D],
+    change: [f32; BLOCK],
+    distance: [f32; BLOCK],
+}
+
+impl<const D: usize> Columns<D> {
+    fn new() -> Self {
+        Columns { pull: [[0.0; D]; BLOCK], apart: [[0.0; BLOCK]; D], change: [0.0; BLOCK], distance: [0.0; BLOCK] }
+    }
+}
+
+struct Arithmetic<'a, const D: usize, L> {
+    law: &'a L,
+    listed: &'a Rounded<D>,
+    columns: &'a mut Columns<D>,
+    /// Whether the next block is asked for meanwhile: it is far away where there are many.
+    asks: bool,
+}
+
+impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Arithmetic { law, listed, columns, asks } = self;
+        let count = BLOCK / S::F32_LANES;
+        let read = |column| &S::as_simd_f32s(column).0[..count];
+        let (zero, one) = (simd.splat_f32s(0.0), simd.splat_f32s(1.0));
+        let pull = &mut S::as_mut_simd_f32s(columns.pull.as_flattened_mut()).0[..D * count];
+        let apart = columns.apart.each_mut().map(|column| &mut S::as_mut_simd_f32s(column).0[..count]);
+        let change = &mut S::as_mut_simd_f32s(&mut columns.change).0[..count];
+        let distance = &mut S::as_mut_simd_f32s(&mut columns.distance).0[..count];
+        let separation = listed.separation.each_ref().map(|column| read(&column[..]));
+        let (listed_distance, listed_overlap) = (read(&listed.distance), read(&listed.overlap));
+        let coefficient = read(&listed.coefficient);
+        for k in 0..count {
+            let way = components::split_single::<S, D>(simd, &pull[D * k..D * (k + 1)]);
+            let (mut square, mut changed) = (zero, zero);
+            for d in 0..D {
+                let along = simd.add_f32s(separation[d][k], way[d]);
+                square = simd.add_f32s(square, simd.mul_f32s(along, along));
+                changed = simd.add_f32s(changed, simd.mul_f32s(way[d], simd.add_f32s(separation[d][k], along)));
+                apart[d][k] = along;
+            }
+            if asks {
+                let next = size_of::<Rounded<D>>() / size_of::<f32>() + k * S::F32_LANES;
+                for column in listed.separation.each_ref().into_iter().chain([
+                    &listed.distance,
+                    &listed.overlap,
+                    &listed.coefficient,
+                ]) {
+                    prefetch(simd, &column[..], next);
+                }
+            }
+            change[k] = changed;
+            distance[k] = simd.sqrt_f32s(square);
+        }
+        for k in 0..count {
+            let both = simd.add_f32s(distance[k], listed_distance[k]);
+            let inverse = simd.div_f32s(one, simd.mul_f32s(distance[k], both));
+            let changed = simd.mul_f32s(change[k], simd.mul_f32s(distance[k], inverse));
+            let overlap = simd.sub_f32s(listed_overlap[k], changed);
+            // NaN stays NaN.
+            let overlap = simd.select_f32s(simd.less_than_f32s(overlap, zero), zero, overlap);
+            let force = law.forces_in_single(simd, coefficient[k], overlap);
+            let factor = simd.mul_f32s(force, simd.mul_f32s(both, inverse));
+            let mut along = [factor; D];
+            for d in 0..D {
+                along[d] = simd.mul_f32s(factor, apart[d][k]);
+            }
+            components::join_single(simd, &along, &mut pull[D * k..D * (k + 1)]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Hertzian;
+
+    #[test]
+    fn the_bits_of_a_block_do_not_depend_on_the_width_of_vectors() {
+        let wave = |by: f32, from: f32, size: f32| -> [f32; BLOCK] {
+            std::array::from_fn(|k| from + size * (by * k as f32).sin())
+        };
+        let listed = Rounded::<2> {
+            separation: [wave(1.3, 0.4, 0.5), wave(2.7, 0.6, 0.3)],
+            distance: wave(0.7, 1.0, 0.1),
+            overlap: wave(1.9, 0.0, 0.2),
+            coefficient: wave(0.3, 2.0, 1.0),
+        };
+        let [x, y] = [wave(3.1, 0.0, 0.05), wave(0.9, 0.0, 0.05)];
+        let pull: [[f32; 2]; BLOCK] = std::array::from_fn(|k| [x[k], y[k]]);
+        let law = Hertzian::default();
+        for asks in [false, true] {
+            let [mut widest, mut scalar] = [(); 2].map(|()| Columns { pull, ..Columns::new() });
+            pulp::Arch::new().dispatch(Arithmetic { law: &law, listed: &listed, columns: &mut widest, asks });
+            let alone = Arithmetic { law: &law, listed: &listed, columns: &mut scalar, asks };
+            pulp::WithSimd::with_simd(alone, pulp::Scalar::new());
+            let bits = |columns: &Columns<2>| columns.pull.map(|pull| pull.map(f32::to_bits));
+            assert_eq!(bits(&widest), bits(&scalar));
+            let pressed = widest.pull.iter().filter(|pull| pull[0] != 0.0).count();
+            assert!((BLOCK / 4..BLOCK).contains(&pressed), "{pressed} pairs press");
+        }
+    }
+}
