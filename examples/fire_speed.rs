@@ -73,8 +73,9 @@ fn timed<L: PairLaw>(
     let cpu_seconds = cpu_seconds().zip(before).map_or(outcome.cost.seconds, |(after, before)| after - before);
     let steps = outcome.cost.step_count;
     println!(
-        "{{\"code\": \"jamscope\", \"case\": \"inflated\", \"law\": \"{}\", \"disks\": {disks}, \"steps\": {steps}, \"cpu_seconds\": {cpu_seconds:.6}, \
+        "{{\"code\": \"{}\", \"case\": \"inflated\", \"law\": \"{}\", \"disks\": {disks}, \"steps\": {steps}, \"cpu_seconds\": {cpu_seconds:.6}, \
          \"ns_per_particle_step\": {:.2}, \"force_evaluations\": {}, \"neighbour_lists\": {}, \"largest_force\": {:e}}}",
+        if precision == Precision::Mixed { "jamscope, mixed precision" } else { "jamscope" },
         if law.exponent() == 2.0 { "hooke" } else { "hertz" },
         cpu_seconds * 1e9 / (steps * disks) as f64,
         outcome.cost.force_evaluation_count,

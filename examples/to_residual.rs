@@ -1,8 +1,8 @@
-//! Relaxing to a residual by FIRE and by the staged relaxer, one JSON line each; jamscope's side of
+//! Relaxing to a residual by FIRE, by FIRE in mixed precision and by the staged relaxer, one JSON line each; jamscope's side of
 //! `benches/peers/lammps/to_residual.sh`.
 //!
 //! ```text
-//! cargo run --release --features measurements --example to_residual -- random[-SEED]|PACKING [--limit R] [--relaxer fire|staged] [--write FILE]
+//! cargo run --release --features measurements --example to_residual -- random[-SEED]|PACKING [--limit R] [--relaxer fire|mixed|staged] [--write FILE]
 //! ```
 //!
 //! `random`: 5548 bidisperse disks at random points (seed 1 unless given) of a periodic box, packing fraction 0.852, which relaxes to
@@ -23,7 +23,7 @@ use jamscope::contact::{ContactNetwork, Hertzian};
 use jamscope::io::read_packing;
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::random_points;
-use jamscope::relax::{Fire, ForceLimit, Relaxer, RelaxerChoice, Staged};
+use jamscope::relax::{Fire, ForceLimit, Precision, Relaxer, RelaxerChoice, Staged};
 
 use middle::inflated;
 use processor::cpu_seconds;
@@ -56,10 +56,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let limit = ForceLimit::Relative(limit);
     let relaxers = [
         ("fire", RelaxerChoice::Fire(Fire { limit, ..Fire::default() })),
+        ("mixed", RelaxerChoice::Fire(Fire { limit, precision: Precision::Mixed, ..Fire::default() })),
         ("staged", RelaxerChoice::Staged(Staged { limit, ..Staged::default() })),
     ];
     if let Some(unknown) = only.as_ref().filter(|only| relaxers.iter().all(|(name, _)| name != only)) {
-        return Err(format!("--relaxer: fire or staged, not {unknown}").into());
+        return Err(format!("--relaxer: fire, mixed or staged, not {unknown}").into());
     }
     for (name, relaxer) in relaxers {
         if only.as_ref().is_none_or(|only| only == name) {

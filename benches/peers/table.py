@@ -14,14 +14,14 @@ def main():
         run = json.loads(line)
         case = (run.get("law", "hertz"), run["disks"], run["steps"])
         times.setdefault(case, {}).setdefault(run["code"], []).append(run["ns_per_particle_step"])
-    print("| law | disks | steps | code | median, ns a particle step | lowest to highest | over jamscope |")
-    print("|---|---|---|---|---|---|---|")
+    print("| law | disks | steps | code | median, ns a particle step | lowest to highest | over jamscope, mixed | over jamscope, double |")
+    print("|---|---|---|---|---|---|---|---|")
     for (law, disks, steps), codes in times.items():
-        ours = statistics.median(codes["jamscope"])
+        mixed, double = (statistics.median(codes[name]) for name in ("jamscope, mixed precision", "jamscope"))
         for code, found in codes.items():
             median = statistics.median(found)
             span = f"{min(found):.1f}–{max(found):.1f}"
-            print(f"| {law} | {disks} | {steps} | {code} | {median:.1f} | {span} | {median / ours:.1f} |")
+            print(f"| {law} | {disks} | {steps} | {code} | {median:.1f} | {span} | {median / mixed:.1f} | {median / double:.1f} |")
 
 
 if __name__ == "__main__":

@@ -16,9 +16,9 @@ use pulp::Simd;
 
 use crate::contact::advance::{Movers, advance};
 use crate::contact::assembly::Assembly;
-use crate::contact::forces::{Across, Kernel, all_tiles, geometry};
+use crate::contact::forces::{Across, Kernel, all_tiles};
 use crate::contact::law::PairLaw;
-use crate::contact::pair_list::{BLOCK, PairList};
+use crate::contact::pair_list::{BLOCK, Block, PairList};
 use crate::contact::rows::gather;
 use crate::side_by_side::{self, PIECE};
 use crate::simd::{components, prefetch};
@@ -161,19 +161,13 @@ impl<const D: usize> Single<D> {
         self.blocks.resize(pairs.blocks.len(), empty);
         let law = assembly.law();
         let coefficient = libm::pow(self.units.length, law.exponent() - 1.0) / self.units.force;
-        let unit = 1.0 / self.units.length;
+        let units = (1.0 / self.units.length, coefficient);
         let portions = self.blocks.chunks_mut(PORTION).zip(pairs.blocks.chunks(PORTION));
         side_by_side::each(portions, |(rounded, blocks)| {
+            let mut moved = [[0.0; D]; BLOCK];
             for (rounded, block) in rounded.iter_mut().zip(blocks) {
-                for (place, pair) in (block.pairs..block.pairs + block.pair_count).enumerate() {
-                    let (apart, distance, overlap) = geometry(pairs, pair, &assembly.displacements);
-                    for d in 0..D {
-                        rounded.separation[d][place] = (unit * apart[d]) as f32;
-                    }
-                    rounded.distance[place] = (unit * distance) as f32;
-                    rounded.overlap[place] = (unit * overlap) as f32;
-                    rounded.coefficient[place] = (coefficient * pairs.coefficient[pair]) as f32;
-                }
+                gather(&mut moved, pairs, block, (&assembly.displacements, 0));
+                pulp::Arch::new().dispatch(Round { pairs, block, moved: &moved, units, rounded });
             }
         });
     }
@@ -216,6 +210,47 @@ impl<const D: usize> Single<D> {
         self.prepare(assembly);
         let mobile = assembly.mobile_count();
         kick(&self.forces[..mobile], velocities, &mut self.ways[..mobile])
+    }
+}
+
+/// Pairs of a block where the disks are, by the formula of [`geometry`](super::forces::geometry), rounded.
+struct Round<'a, const D: usize> {
+    pairs: &'a PairList<D>,
+    block: &'a Block,
+    moved: &'a [Vector<D>; BLOCK],
+    /// Factors on lengths and on coefficients.
+    units: (f64, f64),
+    rounded: &'a mut Rounded<D>,
+}
+
+impl<const D: usize> pulp::WithSimd for Round<'_, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let Round { pairs, block, moved, units: (unit, unit_of_coefficients), rounded } = self;
+        let count = block.pair_count;
+        let listed = block.pairs..block.pairs + count;
+        let separation = pairs.separation.columns().map(|column| &column[listed.clone()]);
+        let (distances, overlaps) = (&pairs.distance[listed.clone()], &pairs.overlap[listed.clone()]);
+        let coefficients = &pairs.coefficient[listed];
+        let moved = &moved[..count];
+        let apart = rounded.separation.each_mut().map(|column| &mut column[..count]);
+        let (distance, overlap) = (&mut rounded.distance[..count], &mut rounded.overlap[..count]);
+        let coefficient = &mut rounded.coefficient[..count];
+        for k in 0..count {
+            let (mut squared, mut change) = (0.0, 0.0);
+            for d in 0..D {
+                let along = separation[d][k] + moved[k][d];
+                squared += along * along;
+                change += moved[k][d] * (separation[d][k] + along);
+                apart[d][k] = (unit * along) as f32;
+            }
+            let length = f64::sqrt(squared);
+            distance[k] = (unit * length) as f32;
+            overlap[k] = (unit * (overlaps[k] - change / (length + distances[k]))) as f32;
+            coefficient[k] = (unit_of_coefficients * coefficients[k]) as f32;
+        }
     }
 }
 
@@ -286,7 +321,7 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
         let distance = &mut S::as_mut_simd_f32s(&mut columns.distance).0[..count];
         let separation = listed.separation.each_ref().map(|column| read(&column[..]));
         let (listed_distance, listed_overlap) = (read(&listed.distance), read(&listed.overlap));
-        let coefficient = read(&listed.coefficient);
+        let (coefficient, one_coefficient) = (read(&listed.coefficient), simd.splat_f32s(listed.coefficient[0]));
         for k in 0..count {
             let way = components::split_single::<S, D>(simd, &pull[D * k..D * (k + 1)]);
             let (mut square, mut changed) = (zero, zero);
@@ -298,12 +333,13 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
             }
             if asks {
                 let next = size_of::<Rounded<D>>() / size_of::<f32>() + k * S::F32_LANES;
-                for column in listed.separation.each_ref().into_iter().chain([
-                    &listed.distance,
-                    &listed.overlap,
-                    &listed.coefficient,
-                ]) {
-                    prefetch(simd, &column[..], next);
+                for column in &listed.separation {
+                    prefetch(simd, column, next);
+                }
+                prefetch(simd, &listed.distance, next);
+                prefetch(simd, &listed.overlap, next);
+                if !L::ONE_COEFFICIENT {
+                    prefetch(simd, &listed.coefficient, next);
                 }
             }
             change[k] = changed;
@@ -316,7 +352,8 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
             let overlap = simd.sub_f32s(listed_overlap[k], changed);
             // NaN stays NaN.
             let overlap = simd.select_f32s(simd.less_than_f32s(overlap, zero), zero, overlap);
-            let force = law.forces_in_single(simd, coefficient[k], overlap);
+            let coefficient = if L::ONE_COEFFICIENT { one_coefficient } else { coefficient[k] };
+            let force = law.forces_in_single(simd, coefficient, overlap);
             let factor = simd.mul_f32s(force, simd.mul_f32s(both, inverse));
             let mut along = [factor; D];
             for d in 0..D {

@@ -140,6 +140,9 @@ const BOUND_EVERY: usize = 40;
 /// Relative residual down to which steps may be made in single precision \[1\]: some ten times what its rounding makes of it.
 const SINGLE_LIMIT: f64 = 1e-6;
 
+/// Relative residual below which every look begins with a new base: what the ways from it change an overlap by is rounded \[1\].
+const BASE_FELT: f64 = 1e-3;
+
 /// First time step over the largest one \[1\].
 const FIRST_STEP: f64 = 0.1;
 
@@ -260,9 +263,13 @@ impl Run<'_> {
                 }
                 if monitor.takes_new_anchors() {
                     assembly.reanchor()?;
+                    motion.forget();
                 }
-                motion.forget();
-                if motion.is_single() && monitor.residual().relative() <= SINGLE_LIMIT {
+                let residual = monitor.residual().relative();
+                if residual <= BASE_FELT {
+                    motion.forget();
+                }
+                if residual <= SINGLE_LIMIT {
                     motion.refine();
                 }
             }

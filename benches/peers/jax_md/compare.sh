@@ -12,6 +12,8 @@ export RAYON_NUM_THREADS=1
 
 cargo build --quiet --release --features measurements --example fire_speed
 for _ in $(seq "$repeats"); do
-    cargo run --quiet --release --features measurements --example fire_speed -- "$packing" --steps "$steps" --replicate "$replicate"
+    for precision in mixed double; do
+        cargo run --quiet --release --features measurements --example fire_speed -- "$packing" --steps "$steps" --replicate "$replicate" --precision "$precision"
+    done
     python benches/peers/jax_md/fire_speed.py "$packing" --steps "$steps" --replicate "$replicate"
 done

@@ -1,10 +1,10 @@
 #!/bin/sh
-# FIRE, jamscope beside LAMMPS: alternates the two on one packing, one JSON line a run. From the root of the repository:
+# FIRE, jamscope in mixed and in double precision beside LAMMPS: alternates them on one packing, one JSON line a run. From the root of the repository:
 #
 #     . FOLDER/activate-lammps                                          (see setup.sh)
 #     benches/peers/lammps/compare.sh [PACKING] [STEPS] [REPEATS] [REPLICATE] [hertz|hooke] | python3 benches/peers/table.py
 #
-# Alternating spreads the noise of a shared machine over both; compare medians. Jamscope's side is the example
+# Alternating spreads the noise of a shared machine over all; compare medians. Jamscope's side is the example
 # `fire_speed`, which prints the same JSON keys for the same problem.
 set -eu
 packing=${1:-fixtures/packings/hertz_N5548_p100.xyz}
@@ -16,6 +16,8 @@ export OMP_NUM_THREADS=1 RAYON_NUM_THREADS=1
 
 cargo build --quiet --release --features measurements --example fire_speed
 for _ in $(seq "$repeats"); do
-    cargo run --quiet --release --features measurements --example fire_speed -- "$packing" --steps "$steps" --replicate "$replicate" --law "$law"
+    for precision in mixed double; do
+        cargo run --quiet --release --features measurements --example fire_speed -- "$packing" --steps "$steps" --replicate "$replicate" --law "$law" --precision "$precision"
+    done
     python benches/peers/lammps/fire_speed.py "$packing" --steps "$steps" --replicate "$replicate" --law "$law"
 done

@@ -1,12 +1,12 @@
 #!/bin/sh
-# To a residual of 1e-8, jamscope's FIRE and staged relaxer beside LAMMPS's FIRE, from the same start. From the root of the
+# To a residual of 1e-8, jamscope's FIRE, in double and in mixed precision, and its staged relaxer beside LAMMPS's FIRE, from the same start. From the root of the
 # repository:
 #
 #     . FOLDER/activate-lammps                                          (see setup.sh)
 #     benches/peers/lammps/to_residual.sh [REPEATS] [CASE ...]
 #
 # A case is `random-SEED` (random points) or a packing in whose middle a disk grows; without any, those of the README.
-# jamscope writes the start; LAMMPS's first time step and tolerance are chosen by runs that do not count. Then the three take
+# jamscope writes the start; LAMMPS's first time step and tolerance are chosen by runs that do not count. Then the four take
 # turns REPEATS times. JSON lines of all runs go to standard error, the table of medians to standard output, and a line for all
 # random points together: the programs end in different minima, and how many steps it takes to one is a matter of luck.
 set -eu
@@ -30,7 +30,7 @@ for from in "$@"; do
     chosen=$(tail -n 1 "$folder/search" |
         python -c 'import json, sys; run = json.load(sys.stdin); print("--time-step", run["time_step"], "--tolerance", run["tolerance"])')
     for _ in $(seq "$repeats"); do
-        for relaxer in fire staged; do
+        for relaxer in fire mixed staged; do
             "$jamscope" "$from" --relaxer "$relaxer" | tee -a "$folder/runs" >&2
         done
         # shellcheck disable=SC2086
@@ -49,26 +49,27 @@ first_step = {run["case"]: run["first_step"] for run in read("watched")}
 runs = {}
 for run in read("runs"):
     runs.setdefault(run["case"], {}).setdefault((run["code"], run["relaxer"]), []).append(run)
-print("| case | pressure | code | CPU seconds | evaluations | of them until the backbone is first below | factorisations | residual | over jamscope's FIRE | over its staged |")
-print("|---|---|---|---|---|---|---|---|---|---|")
+print("| case | pressure | code | CPU seconds | evaluations | of them until the backbone is first below | factorisations | residual | over jamscope's FIRE | over its FIRE, mixed | over its staged |")
+print("|---|---|---|---|---|---|---|---|---|---|---|")
 random = []
 for case, codes in runs.items():
     median = {code: statistics.median(run["cpu_seconds"] for run in of_code) for code, of_code in codes.items()}
-    fire, staged = median["jamscope", "fire"], median["jamscope", "staged"]
+    fire, mixed, staged = (median["jamscope", relaxer] for relaxer in ("fire", "mixed", "staged"))
     if case.startswith("random"):
-        random.append([fire, *(seconds for (code, _), seconds in median.items() if code.startswith("LAMMPS"))])
+        random.append([fire, mixed, *(seconds for (code, _), seconds in median.items() if code.startswith("LAMMPS"))])
     for (code, relaxer), of_code in codes.items():
         run, seconds, first = of_code[0], median[code, relaxer], ""
-        what = f"{code.split()[0]}, {'FIRE' if relaxer == 'fire' else 'staged'}"
+        what = f"{code.split()[0]}, { {'fire': 'FIRE', 'mixed': 'FIRE, mixed', 'staged': 'staged'}[relaxer] }"
         if "time_step" in run:
             what += f", first step {run['time_step']}"
             first = (first_step[case] or run["steps"]) + 1
         evaluations = run.get("force_evaluations", run["steps"] + 1)
         print(f"| {case} | {run['pressure']:.1f} | {what} | {seconds:.2f} | {evaluations} | {first} | {run.get('factorisations', 0)} "
-              f"| {run['residual']:.1e} | {seconds / fire:.2f} | {seconds / staged:.2f} |")
+              f"| {run['residual']:.1e} | {seconds / fire:.2f} | {seconds / mixed:.2f} | {seconds / staged:.2f} |")
 if len(random) > 1:
-    ours, theirs = map(sum, zip(*random))
-    ratios = sorted(b / a for a, b in random)
-    print(f"\n{len(random)} starts from random points together: {ours:.2f} s and {theirs:.2f} s, ratio {theirs / ours:.1f}; "
-          f"single ones {ratios[0]:.1f} to {ratios[-1]:.1f}, median {statistics.median(ratios):.1f}")
+    double, mixed, theirs = map(sum, zip(*random))
+    print(f"\n{len(random)} starts from random points together: {double:.2f} s, {mixed:.2f} s in mixed precision and {theirs:.2f} s")
+    for name, place, ours in (("FIRE", 0, double), ("FIRE, mixed", 1, mixed)):
+        ratios = sorted(run[2] / run[place] for run in random)
+        print(f"over {name}: {theirs / ours:.1f}; single ones {ratios[0]:.1f} to {ratios[-1]:.1f}, median {statistics.median(ratios):.1f}")
 PYTHON
