@@ -359,7 +359,10 @@ impl RelaxerChoice {
     /// Its name in a table.
     pub fn name(&self) -> &'static str {
         match self {
-            RelaxerChoice::Fire(_) => "FIRE",
+            RelaxerChoice::Fire(fire) => match fire.precision {
+                Precision::Double => "FIRE",
+                Precision::Mixed => "FIRE, mixed",
+            },
             RelaxerChoice::Damped(damped) => match damped.net_force {
                 NetForce::Elastic => "damped dynamics",
                 NetForce::Total => "damped, total force",
@@ -376,7 +379,10 @@ impl RelaxerChoice {
             #[cfg(feature = "linear")]
             RelaxerChoice::Newton(_) => "Newton",
             #[cfg(feature = "linear")]
-            RelaxerChoice::Staged(_) => "FIRE, then Newton",
+            RelaxerChoice::Staged(staged) => match staged.precision {
+                Precision::Double => "FIRE, then Newton",
+                Precision::Mixed => "mixed FIRE, Newton",
+            },
         }
     }
 }

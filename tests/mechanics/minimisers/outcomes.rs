@@ -7,7 +7,7 @@ use jamscope::relax::{
 };
 use jamscope::scene::Scene;
 
-use super::{all, gradients, quasi_newton, step_back};
+use super::{all, gradients, mixed, quasi_newton, step_back};
 use crate::scenes::rest::{at_rest, relax};
 use crate::scenes::starts::{cross, inflated, points};
 
@@ -102,6 +102,15 @@ fn a_scene_names_them_and_refuses_what_makes_no_sense() {
     let back = step_back(ForceLimit::default());
     assert_eq!(read(&serde_json::to_string(&back).expect("plain data")).expect("a relaxer"), back);
     assert_eq!(read(r#"{"fire": {"uphill": {"step_back": {}}}}"#).expect("a relaxer"), back);
+
+    // So is the precision.
+    assert!(!text.contains("precision"), "{text}");
+    let choice = mixed(ForceLimit::default());
+    assert_eq!(read(&serde_json::to_string(&choice).expect("plain data")).expect("a relaxer"), choice);
+    assert_eq!(read(r#"{"fire": {"precision": "mixed"}}"#).expect("a relaxer"), choice);
+    assert_eq!(choice.name(), "FIRE, mixed");
+    let error = read(r#"{"fire": {"precision": "single"}}"#).expect_err("there is none").to_string();
+    assert!(error.contains("`single`") && error.contains("`mixed`"), "{error}");
 
     let refused = |relaxer: RelaxerChoice| {
         let mut scene = Scene::default();

@@ -68,6 +68,22 @@ fn random_points_come_to_rest() {
     check(Hookean::default());
 }
 
+/// Newton's method takes over from steps in single precision and ends where FIRE in double does.
+#[test]
+#[cfg(feature = "linear")]
+fn the_staged_relaxer_makes_them_too() {
+    use jamscope::relax::Staged;
+    let (law, limit) = (Hertzian::default(), ForceLimit::Relative(1e-12));
+    let staged = |precision| Staged { limit, precision, ..Staged::default() };
+    let outcome = relax(&staged(Precision::Mixed), inflated("hertz_N1000_p800", 4), &law);
+    assert_eq!(outcome.stop, Stop::Converged(Criterion::RelativeForce));
+    let double = relax(&staged(Precision::Double), inflated("hertz_N1000_p800", 4), &law);
+    let cost = |outcome: &Outcome<Packing<2>>| (outcome.cost.step_count, outcome.cost.factorisation_count);
+    println!("mixed {:?}, double {:?}", cost(&outcome), cost(&double));
+    assert!(outcome.cost.factorisation_count <= double.cost.factorisation_count + 2);
+    assert!(apart(&at_rest(double), &at_rest(outcome), &law) <= 1e-9);
+}
+
 /// Sites are for double precision alone: the same bits.
 #[test]
 fn disks_with_sites_are_left_in_double_precision() {
