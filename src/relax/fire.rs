@@ -146,9 +146,6 @@ const BASE_FELT: f64 = 1e-3;
 /// First time step over the largest one \[1\].
 const FIRST_STEP: f64 = 0.1;
 
-/// A bound on the largest component of a velocity before it is rounded, over that of the rounded one, and more \[1\].
-const BOUND_ROUNDING: f64 = 1.0 + 1e-12;
-
 /// Rounding of an energy summed over blocks, relative \[1\].
 pub(super) const ENERGY_ROUNDING: f64 = 1e-13;
 
@@ -357,7 +354,7 @@ impl Run<'_> {
             let reach = time_step * (D as f64).sqrt();
             self.step_count += 1;
             due = monitor.is_due(self.step_count, sums.largest_force);
-            let bound = reach * (keep * fastest + push * sums.largest_force) * BOUND_ROUNDING;
+            let bound = reach * (keep * fastest + push * sums.largest_force) * motion.bound_rounding();
             // A look takes totals, which take a pass of their own.
             match if due { None } else { motion.advance(assembly, step, bound) } {
                 Some((speed, products)) => {

@@ -37,6 +37,11 @@ impl<const D: usize> Motion<D> {
         matches!(self, Motion::Single(..))
     }
 
+    /// A bound on the largest component of a velocity before it is rounded, over that of the rounded one, and more \[1\].
+    pub fn bound_rounding(&self) -> f64 {
+        if self.is_single() { 1.0 + 1e-6 } else { 1.0 + 1e-12 }
+    }
+
     /// Goes on in double precision. The disks are settled.
     pub fn refine(&mut self) {
         if let Motion::Single(disks, velocities) = self {
