@@ -2,7 +2,7 @@
 
 use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
-use crate::contact::single::Single;
+use crate::contact::single::{Single, Units};
 use crate::relax::flat::{Products, combine, kick_and_drift, products, single};
 use crate::vector::{Vector, larger};
 
@@ -12,6 +12,31 @@ pub struct Step {
     pub keep: f64,
     pub push: f64,
     pub time_step: f64,
+}
+
+impl Step {
+    /// Of disks in double precision: how fast the fastest is along an axis.
+    fn kick<const D: usize>(&self, forces: &[Vector<D>], velocities: &mut [Vector<D>], ways: &mut [Vector<D>]) -> f64 {
+        let (velocities, ways) = (velocities.as_flattened_mut(), ways.as_flattened_mut());
+        kick_and_drift(self.keep, self.push, self.time_step, forces.as_flattened(), velocities, ways)
+    }
+
+    /// The same step in other units.
+    fn in_units(&self, units: Units) -> Step {
+        let push = self.push * (units.force / units.speed());
+        Step { keep: self.keep, push, time_step: self.time_step / units.time }
+    }
+
+    /// Of disks in single precision, in their units.
+    fn kick_single<const D: usize>(
+        &self,
+        forces: &[[f32; D]],
+        velocities: &mut [[f32; D]],
+        ways: &mut [[f32; D]],
+    ) -> f64 {
+        let (velocities, ways) = (velocities.as_flattened_mut(), ways.as_flattened_mut());
+        single::kick_and_drift(self.keep, self.push, self.time_step, forces.as_flattened(), velocities, ways)
+    }
 }
 
 /// Velocities of the mobile disks, and in single precision where the disks are.
@@ -107,11 +132,13 @@ impl<const D: usize> Motion<D> {
     ) -> Option<(f64, Products)> {
         match self {
             Motion::Double(velocities) => {
-                let (speeds, parts) = assembly.advance(velocities, bound, kick(step), products_of)?;
+                let (speeds, parts) = assembly.advance(velocities, bound, |f, v, u| step.kick(f, v, u), products_of)?;
                 Some((fastest_of(speeds), sum_of(&parts)))
             }
             Motion::Single(disks, velocities) => {
-                let kick = single_kick(disks, step);
+                let step = step.in_units(disks.units());
+                let kick =
+                    |forces: &[_], velocities: &mut [_], ways: &mut [_]| step.kick_single(forces, velocities, ways);
                 let (speeds, parts) = disks.advance(assembly, velocities, bound, kick, single_products_of)?;
                 Some((disks.units().speed() * fastest_of(speeds), in_units(disks, &sum_of(&parts))))
             }
@@ -123,11 +150,12 @@ impl<const D: usize> Motion<D> {
         let mobile = assembly.mobile_count();
         match self {
             Motion::Double(velocities) => {
-                kick(step)(&assembly.forces[..mobile], velocities, &mut assembly.displacements[..mobile])
+                step.kick(&assembly.forces[..mobile], velocities, &mut assembly.displacements[..mobile])
             }
             Motion::Single(disks, velocities) => {
-                let kick = single_kick(disks, step);
-                let fastest = disks.kick(assembly, velocities, kick);
+                let step = step.in_units(disks.units());
+                let fastest = disks
+                    .kick(assembly, velocities, |forces, velocities, ways| step.kick_single(forces, velocities, ways));
                 disks.settle(assembly);
                 disks.units().speed() * fastest
             }
@@ -148,27 +176,6 @@ impl<const D: usize> Motion<D> {
             }
         }
         self.forget();
-    }
-}
-
-fn kick<const D: usize>(step: Step) -> impl Fn(&[Vector<D>], &mut [Vector<D>], &mut [Vector<D>]) -> f64 + Sync {
-    move |forces, velocities, displacements| {
-        let (velocities, displacements) = (velocities.as_flattened_mut(), displacements.as_flattened_mut());
-        kick_and_drift(step.keep, step.push, step.time_step, forces.as_flattened(), velocities, displacements)
-    }
-}
-
-/// The same step in units of single precision.
-fn single_kick<const D: usize>(
-    disks: &Single<D>,
-    step: Step,
-) -> impl Fn(&[[f32; D]], &mut [[f32; D]], &mut [[f32; D]]) -> f64 + Sync + use<D> {
-    let units = disks.units();
-    let push = step.push * (units.force / units.speed());
-    let time_step = step.time_step / units.time;
-    move |forces, velocities, ways| {
-        let (velocities, ways) = (velocities.as_flattened_mut(), ways.as_flattened_mut());
-        single::kick_and_drift(step.keep, push, time_step, forces.as_flattened(), velocities, ways)
     }
 }
 
