@@ -216,7 +216,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
     }
 
-    /// Moves the mobile disks, evaluates the forces where they then are and looks at them, tile by tile ([`advance`]). None, and
+    /// Moves the mobile disks, evaluates the forces where they then are and looks at them, tile by tile. None, and
     /// nothing done, for a law with sites, and where the list might not hold if a disk moves by `bound` \[length\]. The caller tells
     /// [`Assembly::keep_listed`] afterwards how far they went.
     ///
