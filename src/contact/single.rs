@@ -83,7 +83,7 @@ pub struct Single<const D: usize> {
     blocks: Vec<Rounded<D>>,
     base: Vec<Vector<D>>,
     ways: Vec<[f32; D]>,
-    /// Forces of the last evaluation, all disks, in units of their own.
+    /// Forces of the last evaluation, all disks \[`Units::force`\].
     pub forces: Vec<[f32; D]>,
     across: Across<f32, D>,
     stale: bool,
