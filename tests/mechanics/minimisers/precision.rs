@@ -14,17 +14,20 @@ fn fire(precision: Precision, limit: f64) -> Fire {
 /// Wherever it is stopped, the residual is that of the state, in double precision.
 #[test]
 fn a_relaxation_cut_short_tells_the_residual_where_it_is() {
+    let mut before = None;
     for step_limit in [1, 7, 79, 80, 81, 333] {
         let cut = |packing: Packing<2>, step_limit| -> Outcome<Packing<2>> {
             relax(&Fire { step_limit, ..fire(Precision::Mixed, 1e-10) }, packing, &Hertzian::default())
         };
         let outcome = cut(inflated("hertz_N1000_p10", 2), step_limit);
         assert_eq!((outcome.stop, outcome.cost.step_count), (Stop::StepLimit, step_limit));
+        assert_ne!(before.as_ref(), Some(&outcome.state), "the last steps are in the state as well");
         let again = cut(outcome.state.clone(), 0);
         let [one, two] = [&outcome, &again].map(|outcome| outcome.residual.largest_net_force);
         // Sums of the same forces, known to 10⁻¹⁵ of a contact force each, in another order.
         let scale = outcome.residual.mean_contact_force;
         assert!((one - two).abs() <= 1e-12 * scale, "{step_limit}: {one} and {two}, mean force {scale}");
+        before = Some(outcome.state);
     }
 }
 
