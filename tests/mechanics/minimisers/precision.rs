@@ -21,7 +21,7 @@ fn a_relaxation_cut_short_tells_the_residual_where_it_is() {
         };
         let outcome = cut(inflated("hertz_N1000_p10", 2), step_limit);
         assert_eq!((outcome.stop, outcome.cost.step_count), (Stop::StepLimit, step_limit));
-        assert_ne!(before.as_ref(), Some(&outcome.state), "the last steps are in the state as well");
+        assert!(before.as_ref() != Some(&outcome.state), "{step_limit}: the last steps are in the state as well");
         let again = cut(outcome.state.clone(), 0);
         let [one, two] = [&outcome, &again].map(|outcome| outcome.residual.largest_net_force);
         // Sums of the same forces, known to 10⁻¹⁵ of a contact force each, in another order.
