@@ -28,7 +28,7 @@ use jamscope::linear::{Analysis, LinearResponse};
 use jamscope::observe::{AngularProfile, RadialProfile};
 use jamscope::packing::Packing;
 use jamscope::relax::implicit::{ImplicitMotion, Inertia};
-use jamscope::relax::{Fire, ForceLimit, Relaxer};
+use jamscope::relax::{Fire, ForceLimit, Precision, Relaxer};
 
 use tiled::tiled;
 
@@ -55,9 +55,12 @@ struct Row {
     list: f64,
     forces: f64,
     totals: f64,
+    /// Of FIRE, in double precision and in mixed, far from rest.
     step: f64,
+    mixed_step: f64,
     forces_on_all: f64,
     step_on_all: f64,
+    mixed_step_on_all: f64,
     /// Lists made during the steps of FIRE that were timed.
     lists: usize,
     /// ns a disk: Hessian, order and analysis, factor, solution, implicit step, profiles of a field.
@@ -97,7 +100,7 @@ fn main() -> Result<(), Failure> {
 
     println!("ns a disk; on all: {threads} threads, the same bits");
     println!(
-        "{:>8} {:>6} {:>8} {:>7} {:>7} {:>7} {:>7} {:>9} {:>9} {:>5} | {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} | {:>7}",
+        "{:>8} {:>6} {:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>9} {:>9} {:>9} {:>5} | {:>8} {:>8} {:>8} {:>8} {:>9} {:>8} | {:>7}",
         "disks",
         "pairs",
         "contacts",
@@ -105,8 +108,10 @@ fn main() -> Result<(), Failure> {
         "loop",
         "totals",
         "step",
+        "mixed",
         "loop all",
         "step all",
+        "mixed all",
         "lists",
         "Hessian",
         "analysis",
@@ -163,24 +168,30 @@ fn measured(packing: &Packing<2>, one: &rayon::ThreadPool) -> Result<Row, Failur
     let held = (0..disks).map(|disk| disk == chosen).collect();
     let start = packing.clone().with_radius(chosen, radius + 0.1)?.with_held(held)?;
     // What a step costs once the first lists are made, whatever the number of disks.
-    let relax = |steps| -> Result<_, Failure> {
-        let fire = Fire { limit: ForceLimit::Relative(0.0), step_limit: steps, ..Fire::default() };
+    let relax = |precision, step_limit| -> Result<_, Failure> {
+        let fire = Fire { limit: ForceLimit::Relative(0.0), step_limit, precision, ..Fire::default() };
         let outcome = fire.relax(start.clone(), &law, &mut ())?;
         Ok((outcome.cost.seconds, outcome.cost.rebuild_count, outcome.state))
     };
-    let steps = || -> Result<_, Failure> {
+    let steps = |precision| -> Result<_, Failure> {
         let (mut least, mut lists, mut last) = ([f64::INFINITY; 2], 0, None);
         for _ in 0..(400_000 / disks).clamp(2, 40) {
-            let ((early, before, _), (late, after, state)) = (relax(FIRST_STEPS)?, relax(FIRST_STEPS + STEPS)?);
+            let ((early, before, _), (late, after, state)) =
+                (relax(precision, FIRST_STEPS)?, relax(precision, FIRST_STEPS + STEPS)?);
             least = [least[0].min(early), least[1].min(late)];
             (lists, last) = (after - before, Some(state));
         }
         Ok(((least[1] - least[0]) / STEPS as f64, lists, last.ok_or("no turn")?))
     };
-    let (step_on_all, _, state_of_all) = steps()?;
-    let (step, lists, state) = one.install(steps)?;
-    assert!(state.positions() == state_of_all.positions(), "the bits depend on the number of threads");
-    drop((state, state_of_all, start));
+    let both = |precision| -> Result<_, Failure> {
+        let (on_all, _, state_of_all) = steps(precision)?;
+        let (on_one, lists, state) = one.install(|| steps(precision))?;
+        assert!(state.positions() == state_of_all.positions(), "the bits depend on the number of threads");
+        Ok((on_one, on_all, lists))
+    };
+    let (step, step_on_all, lists) = both(Precision::Double)?;
+    let (mixed_step, mixed_step_on_all, _) = both(Precision::Mixed)?;
+    drop(start);
 
     let linear =
         if disks <= MOST_FACTORISED { Some(linear(packing, chosen)?.map(|seconds| seconds * per_disk)) } else { None };
@@ -192,8 +203,10 @@ fn measured(packing: &Packing<2>, one: &rayon::ThreadPool) -> Result<Row, Failur
         forces: forces * per_disk,
         totals: totals * per_disk,
         step: step * per_disk,
+        mixed_step: mixed_step * per_disk,
         forces_on_all: forces_on_all * per_disk,
         step_on_all: step_on_all * per_disk,
+        mixed_step_on_all: mixed_step_on_all * per_disk,
         lists,
         linear,
         memory: peak_memory().map(|bytes| bytes / disks as f64),
@@ -274,7 +287,7 @@ fn print_row(row: &Row) {
         },
     );
     println!(
-        "{:>8} {:>6.2} {:>8.2} {:>7.1} {:>7.2} {:>7.2} {:>7.2} {:>9.2} {:>9.2} {:>5} | {linear} | {:>7.0}",
+        "{:>8} {:>6.2} {:>8.2} {:>7.1} {:>7.2} {:>7.2} {:>7.2} {:>7.2} {:>9.2} {:>9.2} {:>9.2} {:>5} | {linear} | {:>7.0}",
         row.disks,
         row.pairs as f64 / row.disks as f64,
         row.contacts as f64 / row.disks as f64,
@@ -282,8 +295,10 @@ fn print_row(row: &Row) {
         row.forces,
         row.totals,
         row.step,
+        row.mixed_step,
         row.forces_on_all,
         row.step_on_all,
+        row.mixed_step_on_all,
         row.lists,
         row.memory.unwrap_or(f64::NAN),
     );
@@ -292,10 +307,11 @@ fn print_row(row: &Row) {
 /// The exponents x of time ∼ N^x, least squares over all sizes on logarithmic axes.
 fn print_exponents(rows: &[Row]) {
     type Column<'a> = (&'a str, &'a dyn Fn(&Row) -> Option<f64>);
-    let columns: [Column<'_>; 8] = [
+    let columns: [Column<'_>; 9] = [
         ("list", &|row| Some(row.list)),
         ("loop", &|row| Some(row.forces)),
         ("FIRE step", &|row| Some(row.step)),
+        ("mixed step", &|row| Some(row.mixed_step)),
         ("Hessian", &|row| row.linear.map(|of| of[0])),
         ("analysis", &|row| row.linear.map(|of| of[1])),
         ("factor", &|row| row.linear.map(|of| of[2])),
@@ -318,13 +334,14 @@ fn print_exponents(rows: &[Row]) {
 
 fn csv(rows: &[Row]) -> String {
     let mut text = String::from(
-        "disks,pairs,contacts,list,loop,loop_with_totals,fire_step,loop_on_all,fire_step_on_all,lists,hessian,analysis,factor,solution,implicit_step,profiles,memory\n\
-         1,1,1,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,1,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,byte/disk\n",
+        "disks,pairs,contacts,list,loop,loop_with_totals,fire_step,mixed_fire_step,loop_on_all,fire_step_on_all,mixed_fire_step_on_all,lists,hessian,analysis,factor,solution,implicit_step,profiles,memory\n\
+         1,1,1,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,1,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,ns/disk,byte/disk\n",
     );
     for row in rows {
-        let times = [row.list, row.forces, row.totals, row.step, row.forces_on_all, row.step_on_all];
+        let on_one = [row.list, row.forces, row.totals, row.step, row.mixed_step];
+        let times = on_one.into_iter().chain([row.forces_on_all, row.step_on_all, row.mixed_step_on_all]);
         let linear = row.linear.map_or(vec![None; 6], |of| of.into_iter().map(Some).collect());
-        let cells = times.into_iter().chain([row.lists as f64]).map(Some).chain(linear).chain([row.memory]);
+        let cells = times.chain([row.lists as f64]).map(Some).chain(linear).chain([row.memory]);
         let cells: Vec<String> = cells.map(|cell| cell.map_or(String::new(), |value| format!("{value:.3}"))).collect();
         text += &format!("{},{},{},{}\n", row.disks, row.pairs, row.contacts, cells.join(","));
     }

@@ -1,8 +1,7 @@
 //! One block of pairs, column by column: how far apart its disks are and how much they overlap; the formulas are those of [`super::forces`].
 //!
 //! The arithmetic goes through the block several times, a few operations each: those of one vector of pairs wait for each other, and
-//! a processor has few of the next ones in view if they are many. Meanwhile it asks for what the list has of the block after this one;
-//! coefficients, one column that some laws do not read, it finds by itself.
+//! a processor has few of the next ones in view if they are many. Meanwhile it asks for what the list has of a later block.
 
 use pulp::Simd;
 
@@ -11,6 +10,9 @@ use crate::contact::pair_list::{BLOCK, Block, PairList};
 use crate::simd::roots::{positive_part, reciprocal, square_roots};
 use crate::simd::{components, prefetch};
 use crate::vector::Vector;
+
+/// How far ahead the list is asked for: its memory is two blocks of arithmetic away \[pairs\].
+const AHEAD: usize = 2 * BLOCK;
 
 /// One block of pairs, column by column.
 #[repr(align(64))]
@@ -102,7 +104,7 @@ impl<const D: usize> Columns<D> {
                     *square = simd.add_f64s(*square, simd.mul_f64s(along, along));
                     change = simd.add_f64s(change, simd.mul_f64s(moved[d], simd.add_f64s(anchored, along)));
                     apart[d][k] = along;
-                    prefetch(simd, anchors.separation[d], BLOCK + k * S::F64_LANES);
+                    prefetch(simd, anchors.separation[d], AHEAD + k * S::F64_LANES);
                 }
                 overlap[k] = change;
             }
@@ -116,21 +118,26 @@ impl<const D: usize> Columns<D> {
             let change = simd.mul_f64s(overlap[k], simd.mul_f64s(distance, inverse));
             overlap[k] = positive_part(simd, simd.sub_f64s(anchor_overlap[k], change));
             factor[k] = simd.mul_f64s(both, inverse);
-            prefetch(simd, anchors.distance, BLOCK + k * S::F64_LANES);
-            prefetch(simd, anchors.overlap, BLOCK + k * S::F64_LANES);
+            prefetch(simd, anchors.distance, AHEAD + k * S::F64_LANES);
+            prefetch(simd, anchors.overlap, AHEAD + k * S::F64_LANES);
         }
     }
 
     /// From the overlaps: the forces of a law.
     #[inline(always)]
-    pub fn press<S: Simd>(&mut self, simd: S, law: &impl PairLaw, anchors: &Anchors<'_, D>) {
+    pub fn press<S: Simd, L: PairLaw>(&mut self, simd: S, law: &L, anchors: &Anchors<'_, D>) {
         let count = BLOCK / S::F64_LANES;
         let coefficient = &S::as_simd_f64s(anchors.coefficient).0[..count];
+        let one = simd.splat_f64s(anchors.coefficient[0]);
         let overlap = &S::as_simd_f64s(&self.overlap).0[..count];
         let (force, _) = S::as_mut_simd_f64s(&mut self.force);
         for k in (0..count).step_by(2) {
-            let (coefficients, overlaps) = ([coefficient[k], coefficient[k + 1]], [overlap[k], overlap[k + 1]]);
-            [force[k], force[k + 1]] = law.forces(simd, coefficients, overlaps);
+            let coefficients = if L::ONE_COEFFICIENT { [one; 2] } else { [coefficient[k], coefficient[k + 1]] };
+            [force[k], force[k + 1]] = law.forces(simd, coefficients, [overlap[k], overlap[k + 1]]);
+            if !L::ONE_COEFFICIENT {
+                prefetch(simd, anchors.coefficient, AHEAD + k * S::F64_LANES);
+                prefetch(simd, anchors.coefficient, AHEAD + (k + 1) * S::F64_LANES);
+            }
         }
     }
 

@@ -80,7 +80,7 @@ pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
         if overlap > 0.0 { (self.exponent() - 1.0) * force / overlap } else { 0.0 }
     }
 
-    /// Whether all pairs have one coefficient, whatever their radii: the loop in single precision then reads one a block.
+    /// Whether all pairs have one coefficient, whatever their radii: the loop then reads one a block.
     const ONE_COEFFICIENT: bool = false;
 
     /// Whether every disk has an energy −Γu²/2 of its displacement u from its site, see [`OnSite`](crate::contact::OnSite).

@@ -43,6 +43,8 @@ pub struct OnSite<L> {
 impl<L: PairLaw> PairLaw for OnSite<L> {
     type Viscoelastic = L::Viscoelastic;
 
+    const ONE_COEFFICIENT: bool = L::ONE_COEFFICIENT;
+
     const ON_SITE: bool = true;
 
     /// Its own Γ, and that of the law within if that has one.

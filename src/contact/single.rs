@@ -27,6 +27,9 @@ use crate::vector::Vector;
 /// Blocks of pairs rounded by one thread at a time.
 const PORTION: usize = 64;
 
+/// How far ahead the list is asked for: its memory is four blocks of arithmetic away \[blocks\].
+const AHEAD: usize = 4;
+
 /// Units of numbers in single precision, powers of two.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Units {
@@ -302,7 +305,7 @@ struct Arithmetic<'a, const D: usize, L> {
     law: &'a L,
     listed: &'a Rounded<D>,
     columns: &'a mut Columns<D>,
-    /// Whether the next block is asked for meanwhile: it is far away where there are many.
+    /// Whether a later block is asked for meanwhile: it is far away where there are many.
     asks: bool,
 }
 
@@ -332,7 +335,7 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
                 apart[d][k] = along;
             }
             if asks {
-                let next = size_of::<Rounded<D>>() / size_of::<f32>() + k * S::F32_LANES;
+                let next = AHEAD * size_of::<Rounded<D>>() / size_of::<f32>() + k * S::F32_LANES;
                 for column in &listed.separation {
                     prefetch(simd, column, next);
                 }
