@@ -22,6 +22,7 @@ mod selected;
 pub mod single;
 pub mod stiffness;
 pub mod totals;
+mod turns;
 
 pub use assembly::Assembly;
 #[cfg(feature = "linear")]

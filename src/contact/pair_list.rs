@@ -13,6 +13,7 @@
 
 use std::ops::Range;
 
+use crate::contact::turns::Turns;
 use crate::packing::PackingError;
 use crate::side_by_side;
 use crate::vector::Vector;
@@ -51,6 +52,10 @@ pub struct PairList<const D: usize> {
     pub(super) tiles: Vec<Tile>,
     /// Disks of a tile.
     pub(super) tile_size: usize,
+    /// Disks from this one on are never first: they do not move.
+    pub(super) first_count: usize,
+    /// What one thread does with the tiles in a step.
+    pub(super) turns: Turns,
     arranger: Box<Arranger<D>>,
     /// Tiles made side by side, until they are put one after the other.
     parts: Vec<PairList<D>>,
@@ -231,6 +236,7 @@ impl<const D: usize> PairList<D> {
         first_count: usize,
         search: impl Fn() -> S + Sync,
     ) -> Result<(), PackingError> {
+        self.first_count = first_count;
         // Sixteen layers of disks: few pairs cross its border.
         let layer = (disk_count as f64).powf(1.0 - 1.0 / D as f64);
         let tile_size = LEAST_TILE.max(16 * layer as usize);
@@ -293,6 +299,10 @@ impl<const D: usize> PairList<D> {
                 begin = end + 1;
             }
         }
+        self.turns.take(&self.tiles, |pair| {
+            let second = self.second[pair] as usize;
+            (second < self.first_count).then_some(second / tile_size)
+        });
     }
 
     /// Adds the blocks of a tile, which begins with disk `origin`: what `inner` puts in line within it, then what `border` puts in

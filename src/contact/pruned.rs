@@ -34,6 +34,7 @@ pub(super) fn best_skin(radius: f64, way: f64) -> f64 {
 impl<const D: usize> PairList<D> {
     /// Empties the list and fills it with the pairs of another one whose disks are nearer than reach + `skin`.
     pub(super) fn prune(&mut self, whole: &PairList<D>, displacements: &[Vector<D>], skin: f64) {
+        self.first_count = whole.first_count;
         self.fill_tiles(whole.tiles.len(), whole.tile_size, |list, place, tile| {
             let blocks = &whole.tiles[place];
             list.add_blocks(
