@@ -16,8 +16,9 @@
 
 use crate::contact::columns::{Anchors, Columns, with_anchors};
 use crate::contact::law::PairLaw;
-use crate::contact::pair_list::{BLOCK, Block, PairList, Tile};
+use crate::contact::pair_list::{BLOCK, Block, PairList};
 use crate::contact::rows::{gather, scatter};
+use crate::contact::tiles::Tile;
 use crate::contact::totals::{Tally, Totals};
 use crate::side_by_side;
 use crate::vector::{Number, Vector, difference, sum};

@@ -21,6 +21,7 @@ mod rows;
 mod selected;
 pub mod single;
 pub mod stiffness;
+mod tiles;
 pub mod totals;
 mod turns;
 

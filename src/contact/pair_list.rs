@@ -13,6 +13,7 @@
 
 use std::ops::Range;
 
+use crate::contact::tiles::{Tile, connect};
 use crate::contact::turns::Turns;
 use crate::packing::PackingError;
 use crate::side_by_side;
@@ -95,21 +96,6 @@ pub(super) struct Block {
     pub row_count: usize,
     pub row_length: usize,
     pub origin: u32,
-}
-
-/// A tile: its blocks, and what comes to its disks from others.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Tile {
-    /// Blocks of pairs within the tile.
-    pub inner: Range<usize>,
-    /// Blocks of pairs whose second disk is in another tile.
-    pub border: Range<usize>,
-    /// Pairs of `border`.
-    pub border_pairs: Range<usize>,
-    /// Disks of the tile, counted from its first one, that no pair across its border touches: the longest run of them.
-    pub interior: Range<usize>,
-    /// Disk of this tile, the tile that has the pair, and the pair's place among the border pairs there.
-    pub incoming: Vec<(u32, u32, u32)>,
 }
 
 /// Where pairs come from, each under a number of its own.
@@ -278,27 +264,7 @@ impl<const D: usize> PairList<D> {
             }
         }
         self.tiles = tiles;
-        for tile in 0..self.tiles.len() {
-            for (place, pair) in self.tiles[tile].border_pairs.clone().enumerate() {
-                let second = self.second[pair];
-                self.tiles[second as usize / tile_size].incoming.push((second, tile as u32, place as u32));
-            }
-        }
-        for (place, tile) in self.tiles.iter_mut().enumerate() {
-            let first = &self.first[tile.border_pairs.clone()];
-            let touched = first.iter().copied().chain(tile.incoming.iter().map(|&(disk, ..)| disk));
-            let mut touched: Vec<usize> = touched.map(|disk| disk as usize - place * tile_size).collect();
-            touched.sort_unstable();
-            touched.push(tile_size);
-            let mut begin = 0;
-            tile.interior = 0..0;
-            for end in touched {
-                if end > begin + tile.interior.len() {
-                    tile.interior = begin..end;
-                }
-                begin = end + 1;
-            }
-        }
+        connect(&mut self.tiles, tile_size, &self.first, &self.second);
         self.turns.take(&self.tiles, |pair| {
             let second = self.second[pair] as usize;
             (second < self.first_count).then_some(second / tile_size)

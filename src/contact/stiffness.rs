@@ -3,7 +3,8 @@
 use crate::contact::columns::Columns;
 use crate::contact::forces::fill;
 use crate::contact::law::PairLaw;
-use crate::contact::pair_list::{BLOCK, PairList, Tile};
+use crate::contact::pair_list::{BLOCK, PairList};
+use crate::contact::tiles::Tile;
 use crate::side_by_side;
 use crate::vector::Vector;
 

@@ -1,6 +1,6 @@
 //! The order in which one thread takes up tiles in a step: what lies at a border is done while both sides are still in a cache.
 
-use crate::contact::pair_list::Tile;
+use crate::contact::tiles::Tile;
 
 /// What is done with a tile once in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

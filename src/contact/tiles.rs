@@ -1,0 +1,45 @@
+//! Tiles of a pair list, and what lies between them.
+
+use std::ops::Range;
+
+/// A tile: its blocks, and what comes to its disks from others.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Tile {
+    /// Blocks of pairs within the tile.
+    pub inner: Range<usize>,
+    /// Blocks of pairs whose second disk is in another tile.
+    pub border: Range<usize>,
+    /// Pairs of `border`.
+    pub border_pairs: Range<usize>,
+    /// Disks of the tile, counted from its first one, that no pair across its border touches: the longest run of them.
+    pub interior: Range<usize>,
+    /// Disk of this tile, the tile that has the pair, and the pair's place among the border pairs there.
+    pub incoming: Vec<(u32, u32, u32)>,
+}
+
+/// Finds what comes to each tile from others, and what lies inside of it.
+///
+/// # Shape
+/// `first` and `second` are the disks of all pairs of the list; tiles know their own.
+pub(super) fn connect(tiles: &mut [Tile], tile_size: usize, first: &[u32], second: &[u32]) {
+    for tile in 0..tiles.len() {
+        for (place, pair) in tiles[tile].border_pairs.clone().enumerate() {
+            let second = second[pair];
+            tiles[second as usize / tile_size].incoming.push((second, tile as u32, place as u32));
+        }
+    }
+    for (place, tile) in tiles.iter_mut().enumerate() {
+        let touched = first[tile.border_pairs.clone()].iter().chain(tile.incoming.iter().map(|(disk, ..)| disk));
+        let mut touched: Vec<usize> = touched.map(|&disk| disk as usize - place * tile_size).collect();
+        touched.sort_unstable();
+        touched.push(tile_size);
+        let mut begin = 0;
+        tile.interior = 0..0;
+        for end in touched {
+            if end > begin + tile.interior.len() {
+                tile.interior = begin..end;
+            }
+            begin = end + 1;
+        }
+    }
+}
