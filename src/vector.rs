@@ -3,13 +3,13 @@
 //! A position is kept as an unevaluated sum `high + low` of two vectors, so that the distance of two touching disks is
 //! known to the rounding of the distance itself (2·10⁻¹⁶), not to that of the side of the box (10⁻¹⁴ and more).
 
-use std::ops::{Add, Sub};
+use std::ops::{Add, Mul, Sub};
 
 /// A vector of D components.
 pub type Vector<const D: usize> = [f64; D];
 
 /// What the loop over contacts may reckon with: `f64`, or `f32` while disks are far from rest.
-pub trait Number: Copy + Default + Send + Sync + Add<Output = Self> + Sub<Output = Self> {}
+pub trait Number: Copy + Default + Send + Sync + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 
 impl Number for f32 {}
 impl Number for f64 {}

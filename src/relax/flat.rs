@@ -2,7 +2,8 @@
 //! pieces of a fixed length, which may be worked on side by side; their sums are added in order.
 
 use crate::side_by_side;
-use crate::simd::lanes;
+use crate::simd::lanes::{self, Summed};
+use crate::simd::real::Real;
 use crate::vector::larger;
 
 /// Length of a piece of a long column; fixed, so the bits do not depend on the number of threads.
@@ -41,8 +42,8 @@ impl Products {
     }
 }
 
-/// F·v, F·F and v·v in one pass.
-pub fn products(force: &[f64], velocity: &[f64]) -> Products {
+/// F·v, F·F and v·v in one pass. Sums of up to some thousand terms are of the precision given, those of the parts in double.
+pub fn products<T: Summed>(force: &[T], velocity: &[T]) -> Products {
     let of_piece = |(force, velocity)| pulp::Arch::new().dispatch(ProductsOf { force, velocity });
     if force.len() <= PIECE {
         return of_piece((force, velocity));
@@ -51,30 +52,35 @@ pub fn products(force: &[f64], velocity: &[f64]) -> Products {
     pieces.iter().fold(Products::ZERO, |sum, piece| sum.with(piece))
 }
 
-struct ProductsOf<'a> {
-    force: &'a [f64],
-    velocity: &'a [f64],
+struct ProductsOf<'a, T> {
+    force: &'a [T],
+    velocity: &'a [T],
 }
 
-impl pulp::WithSimd for ProductsOf<'_> {
+impl<T: Summed> pulp::WithSimd for ProductsOf<'_, T> {
     type Output = Products;
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> Products {
-        let ([power, force_squared, speed_squared], largest_force) = lanes::products(simd, self.force, self.velocity);
-        Products { power, force_squared, speed_squared, largest_force }
+        let mut sum = Products::ZERO;
+        for (force, velocity) in self.force.chunks(T::PART).zip(self.velocity.chunks(T::PART)) {
+            let ([power, force_squared, speed_squared], largest_force) = lanes::products(simd, force, velocity);
+            sum = sum.with(&Products { power, force_squared, speed_squared, largest_force });
+        }
+        sum
     }
 }
 
 /// `v ← keep·v + push·F`, then `u ← u + dt·v`; the largest component of v, whatever its sign, is returned.
-pub fn kick_and_drift(
+pub fn kick_and_drift<T: Real>(
     keep: f64,
     push: f64,
     time_step: f64,
-    force: &[f64],
-    velocity: &mut [f64],
-    displacement: &mut [f64],
+    force: &[T],
+    velocity: &mut [T],
+    displacement: &mut [T],
 ) -> f64 {
+    let [keep, push, time_step] = [keep, push, time_step].map(T::rounded);
     let piece = |((force, velocity), displacement): ((&_, &mut _), &mut _)| {
         pulp::Arch::new().dispatch(KickAndDrift { keep, push, time_step, force, velocity, displacement })
     };
@@ -85,136 +91,39 @@ pub fn kick_and_drift(
     side_by_side::each(pieces, piece).into_iter().fold(0.0, larger)
 }
 
-struct KickAndDrift<'a> {
-    keep: f64,
-    push: f64,
-    time_step: f64,
-    force: &'a [f64],
-    velocity: &'a mut [f64],
-    displacement: &'a mut [f64],
+struct KickAndDrift<'a, T> {
+    keep: T,
+    push: T,
+    time_step: T,
+    force: &'a [T],
+    velocity: &'a mut [T],
+    displacement: &'a mut [T],
 }
 
-impl pulp::WithSimd for KickAndDrift<'_> {
+impl<T: Real> pulp::WithSimd for KickAndDrift<'_, T> {
     type Output = f64;
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> f64 {
-        let splat = |value| simd.splat_f64s(value);
+        let splat = |value| T::splat(simd, value);
         let (keep, push, time_step) = (splat(self.keep), splat(self.push), splat(self.time_step));
-        let (force, force_rest) = S::as_simd_f64s(self.force);
-        let (velocity, velocity_rest) = S::as_mut_simd_f64s(self.velocity);
-        let (displacement, displacement_rest) = S::as_mut_simd_f64s(self.displacement);
+        let (force, force_rest) = T::vectors::<S>(self.force);
+        let (velocity, velocity_rest) = T::vectors_mut::<S>(self.velocity);
+        let (displacement, displacement_rest) = T::vectors_mut::<S>(self.displacement);
         // A NaN may get lost here; it is in v and u.
-        let mut fastest = splat(0.0);
+        let mut fastest = splat(T::default());
         for ((&f, v), u) in force.iter().zip(velocity).zip(displacement) {
-            *v = simd.add_f64s(simd.mul_f64s(keep, *v), simd.mul_f64s(push, f));
-            *u = simd.add_f64s(*u, simd.mul_f64s(time_step, *v));
-            fastest = simd.max_f64s(fastest, simd.abs_f64s(*v));
+            *v = T::plus(simd, T::times(simd, keep, *v), T::times(simd, push, f));
+            *u = T::plus(simd, *u, T::times(simd, time_step, *v));
+            fastest = T::larger_size(simd, fastest, *v);
         }
-        let mut fastest = simd.reduce_max_f64s(fastest);
-        for ((f, v), u) in force_rest.iter().zip(velocity_rest).zip(displacement_rest) {
+        let mut fastest = T::largest(simd, fastest).widened();
+        for ((&f, v), u) in force_rest.iter().zip(velocity_rest).zip(displacement_rest) {
             *v = self.keep * *v + self.push * f;
-            *u += self.time_step * *v;
-            fastest = larger(fastest, v.abs());
+            *u = *u + self.time_step * *v;
+            fastest = larger(fastest, v.widened().abs());
         }
         fastest
-    }
-}
-
-/// The same in single precision; sums of up to some thousand terms too, those of the parts in double.
-pub mod single {
-    use crate::relax::flat::{PIECE, Products};
-    use crate::side_by_side;
-    use crate::simd::lanes;
-    use crate::vector::larger;
-
-    /// Numbers that are summed in single precision: each lane has 64 of them.
-    const PART: usize = 64 * lanes::SINGLE_LANES;
-
-    /// F·v, F·F and v·v in one pass.
-    pub fn products(force: &[f32], velocity: &[f32]) -> Products {
-        let of_piece = |(force, velocity)| pulp::Arch::new().dispatch(ProductsOf { force, velocity });
-        if force.len() <= PIECE {
-            return of_piece((force, velocity));
-        }
-        let pieces = side_by_side::each(force.chunks(PIECE).zip(velocity.chunks(PIECE)), of_piece);
-        pieces.iter().fold(Products::ZERO, |sum, piece| sum.with(piece))
-    }
-
-    struct ProductsOf<'a> {
-        force: &'a [f32],
-        velocity: &'a [f32],
-    }
-
-    impl pulp::WithSimd for ProductsOf<'_> {
-        type Output = Products;
-
-        #[inline(always)]
-        fn with_simd<S: pulp::Simd>(self, simd: S) -> Products {
-            let mut sum = Products::ZERO;
-            for (force, velocity) in self.force.chunks(PART).zip(self.velocity.chunks(PART)) {
-                let ([power, force_squared, speed_squared], largest_force) =
-                    lanes::single_products(simd, force, velocity);
-                sum = sum.with(&Products { power, force_squared, speed_squared, largest_force });
-            }
-            sum
-        }
-    }
-
-    /// `v ← keep·v + push·F`, then `u ← u + dt·v`; the largest component of v, whatever its sign, is returned.
-    pub fn kick_and_drift(
-        keep: f64,
-        push: f64,
-        time_step: f64,
-        force: &[f32],
-        velocity: &mut [f32],
-        displacement: &mut [f32],
-    ) -> f64 {
-        let (keep, push, time_step) = (keep as f32, push as f32, time_step as f32);
-        let piece = |((force, velocity), displacement): ((&_, &mut _), &mut _)| {
-            pulp::Arch::new().dispatch(KickAndDrift { keep, push, time_step, force, velocity, displacement })
-        };
-        if force.len() <= PIECE {
-            return piece(((force, velocity), displacement));
-        }
-        let pieces = force.chunks(PIECE).zip(velocity.chunks_mut(PIECE)).zip(displacement.chunks_mut(PIECE));
-        side_by_side::each(pieces, piece).into_iter().fold(0.0, larger)
-    }
-
-    struct KickAndDrift<'a> {
-        keep: f32,
-        push: f32,
-        time_step: f32,
-        force: &'a [f32],
-        velocity: &'a mut [f32],
-        displacement: &'a mut [f32],
-    }
-
-    impl pulp::WithSimd for KickAndDrift<'_> {
-        type Output = f64;
-
-        #[inline(always)]
-        fn with_simd<S: pulp::Simd>(self, simd: S) -> f64 {
-            let splat = |value| simd.splat_f32s(value);
-            let (keep, push, time_step) = (splat(self.keep), splat(self.push), splat(self.time_step));
-            let (force, force_rest) = S::as_simd_f32s(self.force);
-            let (velocity, velocity_rest) = S::as_mut_simd_f32s(self.velocity);
-            let (displacement, displacement_rest) = S::as_mut_simd_f32s(self.displacement);
-            // A NaN may get lost here; it is in v and u.
-            let mut fastest = splat(0.0);
-            for ((&f, v), u) in force.iter().zip(velocity).zip(displacement) {
-                *v = simd.add_f32s(simd.mul_f32s(keep, *v), simd.mul_f32s(push, f));
-                *u = simd.add_f32s(*u, simd.mul_f32s(time_step, *v));
-                fastest = simd.max_f32s(fastest, simd.abs_f32s(*v));
-            }
-            let mut fastest = simd.reduce_max_f32s(fastest);
-            for ((f, v), u) in force_rest.iter().zip(velocity_rest).zip(displacement_rest) {
-                *v = self.keep * *v + self.push * f;
-                *u += self.time_step * *v;
-                fastest = fastest.max(v.abs());
-            }
-            f64::from(fastest)
-        }
     }
 }
 

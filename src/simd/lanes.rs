@@ -2,6 +2,8 @@
 //!
 //! Written with vectors: of sums over arrays of lanes the compiler makes a patchwork, five times slower.
 
+use crate::simd::real::Real;
+
 /// Lanes of a sum.
 pub const LANES: usize = 8;
 
@@ -41,53 +43,63 @@ pub fn dot_product<S: pulp::Simd>(simd: S, a: &[f64], b: &[f64]) -> f64 {
     with_rest(lanes_of::<S>(&sums), a_rest, b_rest)
 }
 
-/// Σ a_k b_k, Σ a_k² and Σ b_k², and the largest |a_k| in one pass; 0 of none, and a NaN may get lost in the last.
-#[inline(always)]
-pub fn products<S: pulp::Simd>(simd: S, a: &[f64], b: &[f64]) -> ([f64; 3], f64) {
-    let zero = [simd.splat_f64s(0.0); LANES];
-    let (mut both, mut a_squared, mut b_squared, mut most) = (zero, zero, zero, zero[0]);
-    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
-    let (a, b) = (S::as_simd_f64s(a.as_flattened()).0, S::as_simd_f64s(b.as_flattened()).0);
-    let each = LANES / S::F64_LANES;
-    for (a, b) in a.chunks_exact(each).zip(b.chunks_exact(each)) {
-        for k in 0..each {
-            both[k] = simd.add_f64s(both[k], simd.mul_f64s(a[k], b[k]));
-            a_squared[k] = simd.add_f64s(a_squared[k], simd.mul_f64s(a[k], a[k]));
-            b_squared[k] = simd.add_f64s(b_squared[k], simd.mul_f64s(b[k], b[k]));
-            most = simd.max_f64s(most, simd.abs_f64s(a[k]));
-        }
-    }
-    let sums = [
-        with_rest(lanes_of::<S>(&both), a_rest, b_rest),
-        with_rest(lanes_of::<S>(&a_squared), a_rest, a_rest),
-        with_rest(lanes_of::<S>(&b_squared), b_rest, b_rest),
-    ];
-    (sums, a_rest.iter().fold(simd.reduce_max_f64s(most), |most, a| most.max(a.abs())))
+/// A number whose products are summed in so many lanes.
+pub trait Summed: Real {
+    /// Lanes of a sum.
+    const LANES: usize;
+
+    /// Numbers that are summed in this precision, those of a part; sums of parts are added in double.
+    const PART: usize;
+
+    /// What a sum has in its lanes, and the products of what is left of two columns, added up.
+    fn total(lanes: &[Self], a: &[Self], b: &[Self]) -> f64;
 }
 
-/// [`products`] of numbers in single precision; the lanes are added up in double.
-#[inline(always)]
-pub fn single_products<S: pulp::Simd>(simd: S, a: &[f32], b: &[f32]) -> ([f64; 3], f64) {
-    let zero = [simd.splat_f32s(0.0); SINGLE_LANES];
-    let (mut both, mut a_squared, mut b_squared, mut most) = (zero, zero, zero, zero[0]);
-    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<SINGLE_LANES>(), b.as_chunks::<SINGLE_LANES>());
-    let (a, b) = (S::as_simd_f32s(a.as_flattened()).0, S::as_simd_f32s(b.as_flattened()).0);
-    let each = SINGLE_LANES / S::F32_LANES;
-    for (a, b) in a.chunks_exact(each).zip(b.chunks_exact(each)) {
-        for k in 0..each {
-            both[k] = simd.add_f32s(both[k], simd.mul_f32s(a[k], b[k]));
-            a_squared[k] = simd.add_f32s(a_squared[k], simd.mul_f32s(a[k], a[k]));
-            b_squared[k] = simd.add_f32s(b_squared[k], simd.mul_f32s(b[k], b[k]));
-            most = simd.max_f32s(most, simd.abs_f32s(a[k]));
-        }
+impl Summed for f64 {
+    const LANES: usize = LANES;
+    const PART: usize = usize::MAX;
+
+    #[inline(always)]
+    fn total(lanes: &[f64], a: &[f64], b: &[f64]) -> f64 {
+        let mut all = [0.0; LANES];
+        all.copy_from_slice(lanes);
+        with_rest(all, a, b)
     }
-    let sum = |lanes: &[S::f32s; SINGLE_LANES], a: &[f32], b: &[f32]| {
-        let lanes: &[f32] = pulp::bytemuck::cast_slice(&lanes[..each]);
+}
+
+impl Summed for f32 {
+    const LANES: usize = SINGLE_LANES;
+    const PART: usize = 64 * SINGLE_LANES;
+
+    #[inline(always)]
+    fn total(lanes: &[f32], a: &[f32], b: &[f32]) -> f64 {
         let rest = a.iter().zip(b).map(|(&a, &b)| f64::from(a) * f64::from(b));
         lanes.iter().map(|&lane| f64::from(lane)).chain(rest).sum()
-    };
-    let sums = [sum(&both, a_rest, b_rest), sum(&a_squared, a_rest, a_rest), sum(&b_squared, b_rest, b_rest)];
-    (sums, f64::from(a_rest.iter().fold(simd.reduce_max_f32s(most), |most, a| most.max(a.abs()))))
+    }
+}
+
+/// Σ a_k b_k, Σ a_k² and Σ b_k², and the largest |a_k| in one pass over a part; 0 of none, and a NaN may get lost in the last.
+#[inline(always)]
+pub fn products<S: pulp::Simd, T: Summed>(simd: S, a: &[T], b: &[T]) -> ([f64; 3], f64) {
+    let whole = a.len() / T::LANES * T::LANES;
+    let ((a, a_rest), (b, b_rest)) = (a.split_at(whole), b.split_at(whole));
+    let (a, b) = (T::vectors::<S>(a).0, T::vectors::<S>(b).0);
+    // Vectors that hold the lanes, at most as many as there are lanes.
+    let each = T::LANES / T::numbers::<S>(&[T::splat(simd, T::default())]).len();
+    let zero = [T::splat(simd, T::default()); SINGLE_LANES];
+    let (mut both, mut a_squared, mut b_squared, mut most) = (zero, zero, zero, zero[0]);
+    for (a, b) in a.chunks_exact(each).zip(b.chunks_exact(each)) {
+        for k in 0..each {
+            both[k] = T::plus(simd, both[k], T::times(simd, a[k], b[k]));
+            a_squared[k] = T::plus(simd, a_squared[k], T::times(simd, a[k], a[k]));
+            b_squared[k] = T::plus(simd, b_squared[k], T::times(simd, b[k], b[k]));
+            most = T::larger_size(simd, most, a[k]);
+        }
+    }
+    let sums = [(both, a_rest, b_rest), (a_squared, a_rest, a_rest), (b_squared, b_rest, b_rest)]
+        .map(|(vectors, a, b)| T::total(T::numbers::<S>(&vectors[..each]), a, b));
+    let most = T::largest(simd, most).widened();
+    (sums, a_rest.iter().fold(most, |most, a| most.max(a.widened().abs())))
 }
 
 /// The lanes of vectors, however many a vector has.
@@ -143,7 +155,7 @@ mod tests {
         type Output = ([f64; 3], f64);
 
         fn with_simd<S: pulp::Simd>(self, simd: S) -> Self::Output {
-            single_products(simd, self.0, self.1)
+            products(simd, self.0, self.1)
         }
     }
 

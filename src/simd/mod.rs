@@ -2,6 +2,7 @@
 
 pub mod components;
 pub mod lanes;
+pub mod real;
 pub mod roots;
 
 use pulp::Simd;

@@ -3,7 +3,9 @@
 use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
 use crate::contact::single::{Single, Units};
-use crate::relax::flat::{Products, combine, kick_and_drift, products, single};
+use crate::relax::flat::{Products, combine, kick_and_drift, products};
+use crate::simd::lanes::Summed;
+use crate::simd::real::Real;
 use crate::vector::{Vector, larger};
 
 /// A step: `v ← keep·v + push·F`, then `u ← u + dt·v`.
@@ -15,8 +17,13 @@ pub struct Step {
 }
 
 impl Step {
-    /// Of disks in double precision: how fast the fastest is along an axis.
-    fn kick<const D: usize>(&self, forces: &[Vector<D>], velocities: &mut [Vector<D>], ways: &mut [Vector<D>]) -> f64 {
+    /// How fast the fastest disk then is along an axis, in the units of the step.
+    fn kick<T: Real, const D: usize>(
+        &self,
+        forces: &[[T; D]],
+        velocities: &mut [[T; D]],
+        ways: &mut [[T; D]],
+    ) -> f64 {
         let (velocities, ways) = (velocities.as_flattened_mut(), ways.as_flattened_mut());
         kick_and_drift(self.keep, self.push, self.time_step, forces.as_flattened(), velocities, ways)
     }
@@ -25,17 +32,6 @@ impl Step {
     fn in_units(&self, units: Units) -> Step {
         let push = self.push * (units.force / units.speed());
         Step { keep: self.keep, push, time_step: self.time_step / units.time }
-    }
-
-    /// Of disks in single precision, in their units.
-    fn kick_single<const D: usize>(
-        &self,
-        forces: &[[f32; D]],
-        velocities: &mut [[f32; D]],
-        ways: &mut [[f32; D]],
-    ) -> f64 {
-        let (velocities, ways) = (velocities.as_flattened_mut(), ways.as_flattened_mut());
-        single::kick_and_drift(self.keep, self.push, self.time_step, forces.as_flattened(), velocities, ways)
     }
 }
 
@@ -106,7 +102,7 @@ impl<const D: usize> Motion<D> {
             }
             Motion::Single(disks, velocities) => {
                 disks.evaluate(assembly);
-                in_units(disks, &single_products_of(&disks.forces[..velocities.len()], velocities))
+                in_units(disks, &products_of(&disks.forces[..velocities.len()], velocities))
             }
         }
     }
@@ -117,7 +113,7 @@ impl<const D: usize> Motion<D> {
             Motion::Double(velocities) => products_of(&assembly.forces[..velocities.len()], velocities),
             Motion::Single(disks, velocities) => {
                 disks.take_forces(assembly);
-                in_units(disks, &single_products_of(&disks.forces[..velocities.len()], velocities))
+                in_units(disks, &products_of(&disks.forces[..velocities.len()], velocities))
             }
         }
     }
@@ -137,9 +133,8 @@ impl<const D: usize> Motion<D> {
             }
             Motion::Single(disks, velocities) => {
                 let step = step.in_units(disks.units());
-                let kick =
-                    |forces: &[_], velocities: &mut [_], ways: &mut [_]| step.kick_single(forces, velocities, ways);
-                let (speeds, parts) = disks.advance(assembly, velocities, bound, kick, single_products_of)?;
+                let kick = |forces: &[_], velocities: &mut [_], ways: &mut [_]| step.kick(forces, velocities, ways);
+                let (speeds, parts) = disks.advance(assembly, velocities, bound, kick, products_of)?;
                 Some((disks.units().speed() * fastest_of(speeds), in_units(disks, &sum_of(&parts))))
             }
         }
@@ -154,8 +149,8 @@ impl<const D: usize> Motion<D> {
             }
             Motion::Single(disks, velocities) => {
                 let step = step.in_units(disks.units());
-                let fastest = disks
-                    .kick(assembly, velocities, |forces, velocities, ways| step.kick_single(forces, velocities, ways));
+                let fastest =
+                    disks.kick(assembly, velocities, |forces, velocities, ways| step.kick(forces, velocities, ways));
                 disks.settle(assembly);
                 disks.units().speed() * fastest
             }
@@ -179,12 +174,8 @@ impl<const D: usize> Motion<D> {
     }
 }
 
-fn products_of<const D: usize>(forces: &[Vector<D>], velocities: &[Vector<D>]) -> Products {
+fn products_of<T: Summed, const D: usize>(forces: &[[T; D]], velocities: &[[T; D]]) -> Products {
     products(forces.as_flattened(), velocities.as_flattened())
-}
-
-fn single_products_of<const D: usize>(forces: &[[f32; D]], velocities: &[[f32; D]]) -> Products {
-    single::products(forces.as_flattened(), velocities.as_flattened())
 }
 
 fn in_units<const D: usize>(disks: &Single<D>, products: &Products) -> Products {

@@ -1,0 +1,103 @@
+//! [`Real`]: numbers of either precision and the machine's vectors of them, so that a loop is written once.
+
+use pulp::Simd;
+
+use crate::vector::Number;
+
+/// `f64` or `f32`.
+pub trait Real: Number {
+    /// A vector of the machine.
+    type Lanes<S: Simd>: Copy;
+
+    /// The number nearest to this one.
+    fn rounded(value: f64) -> Self;
+
+    /// The same number.
+    fn widened(self) -> f64;
+
+    /// A column as vectors, and what is left of it.
+    fn vectors<S: Simd>(column: &[Self]) -> (&[Self::Lanes<S>], &[Self]);
+
+    /// A column that is written as vectors, and what is left of it.
+    fn vectors_mut<S: Simd>(column: &mut [Self]) -> (&mut [Self::Lanes<S>], &mut [Self]);
+
+    /// The numbers of vectors, one after the other.
+    fn numbers<S: Simd>(vectors: &[Self::Lanes<S>]) -> &[Self];
+
+    /// A number in every lane.
+    fn splat<S: Simd>(simd: S, value: Self) -> Self::Lanes<S>;
+
+    /// a + b.
+    fn plus<S: Simd>(simd: S, a: Self::Lanes<S>, b: Self::Lanes<S>) -> Self::Lanes<S>;
+
+    /// a · b.
+    fn times<S: Simd>(simd: S, a: Self::Lanes<S>, b: Self::Lanes<S>) -> Self::Lanes<S>;
+
+    /// The larger of a and |b|; a NaN may get lost.
+    fn larger_size<S: Simd>(simd: S, a: Self::Lanes<S>, b: Self::Lanes<S>) -> Self::Lanes<S>;
+
+    /// The largest lane; a NaN may get lost.
+    fn largest<S: Simd>(simd: S, a: Self::Lanes<S>) -> Self;
+}
+
+/// A precision, by pulp's names for it.
+macro_rules! real {
+    ($number:ty, $lanes:ident, $vectors:ident, $vectors_mut:ident, $splat:ident, $add:ident, $multiply:ident, $max:ident, $abs:ident, $reduce_max:ident) => {
+        impl Real for $number {
+            type Lanes<S: Simd> = S::$lanes;
+
+            #[inline(always)]
+            fn rounded(value: f64) -> Self {
+                value as $number
+            }
+
+            #[inline(always)]
+            fn widened(self) -> f64 {
+                f64::from(self)
+            }
+
+            #[inline(always)]
+            fn vectors<S: Simd>(column: &[Self]) -> (&[S::$lanes], &[Self]) {
+                S::$vectors(column)
+            }
+
+            #[inline(always)]
+            fn vectors_mut<S: Simd>(column: &mut [Self]) -> (&mut [S::$lanes], &mut [Self]) {
+                S::$vectors_mut(column)
+            }
+
+            #[inline(always)]
+            fn numbers<S: Simd>(vectors: &[S::$lanes]) -> &[Self] {
+                pulp::bytemuck::cast_slice(vectors)
+            }
+
+            #[inline(always)]
+            fn splat<S: Simd>(simd: S, value: Self) -> S::$lanes {
+                simd.$splat(value)
+            }
+
+            #[inline(always)]
+            fn plus<S: Simd>(simd: S, a: S::$lanes, b: S::$lanes) -> S::$lanes {
+                simd.$add(a, b)
+            }
+
+            #[inline(always)]
+            fn times<S: Simd>(simd: S, a: S::$lanes, b: S::$lanes) -> S::$lanes {
+                simd.$multiply(a, b)
+            }
+
+            #[inline(always)]
+            fn larger_size<S: Simd>(simd: S, a: S::$lanes, b: S::$lanes) -> S::$lanes {
+                simd.$max(a, simd.$abs(b))
+            }
+
+            #[inline(always)]
+            fn largest<S: Simd>(simd: S, a: S::$lanes) -> Self {
+                simd.$reduce_max(a)
+            }
+        }
+    };
+}
+
+real!(f64, f64s, as_simd_f64s, as_mut_simd_f64s, splat_f64s, add_f64s, mul_f64s, max_f64s, abs_f64s, reduce_max_f64s);
+real!(f32, f32s, as_simd_f32s, as_mut_simd_f32s, splat_f32s, add_f32s, mul_f32s, max_f32s, abs_f32s, reduce_max_f32s);
