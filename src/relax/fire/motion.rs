@@ -18,12 +18,7 @@ pub struct Step {
 
 impl Step {
     /// How fast the fastest disk then is along an axis, in the units of the step.
-    fn kick<T: Real, const D: usize>(
-        &self,
-        forces: &[[T; D]],
-        velocities: &mut [[T; D]],
-        ways: &mut [[T; D]],
-    ) -> f64 {
+    fn kick<T: Real, const D: usize>(&self, forces: &[[T; D]], velocities: &mut [[T; D]], ways: &mut [[T; D]]) -> f64 {
         let (velocities, ways) = (velocities.as_flattened_mut(), ways.as_flattened_mut());
         kick_and_drift(self.keep, self.push, self.time_step, forces.as_flattened(), velocities, ways)
     }
