@@ -113,9 +113,11 @@ impl<T: Real> pulp::WithSimd for KickAndDrift<'_, T> {
         // A NaN may get lost here; it is in v and u.
         let mut fastest = splat(T::default());
         for ((&f, v), u) in force.iter().zip(velocity).zip(displacement) {
-            *v = T::plus(simd, T::times(simd, keep, *v), T::times(simd, push, f));
-            *u = T::plus(simd, *u, T::times(simd, time_step, *v));
-            fastest = T::larger_size(simd, fastest, *v);
+            // Kept, not read again: where a vector lies across two lines, what was just stored is long in coming back.
+            let kicked = T::plus(simd, T::times(simd, keep, *v), T::times(simd, push, f));
+            *v = kicked;
+            *u = T::plus(simd, *u, T::times(simd, time_step, kicked));
+            fastest = T::larger_size(simd, fastest, kicked);
         }
         let mut fastest = T::largest(simd, fastest).widened();
         for ((&f, v), u) in force_rest.iter().zip(velocity_rest).zip(displacement_rest) {
