@@ -24,8 +24,8 @@ pub(super) struct Columns<const D: usize> {
     /// Overlap, 0 of disks apart.
     pub overlap: [f64; BLOCK],
     pub force: [f64; BLOCK],
-    /// One over the distance, then force over distance.
-    pub factor: [f64; BLOCK],
+    /// One over the distance.
+    pub inverse: [f64; BLOCK],
 }
 
 /// What the list has of each pair of a block: whole columns, whatever stands in the places of a block that is not full.
@@ -75,11 +75,11 @@ impl<const D: usize> Columns<D> {
             apart: [[0.0; BLOCK]; D],
             overlap: [0.0; BLOCK],
             force: [0.0; BLOCK],
-            factor: [0.0; BLOCK],
+            inverse: [0.0; BLOCK],
         }
     }
 
-    /// From the relative displacements: separations, overlaps, and in `factor` one over the distances.
+    /// From the relative displacements: separations, overlaps and one over the distances.
     #[inline(always)]
     pub fn measure<S: Simd>(&mut self, simd: S, anchors: &Anchors<'_, D>) {
         // As many turns as a block has places, known beforehand: no check.
@@ -90,7 +90,7 @@ impl<const D: usize> Columns<D> {
         let moved = &S::as_simd_f64s(self.pull.as_flattened()).0[..D * count];
         let apart = self.apart.each_mut().map(|column| S::as_mut_simd_f64s(column).0);
         let (overlap, _) = S::as_mut_simd_f64s(&mut self.overlap);
-        let (factor, _) = S::as_mut_simd_f64s(&mut self.factor);
+        let (inverse, _) = S::as_mut_simd_f64s(&mut self.inverse);
         let zero = simd.splat_f64s(0.0);
         for k in (0..count).step_by(2) {
             let mut squares = [zero; 2];
@@ -101,23 +101,28 @@ impl<const D: usize> Columns<D> {
                 for d in 0..D {
                     let anchored = anchor_separation[d][k];
                     let along = simd.add_f64s(anchored, moved[d]);
-                    *square = simd.add_f64s(*square, simd.mul_f64s(along, along));
-                    change = simd.add_f64s(change, simd.mul_f64s(moved[d], simd.add_f64s(anchored, along)));
+                    let squared = simd.mul_f64s(along, along);
+                    let changed = simd.mul_f64s(moved[d], simd.add_f64s(anchored, along));
+                    // Nothing is added to zero: the compiler may not leave that out.
+                    (*square, change) = match d {
+                        0 => (squared, changed),
+                        _ => (simd.add_f64s(*square, squared), simd.add_f64s(change, changed)),
+                    };
                     apart[d][k] = along;
                     prefetch(simd, anchors.separation[d], AHEAD + k * S::F64_LANES);
                 }
                 overlap[k] = change;
             }
-            [factor[k], factor[k + 1]] = square_roots(simd, squares);
+            [inverse[k], inverse[k + 1]] = square_roots(simd, squares);
         }
         for k in 0..count {
-            let distance = factor[k];
+            let distance = inverse[k];
             let both = simd.add_f64s(distance, anchor_distance[k]);
             // One reciprocal for change / both and 1 / distance: divisions and roots are what the loop waits for.
-            let inverse = reciprocal(simd, simd.mul_f64s(distance, both));
-            let change = simd.mul_f64s(overlap[k], simd.mul_f64s(distance, inverse));
+            let of_both = reciprocal(simd, simd.mul_f64s(distance, both));
+            let change = simd.mul_f64s(overlap[k], simd.mul_f64s(distance, of_both));
             overlap[k] = positive_part(simd, simd.sub_f64s(anchor_overlap[k], change));
-            factor[k] = simd.mul_f64s(both, inverse);
+            inverse[k] = simd.mul_f64s(both, of_both);
             prefetch(simd, anchors.distance, AHEAD + k * S::F64_LANES);
             prefetch(simd, anchors.overlap, AHEAD + k * S::F64_LANES);
         }
@@ -141,19 +146,22 @@ impl<const D: usize> Columns<D> {
         }
     }
 
-    /// From the forces: force over distance in `factor`, and the force on each first disk in `pull`.
+    /// From the forces: the force on each first disk in `pull`.
+    ///
+    /// Nothing else is stored: force over distance would lie a page away from the separation read next, and this processor looks at the last
+    /// twelve bits of addresses first.
     #[inline(always)]
     pub fn resolve<S: Simd>(&mut self, simd: S) {
         let count = BLOCK / S::F64_LANES;
         let apart = self.apart.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
         let force = &S::as_simd_f64s(&self.force).0[..count];
-        let factor = &mut S::as_mut_simd_f64s(&mut self.factor).0[..count];
+        let inverse = &S::as_simd_f64s(&self.inverse).0[..count];
         let pull = &mut S::as_mut_simd_f64s(self.pull.as_flattened_mut()).0[..D * count];
         for k in 0..count {
-            factor[k] = simd.mul_f64s(force[k], factor[k]);
-            let mut along = [factor[k]; D];
+            let factor = simd.mul_f64s(force[k], inverse[k]);
+            let mut along = [factor; D];
             for d in 0..D {
-                along[d] = simd.mul_f64s(factor[k], apart[d][k]);
+                along[d] = simd.mul_f64s(factor, apart[d][k]);
             }
             components::join(simd, &along, &mut pull[D * k..D * (k + 1)]);
         }

@@ -87,13 +87,13 @@ impl<const D: usize, C: DampingLaw> Damping<'_, D, C> {
         let (apace, coefficient) = (&self.apace[..count], &self.coefficient[..count]);
         let apart = columns.apart.each_ref().map(|column| &column[..count]);
         let (overlap, force) = (&columns.overlap[..count], &mut columns.force[..count]);
-        let over_distance = &columns.factor[..count];
+        let inverse = &columns.inverse[..count];
         for k in 0..count {
             let mut along = 0.0;
             for d in 0..D {
                 along += apace[k][d] * apart[d][k];
             }
-            let normal_velocity = along * over_distance[k];
+            let normal_velocity = along * inverse[k];
             let resistance = self.law.damping(coefficient[k], overlap[k]);
             let resisted = if overlap[k] > 0.0 { resistance * normal_velocity } else { 0.0 };
             power[k] = resisted * normal_velocity;

@@ -77,7 +77,7 @@ fn tally<S: pulp::Simd, const D: usize, L: PairLaw>(
     count: usize,
     totals: &mut Totals<D>,
 ) {
-    let Columns { apart, overlap, force, factor, .. } = columns;
+    let Columns { apart, overlap, force, inverse, .. } = columns;
     // Each sum first term by term, as many as a column has places, then the terms that count.
     let mut terms = [0.0; BLOCK];
     for k in 0..BLOCK {
@@ -89,7 +89,7 @@ fn tally<S: pulp::Simd, const D: usize, L: PairLaw>(
     for a in 0..D {
         for b in 0..=a {
             for k in 0..BLOCK {
-                terms[k] = factor[k] * (apart[a][k] * apart[b][k]);
+                terms[k] = force[k] * inverse[k] * (apart[a][k] * apart[b][k]);
             }
             totals.virial[a][b] += lanes::sum(simd, &terms[..count]);
             totals.virial[b][a] = totals.virial[a][b];
