@@ -21,6 +21,7 @@ use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, Block, PairList};
 use crate::contact::rows::gather;
 use crate::side_by_side::{self, PIECE};
+use crate::simd::roots::positive_part_in_single;
 use crate::simd::{components, prefetch};
 use crate::vector::Vector;
 
@@ -330,8 +331,12 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
             let (mut square, mut changed) = (zero, zero);
             for d in 0..D {
                 let along = simd.add_f32s(separation[d][k], way[d]);
-                square = simd.add_f32s(square, simd.mul_f32s(along, along));
-                changed = simd.add_f32s(changed, simd.mul_f32s(way[d], simd.add_f32s(separation[d][k], along)));
+                let squared = simd.mul_f32s(along, along);
+                let change = simd.mul_f32s(way[d], simd.add_f32s(separation[d][k], along));
+                (square, changed) = match d {
+                    0 => (squared, change),
+                    _ => (simd.add_f32s(square, squared), simd.add_f32s(changed, change)),
+                };
                 apart[d][k] = along;
             }
             if asks {
@@ -352,9 +357,7 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
             let both = simd.add_f32s(distance[k], listed_distance[k]);
             let inverse = simd.div_f32s(one, simd.mul_f32s(distance[k], both));
             let changed = simd.mul_f32s(change[k], simd.mul_f32s(distance[k], inverse));
-            let overlap = simd.sub_f32s(listed_overlap[k], changed);
-            // NaN stays NaN.
-            let overlap = simd.select_f32s(simd.less_than_f32s(overlap, zero), zero, overlap);
+            let overlap = positive_part_in_single(simd, simd.sub_f32s(listed_overlap[k], changed));
             let coefficient = if L::ONE_COEFFICIENT { one_coefficient } else { coefficient[k] };
             let force = law.forces_in_single(simd, coefficient, overlap);
             let factor = simd.mul_f32s(force, simd.mul_f32s(both, inverse));

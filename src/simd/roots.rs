@@ -53,6 +53,18 @@ pub fn positive_part<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
     simd.select_f64s(simd.less_than_f64s(a, zero), zero, a)
 }
 
+/// [`positive_part`] in single precision.
+#[inline(always)]
+pub fn positive_part_in_single<S: Simd>(simd: S, a: S::f32s) -> S::f32s {
+    let zero = simd.splat_f32s(0.0);
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = super::of_512_bits(simd) {
+        let (zero, a) = (pulp::bytemuck::cast(zero), pulp::bytemuck::cast(a));
+        return pulp::bytemuck::cast(simd.avx512f._mm512_max_ps(zero, a));
+    }
+    simd.select_f32s(simd.less_than_f32s(a, zero), zero, a)
+}
+
 #[cfg(target_arch = "x86_64")]
 mod long {
     use std::arch::x86_64::{__m512d, _CMP_NEQ_UQ};
@@ -192,5 +204,29 @@ mod tests {
         assert_eq!([parts[0], parts[1], parts[2], parts[3]], [0.0, 0.0, 0.0, 2.0]);
         assert!(parts[4].is_nan());
         assert_eq!([parts[5], parts[6], parts[7]], [0.0, f64::INFINITY, 0.0]);
+    }
+
+    /// Positive parts of sixteen numbers.
+    struct InSingle([f32; 16]);
+
+    impl pulp::WithSimd for InSingle {
+        type Output = [f32; 16];
+
+        fn with_simd<S: Simd>(mut self, simd: S) -> [f32; 16] {
+            S::as_mut_simd_f32s(&mut self.0).0.iter_mut().for_each(|a| *a = positive_part_in_single(simd, *a));
+            self.0
+        }
+    }
+
+    #[test]
+    fn positive_parts_in_single_precision_are_those_of_one_number_after_the_other() {
+        let mut column = [1.5; 16];
+        column[..8].copy_from_slice(&[-1.0, -0.0, 0.0, 2.0, f32::NAN, f32::NEG_INFINITY, f32::INFINITY, -1e-40]);
+        let parts = pulp::Arch::new().dispatch(InSingle(column));
+        assert_eq!([parts[0], parts[1], parts[2], parts[3]], [0.0, 0.0, 0.0, 2.0]);
+        assert!(parts[4].is_nan());
+        assert_eq!([parts[5], parts[6], parts[7], parts[8]], [0.0, f32::INFINITY, 0.0, 1.5]);
+        let alone = pulp::WithSimd::with_simd(InSingle(column), pulp::Scalar::new());
+        assert_eq!(parts.map(f32::to_bits), alone.map(f32::to_bits));
     }
 }
