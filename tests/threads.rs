@@ -78,6 +78,41 @@ fn forces_across_tiles_are_those_of_the_plain_loop() {
 }
 
 #[test]
+fn sums_of_stiffness_across_tiles_are_those_of_the_plain_loop() {
+    // One held disk, and a third of all, which fill tiles of their own.
+    for every in [usize::MAX, 3] {
+        let held = (0..large().len()).map(|disk| disk == 20_000 || disk % every == 1).collect();
+        let packing = large().with_held(held).expect("mobile disks");
+        let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("disks apart");
+        for (index, displacement) in assembly.displacements.iter_mut().enumerate() {
+            *displacement = sum(*displacement, [6e-3 * (index as f64).sin(), 6e-3 * (3.0 * index as f64).cos()]);
+        }
+        let mut rows = vec![f64::NAN; 3];
+        let bound = assembly.row_bound(&mut rows, |_, _, stiffness| stiffness);
+        let (law, pairs, mobile) = (*assembly.law(), assembly.pairs(), assembly.mobile_count());
+        let mut plain = vec![0.0; assembly.len()];
+        for pair in 0..pairs.len() {
+            let (i, j) = (pairs.first[pair] as usize, pairs.second[pair] as usize);
+            let moved = difference(assembly.displacements[i], assembly.displacements[j]);
+            let apart = norm(sum(pairs.separation.of(pair), moved));
+            let overlap = (pairs.distance[pair] + pairs.overlap[pair] - apart).max(0.0);
+            let stiffness = law.stiffness(law.force(pairs.coefficient[pair], overlap), overlap);
+            plain[i] += if j < mobile { 2.0 * stiffness } else { stiffness };
+            plain[j] += if j < mobile { 2.0 * stiffness } else { 0.0 };
+        }
+        let largest = plain[..mobile].iter().copied().fold(0.0, f64::max);
+        // An overlap of the plain loop carries some 4·10⁻¹⁶, so a stiffness ∼ √δ up to 2·10⁻⁸ of that of an overlap of 1, and twice
+        // that stands in a row up to seven times; the largest row has overlaps above 0.03. A pair left out would be a tenth of it.
+        for (disk, (found, plain)) in rows.iter().zip(&plain).enumerate() {
+            assert!((found - plain).abs() < 2e-6 * largest, "disk {disk}: {found} for {plain}");
+        }
+        assert!((bound - largest).abs() < 2e-6 * largest, "{bound} for {largest}");
+        assert!(rows[mobile..].iter().all(|&row| row == 0.0), "a held disk");
+        assert_eq!(rows.len(), assembly.len());
+    }
+}
+
+#[test]
 fn damped_forces_across_tiles_are_elastic_forces_and_damping() {
     let mut assembly = Assembly::new(&large(), Hertzian::default()).expect("disks apart");
     assembly.evaluate();

@@ -128,17 +128,26 @@ impl<const D: usize> Columns<D> {
         }
     }
 
-    /// From the overlaps: the forces of a law.
+    /// From the overlaps: the forces of a law, and if it is to `RESOLVE` them, what [`Columns::resolve`] makes of these.
     #[inline(always)]
-    pub fn press<S: Simd, L: PairLaw>(&mut self, simd: S, law: &L, anchors: &Anchors<'_, D>) {
+    pub fn press<S: Simd, L: PairLaw, const RESOLVE: bool>(&mut self, simd: S, law: &L, anchors: &Anchors<'_, D>) {
         let count = BLOCK / S::F64_LANES;
         let coefficient = &S::as_simd_f64s(anchors.coefficient).0[..count];
         let one = simd.splat_f64s(anchors.coefficient[0]);
         let overlap = &S::as_simd_f64s(&self.overlap).0[..count];
+        let inverse = &S::as_simd_f64s(&self.inverse).0[..count];
+        let apart = self.apart.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
+        let pull = &mut S::as_mut_simd_f64s(self.pull.as_flattened_mut()).0[..D * count];
         let (force, _) = S::as_mut_simd_f64s(&mut self.force);
         for k in (0..count).step_by(2) {
             let coefficients = if L::ONE_COEFFICIENT { [one; 2] } else { [coefficient[k], coefficient[k + 1]] };
-            [force[k], force[k + 1]] = law.forces(simd, coefficients, [overlap[k], overlap[k + 1]]);
+            let forces = law.forces(simd, coefficients, [overlap[k], overlap[k + 1]]);
+            [force[k], force[k + 1]] = forces;
+            if RESOLVE {
+                for (k, force) in [(k, forces[0]), (k + 1, forces[1])] {
+                    resolve_one(simd, force, inverse[k], apart.map(|column| column[k]), &mut pull[D * k..D * (k + 1)]);
+                }
+            }
             if !L::ONE_COEFFICIENT {
                 prefetch(simd, anchors.coefficient, AHEAD + k * S::F64_LANES);
                 prefetch(simd, anchors.coefficient, AHEAD + (k + 1) * S::F64_LANES);
@@ -158,12 +167,19 @@ impl<const D: usize> Columns<D> {
         let inverse = &S::as_simd_f64s(&self.inverse).0[..count];
         let pull = &mut S::as_mut_simd_f64s(self.pull.as_flattened_mut()).0[..D * count];
         for k in 0..count {
-            let factor = simd.mul_f64s(force[k], inverse[k]);
-            let mut along = [factor; D];
-            for d in 0..D {
-                along[d] = simd.mul_f64s(factor, apart[d][k]);
-            }
-            components::join(simd, &along, &mut pull[D * k..D * (k + 1)]);
+            resolve_one(simd, force[k], inverse[k], apart.map(|column| column[k]), &mut pull[D * k..D * (k + 1)]);
         }
     }
+}
+
+#[inline(always)]
+fn resolve_one<S: Simd, const D: usize>(
+    simd: S,
+    force: S::f64s,
+    inverse: S::f64s,
+    apart: [S::f64s; D],
+    pull: &mut [S::f64s],
+) {
+    let factor = simd.mul_f64s(force, inverse);
+    components::join(simd, &apart.map(|along| simd.mul_f64s(factor, along)), pull);
 }

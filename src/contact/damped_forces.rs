@@ -70,7 +70,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> pulp::WithSimd for Arithmetic<'_
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> f64 {
         self.columns.measure(simd, &self.anchors);
-        self.columns.press(simd, self.law, &self.anchors);
+        self.columns.press::<S, L, false>(simd, self.law, &self.anchors);
         let mut power = [0.0; BLOCK];
         let count = self.damping.apace.len();
         self.damping.resist(self.columns, &mut power[..count]);

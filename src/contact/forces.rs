@@ -252,8 +252,7 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         self.columns.measure(simd, &self.anchors);
-        self.columns.press(simd, self.law, &self.anchors);
-        self.columns.resolve(simd);
+        self.columns.press::<S, L, true>(simd, self.law, &self.anchors);
     }
 }
 

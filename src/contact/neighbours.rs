@@ -163,9 +163,8 @@ pub fn spatial_order<const D: usize>(
     let range = 2.0 * radii.iter().copied().fold(0.0, f64::max);
     let mut grid = CellGrid::default();
     grid.fill(domain, points, range);
-    let mut order: Vec<u32> = (0..points.len() as u32).collect();
-    order.sort_by_key(|&disk| (held[disk as usize], grid.cell_of[disk as usize]));
-    order
+    let (held, mobile): (Vec<u32>, Vec<u32>) = grid.members.iter().partition(|&&disk| held[disk as usize]);
+    [mobile, held].concat()
 }
 
 /// Makes the list: every pair closer than reach + `skin`, ordered by the first disk.

@@ -8,7 +8,8 @@
 //! Goodrich, Liu, Nagel (2012), Phys. Rev. Lett. 109, 095704; design §4.
 
 use crate::contact::assembly::Assembly;
-use crate::contact::forces::geometry;
+use crate::contact::columns::Columns;
+use crate::contact::forces::fill;
 use crate::contact::law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::vector::{Vector, norm};
@@ -226,15 +227,41 @@ impl<const D: usize> ContactNetwork<D> {
 
 /// The contacts of an assembly, in working numbering and order of the list.
 pub fn working_contacts<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> Vec<Contact<D>> {
-    let (pairs, law) = (assembly.pairs(), assembly.law());
-    (0..pairs.len())
-        .filter_map(|pair| {
-            let (separation, _, overlap) = geometry(pairs, pair, &assembly.displacements);
-            (overlap > 0.0).then(|| {
-                let force = law.force(pairs.coefficient[pair], overlap);
-                let energy = law.energy(force, overlap);
-                Contact { first: pairs.first[pair], second: pairs.second[pair], overlap, force, energy, separation }
-            })
-        })
-        .collect()
+    let law = assembly.law();
+    let mut contacts = Vec::with_capacity(assembly.pairs().len());
+    each_contact(assembly, |(first, second), columns, place| {
+        let (overlap, force) = (columns.overlap[place], columns.force[place]);
+        let separation = columns.apart.each_ref().map(|column| column[place]);
+        contacts.push(Contact { first, second, overlap, force, energy: law.energy(force, overlap), separation });
+    });
+    contacts
+}
+
+/// The disks of each contact of an assembly and its force \[force\], in working numbering and order of the list.
+pub fn links_and_forces<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> (Vec<(u32, u32)>, Vec<f64>) {
+    let count = assembly.pairs().len();
+    let (mut links, mut forces) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    each_contact(assembly, |ends, columns, place| {
+        links.push(ends);
+        forces.push(columns.force[place]);
+    });
+    (links, forces)
+}
+
+/// Calls a function of (disks, columns of the block, place in them) of every contact, in the order of the list.
+fn each_contact<const D: usize, L: PairLaw>(
+    assembly: &Assembly<D, L>,
+    mut call: impl FnMut((u32, u32), &Columns<D>, usize),
+) {
+    let pairs = assembly.pairs();
+    let mut columns = Columns::new();
+    for block in &pairs.blocks {
+        fill(assembly.law(), pairs, (&assembly.displacements, 0), block, &mut columns);
+        for place in 0..block.pair_count {
+            if columns.overlap[place] > 0.0 {
+                let pair = block.pairs + place;
+                call((pairs.first[pair], pairs.second[pair]), &columns, place);
+            }
+        }
+    }
 }

@@ -21,14 +21,14 @@ fn ends_of<'a, const D: usize>(pairs: &'a PairList<D>, block: &Block) -> &'a [u3
 macro_rules! with_length {
     ($block:expr, $call:ident($($argument:expr),*)) => {
         match $block.row_length {
-            1 => $call::<T, D, 1>($($argument),*),
-            2 => $call::<T, D, 2>($($argument),*),
-            3 => $call::<T, D, 3>($($argument),*),
-            4 => $call::<T, D, 4>($($argument),*),
-            5 => $call::<T, D, 5>($($argument),*),
-            6 => $call::<T, D, 6>($($argument),*),
-            7 => $call::<T, D, 7>($($argument),*),
-            _ => $call::<T, D, LONGEST_ROW>($($argument),*),
+            1 => $call::<T, _, 1>($($argument),*),
+            2 => $call::<T, _, 2>($($argument),*),
+            3 => $call::<T, _, 3>($($argument),*),
+            4 => $call::<T, _, 4>($($argument),*),
+            5 => $call::<T, _, 5>($($argument),*),
+            6 => $call::<T, _, 6>($($argument),*),
+            7 => $call::<T, _, 7>($($argument),*),
+            _ => $call::<T, _, LONGEST_ROW>($($argument),*),
         }
     };
 }
@@ -68,31 +68,44 @@ pub(super) fn scatter<T: Number, const D: usize>(
     pull: &[[T; D]; BLOCK],
     pairs: &PairList<D>,
     block: &Block,
-    (forces, begin): (&mut [[T; D]], u32),
+    forces: (&mut [[T; D]], u32),
+) {
+    scatter_with(pull, pairs, block, forces, difference);
+}
+
+/// Adds what each pair of a block has to its first disk, and to the second what `on_second` makes of (there, of the pair).
+#[inline(always)]
+pub(super) fn scatter_with<T: Number, const D: usize, const N: usize>(
+    of_pairs: &[[T; N]; BLOCK],
+    pairs: &PairList<D>,
+    block: &Block,
+    (of_disks, begin): (&mut [[T; N]], u32),
+    on_second: impl Fn([T; N], [T; N]) -> [T; N],
 ) {
     let (rows, ends) = (rows_of(pairs, block), ends_of(pairs, block));
-    let forces = &mut forces[(block.origin - begin) as usize..];
-    with_length!(block, scatter_rows(pull, (rows, ends), forces));
+    let of_disks = &mut of_disks[(block.origin - begin) as usize..];
+    with_length!(block, scatter_rows(of_pairs, (rows, ends), of_disks, &on_second));
 }
 
 #[inline(always)]
-fn scatter_rows<T: Number, const D: usize, const LENGTH: usize>(
-    pull: &[[T; D]; BLOCK],
+fn scatter_rows<T: Number, const N: usize, const LENGTH: usize>(
+    of_pairs: &[[T; N]; BLOCK],
     (rows, ends): (&[u32], &[u32]),
-    forces: &mut [[T; D]],
+    of_disks: &mut [[T; N]],
+    on_second: &impl Fn([T; N], [T; N]) -> [T; N],
 ) {
     let count = rows.len();
-    let pull = &pull.as_chunks::<LENGTH>().0[..count];
+    let of_pairs = &of_pairs.as_chunks::<LENGTH>().0[..count];
     let ends = &ends.as_chunks::<LENGTH>().0[..count];
     for row in 0..count {
         let first = rows[row] as usize;
-        let mut total = forces[first];
+        let mut total = of_disks[first];
         for k in 0..LENGTH {
-            let pull = pull[row][k];
-            total = sum(total, pull);
-            let other = &mut forces[ends[row][k] as usize];
-            *other = difference(*other, pull);
+            let of_pair = of_pairs[row][k];
+            total = sum(total, of_pair);
+            let other = &mut of_disks[ends[row][k] as usize];
+            *other = on_second(*other, of_pair);
         }
-        forces[first] = total;
+        of_disks[first] = total;
     }
 }

@@ -1,12 +1,12 @@
 //! Sums of stiffness over the contacts of each disk, by the blocks and tiles of the hot loop.
 
-use crate::contact::columns::Columns;
-use crate::contact::forces::fill;
+use crate::contact::columns::{Anchors, Columns, with_anchors};
 use crate::contact::law::PairLaw;
-use crate::contact::pair_list::{BLOCK, PairList};
+use crate::contact::pair_list::{BLOCK, Block, PairList};
+use crate::contact::rows::{gather, scatter_with};
 use crate::contact::tiles::Tile;
 use crate::side_by_side;
-use crate::vector::Vector;
+use crate::vector::{Vector, sum};
 
 /// Sums over the contacts of each disk: of the stiffness, or of what `weight` makes of (pair, overlap, stiffness).
 ///
@@ -48,49 +48,58 @@ impl<const D: usize, L: PairLaw, W: Fn(usize, f64, f64) -> f64> Task<'_, D, L, W
     /// The rows of the disks of a tile, which begins with disk `offset`, from its own pairs; what the second disk of each pair
     /// across its border is due is returned.
     fn of_tile(&self, tile: &Tile, offset: usize, row: &mut [f64]) -> Vec<f64> {
-        let pairs = self.pairs;
+        let (pairs, mobile) = (self.pairs, self.mobile_count);
         row.fill(0.0);
         let mut across = Vec::with_capacity(tile.border_pairs.len());
         let mut columns = Columns::<D>::new();
-        let stiffness = &mut [0.0; BLOCK];
-        for block in tile.inner.start..tile.border.end {
-            let border = tile.border.contains(&block);
-            let block = &pairs.blocks[block];
-            fill(self.law, pairs, (self.displacements, 0), block, &mut columns);
-            pulp::Arch::new().dispatch(Stiffnesses { law: self.law, columns: &columns, stiffness });
-            for (k, &stiffness) in stiffness[..block.pair_count].iter().enumerate() {
-                let pair = block.pairs + k;
-                let touches = columns.overlap[k] > 0.0;
-                let value = if touches { (self.weight)(pair, columns.overlap[k], stiffness) } else { 0.0 };
-                let (i, j) = (pairs.first[pair] as usize, pairs.second[pair] as usize);
-                let both = j < self.mobile_count;
-                row[i - offset] += if both { 2.0 * value } else { value };
-                let of_second = if both { 2.0 * value } else { 0.0 };
-                if border {
-                    across.push(of_second);
-                } else {
-                    row[j - offset] += of_second;
-                }
+        let values = &mut [[0.0]; BLOCK];
+        for place in tile.inner.start..tile.border.end {
+            let block = &pairs.blocks[place];
+            gather(&mut columns.pull, pairs, block, (self.displacements, 0));
+            with_anchors(pairs, block, |anchors| {
+                let columns = &mut columns;
+                pulp::Arch::new().dispatch(Arithmetic { task: self, block, columns, anchors, values });
+            });
+            if tile.inner.contains(&place) {
+                scatter_with(values, pairs, block, (row.as_chunks_mut::<1>().0, offset as u32), sum);
+                continue;
+            }
+            for (&[value], pair) in values.iter().zip(block.pairs..block.pairs + block.pair_count) {
+                row[pairs.first[pair] as usize - offset] += value;
+                across.push(if (pairs.second[pair] as usize) < mobile { value } else { 0.0 });
             }
         }
+        let held = mobile.saturating_sub(offset).min(row.len());
+        row[held..].fill(0.0);
         across
     }
 }
 
-/// Stiffness of the pairs of a block, of any value where they do not touch.
-struct Stiffnesses<'a, const D: usize, L> {
-    law: &'a L,
-    columns: &'a Columns<D>,
-    stiffness: &'a mut [f64; BLOCK],
+/// What each pair of a block adds to the rows of its disks.
+struct Arithmetic<'a, const D: usize, L, W> {
+    task: &'a Task<'a, D, L, W>,
+    block: &'a Block,
+    columns: &'a mut Columns<D>,
+    anchors: Anchors<'a, D>,
+    values: &'a mut [[f64; 1]; BLOCK],
 }
 
-impl<const D: usize, L: PairLaw> pulp::WithSimd for Stiffnesses<'_, D, L> {
+impl<const D: usize, L: PairLaw, W: Fn(usize, f64, f64) -> f64> pulp::WithSimd for Arithmetic<'_, D, L, W> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        for k in 0..BLOCK {
-            self.stiffness[k] = self.law.stiffness(self.columns.force[k], self.columns.overlap[k]);
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        let Task { law, mobile_count, ref weight, pairs, .. } = *self.task;
+        self.columns.measure(simd, &self.anchors);
+        self.columns.press::<S, L, false>(simd, law, &self.anchors);
+        let (begin, count) = (self.block.pairs, self.block.pair_count);
+        let (overlap, force) = (&self.columns.overlap[..count], &self.columns.force[..count]);
+        let second = &pairs.second[begin..begin + count];
+        let values = &mut self.values[..count];
+        for k in 0..count {
+            let stiffness = law.stiffness(force[k], overlap[k]);
+            let value = if overlap[k] > 0.0 { weight(begin + k, overlap[k], stiffness) } else { 0.0 };
+            values[k] = [if (second[k] as usize) < mobile_count { 2.0 * value } else { value }];
         }
     }
 }

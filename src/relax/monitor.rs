@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::contact::assembly::Assembly;
 use crate::contact::law::PairLaw;
-use crate::contact::network::{backbone, working_contacts};
+use crate::contact::network::{backbone, links_and_forces};
 use crate::contact::totals::Totals;
 use crate::packing::Packing;
 use crate::relax::{Cost, Criterion, ForceLimit, Look, Outcome, RUNAWAY, Residual, Stop, Trace, UNJAMMED_FORCE};
@@ -142,21 +142,16 @@ impl Monitor {
         assembly: &Assembly<D, L>,
         net_forces: &[Vector<D>],
     ) -> Option<Stop> {
-        let contacts = working_contacts(assembly);
-        let links: Vec<(u32, u32)> = contacts.iter().map(|contact| (contact.first, contact.second)).collect();
+        let (links, forces) = links_and_forces(assembly);
         let held: Vec<bool> = (0..assembly.len()).map(|disk| disk >= assembly.mobile_count()).collect();
         self.backbone = backbone::<D>(&held, &links);
         let rigid = self.backbone[..assembly.mobile_count()].iter().any(|&member| member);
-        if !rigid && contacts.iter().any(|contact| contact.force > self.unjammed_force) {
+        if !rigid && forces.iter().any(|&force| force > self.unjammed_force) {
             // A chain between walls has no backbone and may be at rest under forces all the same: every disk counts.
             self.backbone.fill(true);
         }
         let members = &self.backbone;
-        let (count, total) = contacts
-            .iter()
-            .filter(|contact| members[contact.first as usize] && members[contact.second as usize])
-            .fold((0usize, 0.0), |(count, total), contact| (count + 1, total + contact.force));
-        let mean = if count == 0 { 0.0 } else { total / count as f64 };
+        let mean = mean_force(&links, &forces, members);
         let (inner, outer) = self.largest(net_forces);
         self.floor = floor_of(assembly, members, mean, assembly.longest_displacement());
         self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
@@ -261,19 +256,16 @@ impl Monitor {
 /// force to about 4 u of itself. With one number a coordinate it would be about `5 F' ulp(L) / ⟨F⟩`, L the side of the box.
 pub fn rounding_floor<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> f64 {
     let held: Vec<bool> = (0..assembly.len()).map(|disk| disk >= assembly.mobile_count()).collect();
-    let contacts = working_contacts(assembly);
-    let links: Vec<(u32, u32)> = contacts.iter().map(|contact| (contact.first, contact.second)).collect();
+    let (links, forces) = links_and_forces(assembly);
     let members = backbone::<D>(&held, &links);
-    let forces: Vec<f64> = contacts
-        .iter()
-        .filter(|contact| members[contact.first as usize] && members[contact.second as usize])
-        .map(|contact| contact.force)
-        .collect();
-    if forces.is_empty() {
-        0.0
-    } else {
-        floor_of(assembly, &members, forces.iter().sum::<f64>() / forces.len() as f64, assembly.longest_displacement())
-    }
+    floor_of(assembly, &members, mean_force(&links, &forces, &members), assembly.longest_displacement())
+}
+
+/// Mean force of the contacts between members, 0 where there are none \[force\].
+fn mean_force(links: &[(u32, u32)], forces: &[f64], members: &[bool]) -> f64 {
+    let of_members = links.iter().zip(forces).filter(|((a, b), _)| members[*a as usize] && members[*b as usize]);
+    let (count, total) = of_members.fold((0usize, 0.0), |(count, total), (_, &force)| (count + 1, total + force));
+    if count == 0 { 0.0 } else { total / count as f64 }
 }
 
 fn floor_of<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, members: &[bool], mean: f64, moved: f64) -> f64 {
