@@ -245,7 +245,6 @@ impl<const D: usize> PairList<D> {
         tile_size: usize,
         add: impl Fn(&mut PairList<D>, usize, &mut Tile) + Sync,
     ) {
-        self.clear();
         self.tile_size = tile_size;
         self.tiles.resize(tile_count, Tile::default());
         let mut tiles = std::mem::take(&mut self.tiles);
@@ -259,6 +258,7 @@ impl<const D: usize> PairList<D> {
             self.join(&parts, &mut tiles);
             self.parts = parts;
         } else {
+            self.clear();
             for (place, tile) in tiles.iter_mut().enumerate() {
                 add(self, place, tile);
             }
@@ -320,8 +320,10 @@ impl<const D: usize> PairList<D> {
         self.add_blocks((tile, disks.start), &mut search, inner, border);
     }
 
-    /// Puts lists of one tile each one after the other.
+    /// Overwrites the list by lists of one tile each, one after the other.
     fn join(&mut self, parts: &[PairList<D>], tiles: &mut [Tile]) {
+        self.rows.clear();
+        self.blocks.clear();
         let (mut pairs, mut blocks) = (0, 0);
         for (part, tile) in parts.iter().zip(tiles) {
             let rows = self.rows.len();
@@ -333,15 +335,15 @@ impl<const D: usize> PairList<D> {
             tile.border_pairs = moved(&tile.border_pairs, pairs);
             (pairs, blocks) = (pairs + part.len(), self.blocks.len());
         }
-        join_column(&mut self.first, 0, parts, |part| &part.first);
-        join_column(&mut self.second, 0, parts, |part| &part.second);
-        join_column(&mut self.ends, 0, parts, |part| &part.ends);
+        join_column(&mut self.first, parts, |part| &part.first);
+        join_column(&mut self.second, parts, |part| &part.second);
+        join_column(&mut self.ends, parts, |part| &part.ends);
         for d in 0..D {
-            join_column(&mut self.separation.0[d], 0.0, parts, |part| &part.separation.0[d]);
+            join_column(&mut self.separation.0[d], parts, |part| &part.separation.0[d]);
         }
-        join_column(&mut self.distance, 0.0, parts, |part| &part.distance);
-        join_column(&mut self.overlap, 0.0, parts, |part| &part.overlap);
-        join_column(&mut self.coefficient, 0.0, parts, |part| &part.coefficient);
+        join_column(&mut self.distance, parts, |part| &part.distance);
+        join_column(&mut self.overlap, parts, |part| &part.overlap);
+        join_column(&mut self.coefficient, parts, |part| &part.coefficient);
     }
 
     fn clear(&mut self) {
@@ -455,14 +457,18 @@ fn sort_by_length(rows: &[Row], sorted: &mut Vec<Row>) {
     }
 }
 
-/// The column of every part, one after the other.
-fn join_column<const D: usize, T: Copy + Send + Sync>(
+/// Overwrites a column by that of every part, one after the other.
+fn join_column<const D: usize, T: Copy + Default + Send + Sync>(
     column: &mut Vec<T>,
-    filler: T,
     parts: &[PairList<D>],
     of_part: impl Fn(&PairList<D>) -> &Vec<T>,
 ) {
-    column.resize(parts.iter().map(PairList::len).sum(), filler);
+    let count = parts.iter().map(PairList::len).sum();
+    if column.capacity() < count {
+        // Zeros come untouched from the system, so the threads that copy are the first to touch them; a quarter more, for the next list.
+        *column = vec![T::default(); count + count / 4];
+    }
+    column.resize(count, T::default());
     let mut rest = column.as_mut_slice();
     let pieces = parts.iter().map(|part| {
         let source = of_part(part);
