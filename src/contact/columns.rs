@@ -7,7 +7,7 @@ use pulp::Simd;
 
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, Block, PairList};
-use crate::simd::roots::{positive_part, reciprocal, square_roots};
+use crate::simd::roots::{Unit, positive_part, reciprocal, square_roots};
 use crate::simd::{components, prefetch};
 use crate::vector::Vector;
 
@@ -91,7 +91,7 @@ impl<const D: usize> Columns<D> {
         let apart = self.apart.each_mut().map(|column| S::as_mut_simd_f64s(column).0);
         let (overlap, _) = S::as_mut_simd_f64s(&mut self.overlap);
         let (inverse, _) = S::as_mut_simd_f64s(&mut self.inverse);
-        let zero = simd.splat_f64s(0.0);
+        let (zero, unit) = (simd.splat_f64s(0.0), Unit::here());
         for k in (0..count).step_by(2) {
             let mut squares = [zero; 2];
             for (half, square) in squares.iter_mut().enumerate() {
@@ -113,13 +113,13 @@ impl<const D: usize> Columns<D> {
                 }
                 overlap[k] = change;
             }
-            [inverse[k], inverse[k + 1]] = square_roots(simd, squares);
+            [inverse[k], inverse[k + 1]] = square_roots(simd, unit, squares);
         }
         for k in 0..count {
             let distance = inverse[k];
             let both = simd.add_f64s(distance, anchor_distance[k]);
             // One reciprocal for change / both and 1 / distance: divisions and roots are what the loop waits for.
-            let of_both = reciprocal(simd, simd.mul_f64s(distance, both));
+            let of_both = reciprocal(simd, unit, simd.mul_f64s(distance, both));
             let change = simd.mul_f64s(overlap[k], simd.mul_f64s(distance, of_both));
             overlap[k] = positive_part(simd, simd.sub_f64s(anchor_overlap[k], change));
             inverse[k] = simd.mul_f64s(both, of_both);

@@ -21,7 +21,7 @@ use pulp::bytemuck::{cast_slice, cast_slice_mut};
 use serde::{Deserialize, Serialize};
 
 use crate::contact::damping::{DampingLaw, MassDamping, ViscoelasticDamping, effective_radius};
-use crate::simd::roots::square_roots;
+use crate::simd::roots::{Unit, square_roots};
 
 /// What happens where two disks touch: a pure function of the overlap and of a coefficient made once a pair.
 pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
@@ -172,7 +172,7 @@ impl PairLaw for Hertzian {
     }
     #[inline(always)]
     fn forces<S: Simd>(&self, simd: S, [c, d]: [S::f64s; 2], overlaps: [S::f64s; 2]) -> [S::f64s; 2] {
-        let ([a, b], [a_root, b_root]) = (overlaps, square_roots(simd, overlaps));
+        let ([a, b], [a_root, b_root]) = (overlaps, square_roots(simd, Unit::here(), overlaps));
         [simd.mul_f64s(simd.mul_f64s(c, a), a_root), simd.mul_f64s(simd.mul_f64s(d, b), b_root)]
     }
     #[inline(always)]

@@ -1,8 +1,8 @@
 //! Square roots and reciprocals of vectors with the bits of the machine's own instructions, and faster where these are slow.
 //!
-//! Processors with vectors of 512 bits have an instruction for eight square roots and one for eight quotients that take 16 to 30
+//! Many processors with vectors of 512 bits have an instruction for eight square roots and one for eight quotients that take 16 to 30
 //! cycles, one at a time, and begin two fused products each cycle. There a first guess of 14 bits is refined by products, and every
-//! other root left to the unit for roots, which works beside them:
+//! other root left to the unit for roots, which works beside them ([`Unit`]):
 //!
 //! ```text
 //! √a    g = a y, h = y/2, y ≈ 1/√a      twice: e = 1/2 − g h, g ← g + g e, h ← h + h e      at last: g + (a − g²) h
@@ -18,25 +18,51 @@
 
 use pulp::Simd;
 
+/// What the unit for roots and quotients of this machine is good for. Never changes a bit, except as [`reciprocal`] says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unit {
+    /// Every other root; reciprocals by products.
+    Slow,
+    /// Every other root, and reciprocals: a quotient of eight takes 9 cycles.
+    Quotients,
+    /// All of them: eight roots and eight quotients take 5 ns together.
+    Fast,
+}
+
+impl Unit {
+    /// That of this machine, by what marks its maker and its generation: AMD's fourth has SSE4a, the fifth pairs of intersections as well.
+    #[inline(always)]
+    pub fn here() -> Unit {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("sse4a") {
+            let fifth = std::arch::is_x86_feature_detected!("avx512vp2intersect");
+            return if fifth { Unit::Fast } else { Unit::Quotients };
+        }
+        Unit::Slow
+    }
+}
+
 /// √a of two vectors of numbers a ≥ 0, the bits of [`f64::sqrt`] for 0 and from 2⁻⁹⁶⁰ to 2¹⁰⁰⁰; below within a unit in the last place,
-/// above perhaps NaN. The unit for roots takes one of them meanwhile.
+/// above perhaps NaN. The unit for roots takes one of them meanwhile, or both.
 #[inline(always)]
-pub fn square_roots<S: Simd>(simd: S, [a, b]: [S::f64s; 2]) -> [S::f64s; 2] {
+pub fn square_roots<S: Simd>(simd: S, unit: Unit, [a, b]: [S::f64s; 2]) -> [S::f64s; 2] {
     #[cfg(target_arch = "x86_64")]
-    if let Some(long) = super::of_512_bits(simd) {
+    if let (Some(long), Unit::Slow | Unit::Quotients) = (super::of_512_bits(simd), unit) {
         return [pulp::bytemuck::cast(long::square_root(long, pulp::bytemuck::cast(a))), simd.sqrt_f64s(b)];
     }
+    let _ = unit;
     [simd.sqrt_f64s(a), simd.sqrt_f64s(b)]
 }
 
 /// 1/a, the bits of a division for |a| from 2⁻¹⁰⁰⁰ to 2¹⁰⁰⁰, except for the last number below a power of two, where it may be the
 /// next lower one (the sum to be rounded is the very middle); perhaps NaN beyond.
 #[inline(always)]
-pub fn reciprocal<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
+pub fn reciprocal<S: Simd>(simd: S, unit: Unit, a: S::f64s) -> S::f64s {
     #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = super::of_512_bits(simd) {
+    if let (Some(simd), Unit::Slow) = (super::of_512_bits(simd), unit) {
         return pulp::bytemuck::cast(long::reciprocal(simd, pulp::bytemuck::cast(a)));
     }
+    let _ = unit;
     simd.div_f64s(simd.splat_f64s(1.0), a)
 }
 
@@ -110,7 +136,7 @@ mod tests {
     use rand_pcg::Pcg64;
 
     /// Roots, reciprocals and positive parts of a column of whole vectors.
-    struct Each<'a>(&'a [f64]);
+    struct Each<'a>(&'a [f64], Unit);
 
     impl pulp::WithSimd for Each<'_> {
         type Output = [Vec<f64>; 3];
@@ -123,15 +149,17 @@ mod tests {
                 pulp::bytemuck::cast_slice(&vectors).to_vec()
             };
             [
-                list(&|a| square_roots(simd, [a, a])[0]),
-                list(&|a| reciprocal(simd, a)),
+                list(&|a| square_roots(simd, self.1, [a, a])[0]),
+                list(&|a| reciprocal(simd, self.1, a)),
                 list(&|a| positive_part(simd, a)),
             ]
         }
     }
 
-    fn of(column: &[f64]) -> [Vec<f64>; 3] {
-        pulp::Arch::new().dispatch(Each(column))
+    const UNITS: [Unit; 3] = [Unit::Slow, Unit::Quotients, Unit::Fast];
+
+    fn of(column: &[f64], unit: Unit) -> [Vec<f64>; 3] {
+        pulp::Arch::new().dispatch(Each(column, unit))
     }
 
     /// Odd numbers M < 2⁵⁴ whose square is c below a number of 53 bits times a power of two: M/2 is the middle of two doubles
@@ -183,24 +211,32 @@ mod tests {
         assert!(hard.len() > 100, "{} hard cases", hard.len());
         column.extend(hard);
         column.resize(column.len().next_multiple_of(8), 1.0);
-        let [roots, reciprocals, _] = of(&column);
-        for ((a, root), reciprocal) in column.iter().zip(roots).zip(reciprocals) {
-            assert_eq!(root.to_bits(), a.sqrt().to_bits(), "root of {a:e}");
-            let last = a.to_bits() & ((1 << 52) - 1) == (1 << 52) - 1;
-            let lower = (1.0 / a).to_bits() - 1;
-            assert!(reciprocal == 1.0 / a || last && reciprocal.to_bits() == lower, "reciprocal of {a:e}");
+        for unit in UNITS {
+            let [roots, reciprocals, _] = of(&column, unit);
+            for ((a, root), reciprocal) in column.iter().zip(roots).zip(reciprocals) {
+                assert_eq!(root.to_bits(), a.sqrt().to_bits(), "root of {a:e}, {unit:?}");
+                let last = a.to_bits() & ((1 << 52) - 1) == (1 << 52) - 1 && unit == Unit::Slow;
+                let lower = (1.0 / a).to_bits() - 1;
+                assert!(
+                    reciprocal == 1.0 / a || last && reciprocal.to_bits() == lower,
+                    "reciprocal of {a:e}, {unit:?}"
+                );
+            }
         }
     }
 
     #[test]
     fn nothing_and_no_number_are_kept() {
         let column = [0.0, 1.0, f64::NAN, 4.0, 0.0, 0.25, f64::MIN_POSITIVE, 9.0];
-        let [roots, reciprocals, parts] = of(&column);
-        assert_eq!([roots[0], roots[1], roots[3], roots[4], roots[5], roots[7]], [0.0, 1.0, 2.0, 0.0, 0.5, 3.0]);
-        assert!(roots[2].is_nan() && reciprocals[2].is_nan() && parts[2].is_nan());
-        let smallest = f64::MIN_POSITIVE.sqrt();
-        assert!((roots[6] - smallest).abs() <= f64::EPSILON * smallest);
-        let [_, _, parts] = of(&[-1.0, -0.0, 0.0, 2.0, f64::NAN, f64::NEG_INFINITY, f64::INFINITY, -1e-300]);
+        for unit in UNITS {
+            let [roots, reciprocals, parts] = of(&column, unit);
+            assert_eq!([roots[0], roots[1], roots[3], roots[4], roots[5], roots[7]], [0.0, 1.0, 2.0, 0.0, 0.5, 3.0]);
+            assert!(roots[2].is_nan() && reciprocals[2].is_nan() && parts[2].is_nan());
+            let smallest = f64::MIN_POSITIVE.sqrt();
+            assert!((roots[6] - smallest).abs() <= f64::EPSILON * smallest);
+        }
+        let signs = [-1.0, -0.0, 0.0, 2.0, f64::NAN, f64::NEG_INFINITY, f64::INFINITY, -1e-300];
+        let [_, _, parts] = of(&signs, Unit::here());
         assert_eq!([parts[0], parts[1], parts[2], parts[3]], [0.0, 0.0, 0.0, 2.0]);
         assert!(parts[4].is_nan());
         assert_eq!([parts[5], parts[6], parts[7]], [0.0, f64::INFINITY, 0.0]);
