@@ -25,7 +25,7 @@ pub enum Unit {
     Slow,
     /// Every other root, and reciprocals: a quotient of eight takes 9 cycles.
     Quotients,
-    /// All of them: eight roots and eight quotients take 5 ns together.
+    /// All of them: two roots and a quotient of eight numbers each take 5 ns together.
     Fast,
 }
 
