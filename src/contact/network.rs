@@ -51,41 +51,73 @@ pub struct ContactNetwork<const D: usize> {
 /// # Cost
 /// Linear in disks and contacts.
 pub fn backbone<const D: usize>(held: &[bool], contacts: &[(u32, u32)]) -> Vec<bool> {
-    let count = held.len();
-    let mut starts = vec![0u32; count + 1];
-    for &(first, second) in contacts {
-        starts[first as usize + 1] += 1;
-        starts[second as usize + 1] += 1;
-    }
-    let mut degree: Vec<u32> = starts[1..].to_vec();
-    for disk in 0..count {
-        starts[disk + 1] += starts[disk];
-    }
-    let mut next = starts.clone();
-    let mut neighbours = vec![0u32; 2 * contacts.len()];
-    for &(first, second) in contacts {
-        for (a, b) in [(first, second), (second, first)] {
-            neighbours[next[a as usize] as usize] = b;
-            next[a as usize] += 1;
+    let mut remains = vec![true; held.len()];
+    Peeling::default().peel::<D>(|disk| held[disk], contacts, &mut remains);
+    remains
+}
+
+/// Room for finding a backbone, kept between two.
+#[derive(Debug, Clone, Default)]
+pub struct Peeling {
+    /// Where the neighbours of each disk begin, and of the last one end.
+    starts: Vec<u32>,
+    next: Vec<u32>,
+    neighbours: Vec<u32>,
+    /// Contacts with disks that were not removed yet.
+    degree: Vec<u32>,
+    doomed: Vec<u32>,
+}
+
+impl Peeling {
+    /// As [`backbone`], overwriting `remains`, which has one entry a disk.
+    pub fn peel<const D: usize>(
+        &mut self,
+        held: impl Fn(usize) -> bool,
+        contacts: &[(u32, u32)],
+        remains: &mut [bool],
+    ) {
+        let Peeling { starts, next, neighbours, degree, doomed } = self;
+        let count = remains.len();
+        degree.clear();
+        degree.resize(count, 0);
+        for &(first, second) in contacts {
+            degree[first as usize] += 1;
+            degree[second as usize] += 1;
         }
-    }
-    let least = D as u32 + 1;
-    let mut remains = vec![true; count];
-    let mut doomed: Vec<usize> = (0..count).filter(|&disk| !held[disk] && degree[disk] < least).collect();
-    for &disk in &doomed {
-        remains[disk] = false;
-    }
-    while let Some(disk) = doomed.pop() {
-        for &other in &neighbours[starts[disk] as usize..starts[disk + 1] as usize] {
-            let other = other as usize;
-            degree[other] -= 1;
-            if remains[other] && !held[other] && degree[other] < least {
-                remains[other] = false;
-                doomed.push(other);
+        starts.resize(count + 1, 0);
+        let mut total = 0;
+        for (start, &degree) in starts.iter_mut().zip(&*degree) {
+            *start = total;
+            total += degree;
+        }
+        starts[count] = total;
+        next.clone_from(starts);
+        neighbours.resize(2 * contacts.len(), 0);
+        for &(first, second) in contacts {
+            for (a, b) in [(first, second), (second, first)] {
+                neighbours[next[a as usize] as usize] = b;
+                next[a as usize] += 1;
+            }
+        }
+        let least = D as u32 + 1;
+        doomed.clear();
+        for (disk, remains) in remains.iter_mut().enumerate() {
+            *remains = held(disk) || degree[disk] >= least;
+            if !*remains {
+                doomed.push(disk as u32);
+            }
+        }
+        while let Some(disk) = doomed.pop() {
+            for &other in &neighbours[starts[disk as usize] as usize..starts[disk as usize + 1] as usize] {
+                let disk = other as usize;
+                degree[disk] -= 1;
+                if remains[disk] && !held(disk) && degree[disk] < least {
+                    remains[disk] = false;
+                    doomed.push(other);
+                }
             }
         }
     }
-    remains
 }
 
 impl<const D: usize> ContactNetwork<D> {
@@ -237,15 +269,39 @@ pub fn working_contacts<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -
     contacts
 }
 
-/// The disks of each contact of an assembly and its force \[force\], in working numbering and order of the list.
-pub fn links_and_forces<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> (Vec<(u32, u32)>, Vec<f64>) {
-    let count = assembly.pairs().len();
-    let (mut links, mut forces) = (Vec::with_capacity(count), Vec::with_capacity(count));
-    each_contact(assembly, |ends, columns, place| {
-        links.push(ends);
-        forces.push(columns.force[place]);
-    });
-    (links, forces)
+/// The contacts of an assembly as far as a backbone needs them, in working numbering and order of the list. Room that is kept between
+/// two looks.
+#[derive(Debug, Clone, Default)]
+pub struct Links {
+    /// The disks of each contact.
+    pub ends: Vec<(u32, u32)>,
+    /// Its force \[force\].
+    pub forces: Vec<f64>,
+}
+
+impl Links {
+    /// Overwrites them by the contacts of an assembly as it stands.
+    pub fn take<const D: usize, L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
+        let pairs = assembly.pairs();
+        self.ends.resize(pairs.len(), (0, 0));
+        self.forces.resize(pairs.len(), 0.0);
+        let mut columns = Columns::new();
+        let mut count = 0;
+        for block in &pairs.blocks {
+            fill(assembly.law(), pairs, (&assembly.displacements, 0), block, &mut columns);
+            let listed = block.pairs..block.pairs + block.pair_count;
+            let ends = pairs.first[listed.clone()].iter().zip(&pairs.second[listed]);
+            let values = columns.overlap.iter().zip(&columns.force);
+            for ((&first, &second), (&overlap, &force)) in ends.zip(values) {
+                // Which pairs touch cannot be guessed: they are picked without a branch.
+                self.ends[count] = (first, second);
+                self.forces[count] = force;
+                count += usize::from(overlap > 0.0);
+            }
+        }
+        self.ends.truncate(count);
+        self.forces.truncate(count);
+    }
 }
 
 /// Calls a function of (disks, columns of the block, place in them) of every contact, in the order of the list.

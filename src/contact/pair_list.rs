@@ -261,6 +261,7 @@ impl<const D: usize> PairList<D> {
             self.clear();
             for (place, tile) in tiles.iter_mut().enumerate() {
                 add(self, place, tile);
+                self.reserve(tile_count - place - 1, place + 1);
             }
         }
         self.tiles = tiles;
@@ -269,6 +270,21 @@ impl<const D: usize> PairList<D> {
             let second = self.second[pair] as usize;
             (second < self.first_count).then_some(second / tile_size)
         });
+    }
+
+    /// Asks for room for so many tiles more, like those that are done: a column that grows by and by is copied again and again.
+    fn reserve(&mut self, tiles: usize, done: usize) {
+        // A sixteenth more, for tiles that have more.
+        let more = |count: usize| (count + count / 16) * tiles / done;
+        let (pairs, rows, blocks) = (more(self.len()), more(self.rows.len()), more(self.blocks.len()));
+        for column in [&mut self.first, &mut self.second, &mut self.ends] {
+            column.reserve(pairs);
+        }
+        for column in self.separation.0.iter_mut().chain([&mut self.distance, &mut self.overlap, &mut self.coefficient]) {
+            column.reserve(pairs);
+        }
+        self.rows.reserve(rows);
+        self.blocks.reserve(blocks);
     }
 
     /// Adds the blocks of a tile, which begins with disk `origin`: what `inner` puts in line within it, then what `border` puts in

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::contact::assembly::Assembly;
 use crate::contact::law::PairLaw;
-use crate::contact::network::{backbone, links_and_forces};
+use crate::contact::network::{Links, Peeling};
 use crate::contact::totals::Totals;
 use crate::packing::Packing;
 use crate::relax::{Cost, Criterion, ForceLimit, Look, Outcome, RUNAWAY, Residual, Stop, Trace, UNJAMMED_FORCE};
@@ -41,6 +41,10 @@ pub struct Monitor {
     /// Way from a site that ends the relaxation; infinite unless the law pushes disks from theirs.
     farthest: f64,
     backbone: Vec<bool>,
+    links: Links,
+    peeling: Peeling,
+    /// Room for sums over the contacts of each disk.
+    row: Vec<f64>,
     look_count: usize,
     best: f64,
     best_look: usize,
@@ -72,6 +76,9 @@ impl Monitor {
             },
             farthest,
             backbone: vec![true; assembly.len()],
+            links: Links::default(),
+            peeling: Peeling::default(),
+            row: Vec::new(),
             look_count: 0,
             best: f64::INFINITY,
             best_look: 0,
@@ -142,22 +149,23 @@ impl Monitor {
         assembly: &Assembly<D, L>,
         net_forces: &[Vector<D>],
     ) -> Option<Stop> {
-        let (links, forces) = links_and_forces(assembly);
-        let held: Vec<bool> = (0..assembly.len()).map(|disk| disk >= assembly.mobile_count()).collect();
-        self.backbone = backbone::<D>(&held, &links);
-        let rigid = self.backbone[..assembly.mobile_count()].iter().any(|&member| member);
-        if !rigid && forces.iter().any(|&force| force > self.unjammed_force) {
+        let mobile = assembly.mobile_count();
+        self.links.take(assembly);
+        self.peeling.peel::<D>(|disk| disk >= mobile, &self.links.ends, &mut self.backbone);
+        let rigid = self.backbone[..mobile].iter().any(|&member| member);
+        if !rigid && self.links.forces.iter().any(|&force| force > self.unjammed_force) {
             // A chain between walls has no backbone and may be at rest under forces all the same: every disk counts.
             self.backbone.fill(true);
         }
         let members = &self.backbone;
-        let mean = mean_force(&links, &forces, members);
+        let mean = mean_force(&self.links, members);
         let (inner, outer) = self.largest(net_forces);
-        self.floor = floor_of(assembly, members, mean, assembly.longest_displacement());
+        let row = &mut self.row;
+        self.floor = floor_of(assembly, members, mean, assembly.longest_displacement(), row);
         self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
         // Felt: within a factor 20 of the residual, and new anchors would lower the floor by more than 4.
         self.anchors_felt =
-            self.floor > 0.05 * self.last.relative() && self.floor > 4.0 * floor_of(assembly, members, mean, 0.0);
+            self.floor > 0.05 * self.last.relative() && self.floor > 4.0 * floor_of(assembly, members, mean, 0.0, row);
         let stop = match self.limit {
             ForceLimit::Relative(limit) => (mean > 0.0 && inner <= limit * mean && outer <= limit.sqrt() * mean)
                 .then_some(Criterion::RelativeForce),
@@ -255,29 +263,35 @@ impl Monitor {
 /// A law with sites adds |Γ| times the longest way from one. w is the longest displacement from the anchors: an overlap is known to about 4 u of the relative displacement and a
 /// force to about 4 u of itself. With one number a coordinate it would be about `5 F' ulp(L) / ⟨F⟩`, L the side of the box.
 pub fn rounding_floor<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> f64 {
-    let held: Vec<bool> = (0..assembly.len()).map(|disk| disk >= assembly.mobile_count()).collect();
-    let (links, forces) = links_and_forces(assembly);
-    let members = backbone::<D>(&held, &links);
-    floor_of(assembly, &members, mean_force(&links, &forces, &members), assembly.longest_displacement())
+    let (mut links, mut members) = (Links::default(), vec![true; assembly.len()]);
+    links.take(assembly);
+    Peeling::default().peel::<D>(|disk| disk >= assembly.mobile_count(), &links.ends, &mut members);
+    let mean = mean_force(&links, &members);
+    floor_of(assembly, &members, mean, assembly.longest_displacement(), &mut Vec::new())
 }
 
 /// Mean force of the contacts between members, 0 where there are none \[force\].
-fn mean_force(links: &[(u32, u32)], forces: &[f64], members: &[bool]) -> f64 {
-    let of_members = links.iter().zip(forces).filter(|((a, b), _)| members[*a as usize] && members[*b as usize]);
+fn mean_force(links: &Links, members: &[bool]) -> f64 {
+    let of_members = links.ends.iter().zip(&links.forces).filter(|((a, b), _)| members[*a as usize] && members[*b as usize]);
     let (count, total) = of_members.fold((0usize, 0.0), |(count, total), (_, &force)| (count + 1, total + force));
     if count == 0 { 0.0 } else { total / count as f64 }
 }
 
-fn floor_of<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, members: &[bool], mean: f64, moved: f64) -> f64 {
+fn floor_of<const D: usize, L: PairLaw>(
+    assembly: &Assembly<D, L>,
+    members: &[bool],
+    mean: f64,
+    moved: f64,
+    row: &mut Vec<f64>,
+) -> f64 {
     if mean == 0.0 {
         return 0.0;
     }
-    let mut row = Vec::new();
     let exponent = assembly.law().exponent();
     // F = F' δ / (α − 1). The rows count a contact of two mobile disks twice (for Gershgorin), hence 2 u for 4 u; next to
     // held disks the estimate is low by half.
     let noise = |_: usize, overlap: f64, stiffness: f64| stiffness * (moved + overlap / (exponent - 1.0));
-    assembly.row_bound(&mut row, noise);
+    assembly.row_bound(row, noise);
     let most =
         row.iter().zip(members).filter(|&(_, &member)| member).fold(0.0, |most, (&value, _)| larger(value, most));
     let sites =
