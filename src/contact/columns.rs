@@ -30,10 +30,19 @@ pub(super) struct Columns<const D: usize> {
 
 /// What the list has of each pair of a block: whole columns, whatever stands in the places of a block that is not full.
 pub(super) struct Anchors<'a, const D: usize> {
+    pair_count: usize,
     separation: [&'a [f64]; D],
     distance: &'a [f64],
     overlap: &'a [f64],
     coefficient: &'a [f64],
+}
+
+impl<const D: usize> Anchors<'_, D> {
+    /// Vectors of pairs, an even number of them.
+    #[inline(always)]
+    fn turns<S: Simd>(&self) -> usize {
+        (2 * self.pair_count.div_ceil(2 * S::F64_LANES)).min(BLOCK / S::F64_LANES)
+    }
 }
 
 /// Calls a function of what a list has of a block.
@@ -47,6 +56,7 @@ pub(super) fn with_anchors<const D: usize, T>(
     if whole.end <= pairs.len() {
         // A block that is not full goes on into the next one; what comes of that is not used.
         return call(Anchors {
+            pair_count: block.pair_count,
             separation: pairs.separation.columns().map(|column| &column[whole.clone()]),
             distance: &pairs.distance[whole.clone()],
             overlap: &pairs.overlap[whole.clone()],
@@ -60,6 +70,7 @@ pub(super) fn with_anchors<const D: usize, T>(
     };
     let separation = pairs.separation.columns().map(padded);
     call(Anchors {
+        pair_count: block.pair_count,
         separation: separation.each_ref().map(|column| &column[..]),
         distance: &padded(&pairs.distance),
         overlap: &padded(&pairs.overlap),
@@ -82,15 +93,14 @@ impl<const D: usize> Columns<D> {
     /// From the relative displacements: separations, overlaps and one over the distances.
     #[inline(always)]
     pub fn measure<S: Simd>(&mut self, simd: S, anchors: &Anchors<'_, D>) {
-        // As many turns as a block has places, known beforehand: no check.
-        let count = BLOCK / S::F64_LANES;
+        let count = anchors.turns::<S>();
         let read = |column| &S::as_simd_f64s(column).0[..count];
         let anchor_separation = anchors.separation.map(read);
         let (anchor_distance, anchor_overlap) = (read(anchors.distance), read(anchors.overlap));
         let moved = &S::as_simd_f64s(self.pull.as_flattened()).0[..D * count];
-        let apart = self.apart.each_mut().map(|column| S::as_mut_simd_f64s(column).0);
-        let (overlap, _) = S::as_mut_simd_f64s(&mut self.overlap);
-        let (inverse, _) = S::as_mut_simd_f64s(&mut self.inverse);
+        let apart = self.apart.each_mut().map(|column| &mut S::as_mut_simd_f64s(column).0[..count]);
+        let overlap = &mut S::as_mut_simd_f64s(&mut self.overlap).0[..count];
+        let inverse = &mut S::as_mut_simd_f64s(&mut self.inverse).0[..count];
         let (zero, unit) = (simd.splat_f64s(0.0), Unit::here());
         for k in (0..count).step_by(2) {
             let mut squares = [zero; 2];
@@ -131,14 +141,14 @@ impl<const D: usize> Columns<D> {
     /// From the overlaps: the forces of a law, and if it is to `RESOLVE` them, what [`Columns::resolve`] makes of these.
     #[inline(always)]
     pub fn press<S: Simd, L: PairLaw, const RESOLVE: bool>(&mut self, simd: S, law: &L, anchors: &Anchors<'_, D>) {
-        let count = BLOCK / S::F64_LANES;
+        let count = anchors.turns::<S>();
         let coefficient = &S::as_simd_f64s(anchors.coefficient).0[..count];
         let one = simd.splat_f64s(anchors.coefficient[0]);
         let overlap = &S::as_simd_f64s(&self.overlap).0[..count];
         let inverse = &S::as_simd_f64s(&self.inverse).0[..count];
         let apart = self.apart.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
         let pull = &mut S::as_mut_simd_f64s(self.pull.as_flattened_mut()).0[..D * count];
-        let (force, _) = S::as_mut_simd_f64s(&mut self.force);
+        let force = &mut S::as_mut_simd_f64s(&mut self.force).0[..count];
         for k in (0..count).step_by(2) {
             let coefficients = if L::ONE_COEFFICIENT { [one; 2] } else { [coefficient[k], coefficient[k + 1]] };
             let forces = law.forces(simd, coefficients, [overlap[k], overlap[k + 1]]);
