@@ -6,6 +6,7 @@
 //! from the origin a packing lies. When the neighbour list is made anew, anchors take over what the displacements have gathered
 //! (without rounding: the remainder stays in the displacement).
 
+mod roaming;
 mod upkeep;
 
 use std::iter::repeat_with;
@@ -57,8 +58,11 @@ pub struct Assembly<const D: usize, L> {
     smallest_radius: f64,
     /// Of the list of all pairs.
     skin: f64,
-    /// Displacements when the list in use was made.
+    /// Displacements when the list of all pairs was made, or when a disk was listed anew in it; the same for near pairs.
     listed: Vec<Vector<D>>,
+    near_listed: Vec<Vector<D>>,
+    /// Disks that were listed anew in the list of all pairs since it was made.
+    roaming: Vec<u32>,
     /// Displacements to come back to, if the relaxer set a checkpoint.
     checkpoint: Vec<Vector<D>>,
     /// A bound on how far any disk has moved since `listed`.
@@ -112,6 +116,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             displacements,
             forces: vec![[0.0; D]; packing.len()],
             listed: Vec::new(),
+            near_listed: Vec::new(),
+            roaming: Vec::new(),
             checkpoint: Vec::new(),
             moved: 0.0,
             rebuild_count: 0,
@@ -347,8 +353,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
                 other => other,
             },
         )?;
-        self.near_skin = None;
-        self.begin_list();
+        self.begin_all();
         self.rebuild_count += 1;
         Ok(())
     }

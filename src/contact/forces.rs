@@ -14,6 +14,8 @@
 //! scattered. So gathering and scattering, which know no vectors, move as little as they can. The order of every sum is fixed and every
 //! operation rounded as IEEE 754 has it (`src/simd`), so the bits do not depend on the width of the machine's vectors.
 
+use std::ops::Range;
+
 use crate::contact::columns::{Anchors, Columns, with_anchors};
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, Block, PairList};
@@ -183,6 +185,14 @@ pub(super) struct Task<'a, const D: usize, K: Kernel<D>> {
     pub offset: u32,
 }
 
+/// Those of these blocks that have pairs.
+fn filled<'a, const D: usize>(
+    pairs: &'a PairList<D>,
+    blocks: &Range<usize>,
+) -> impl Iterator<Item = usize> + use<'a, D> {
+    blocks.clone().filter(|&block| pairs.blocks[block].pair_count > 0)
+}
+
 /// Forces of the pairs within a tile on its disks, which are overwritten.
 pub(super) fn sweep_inner<const D: usize, K: Kernel<D>>(
     task: &Task<'_, D, K>,
@@ -190,7 +200,7 @@ pub(super) fn sweep_inner<const D: usize, K: Kernel<D>>(
 ) -> (K::Columns, K::Sums) {
     forces.fill([K::Number::default(); D]);
     let mut room = task.kernel.begin();
-    for block in task.tile.inner.clone() {
+    for block in filled(task.pairs, &task.tile.inner) {
         let pull = task.kernel.pull(block, task.displacements, &mut room);
         scatter(pull, task.pairs, &task.pairs.blocks[block], (forces, task.offset));
     }
@@ -204,7 +214,7 @@ pub(super) fn sweep_border<const D: usize, K: Kernel<D>>(
     across: &mut [[K::Number; D]],
     room: &mut (K::Columns, K::Sums),
 ) {
-    for place in task.tile.border.clone() {
+    for place in filled(task.pairs, &task.tile.border) {
         let pull = task.kernel.pull(place, task.displacements, room);
         let block = &task.pairs.blocks[place];
         let first = &task.pairs.first[block.pairs..block.pairs + block.pair_count];

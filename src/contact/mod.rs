@@ -3,6 +3,7 @@
 //! Start from [`ContactNetwork`] to look at a packing, from [`Assembly`] to move one.
 
 pub mod advance;
+mod amended;
 pub mod assembly;
 mod columns;
 pub mod damped_forces;

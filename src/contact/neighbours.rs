@@ -4,6 +4,7 @@
 //! disk has moved by half the skin. Each pair carries its separation at the anchors, so the box and its images are
 //! looked at only while the list is built.
 
+use crate::contact::amended::{Lacking, without};
 use crate::contact::pair_list::{BLOCK, Measured, PairList, Search, Source};
 use crate::packing::{Domain, PackingError};
 use crate::side_by_side::{self, PIECE};
@@ -28,6 +29,9 @@ pub struct Disks<'a, const D: usize> {
 struct CellGrid {
     /// Cells along each axis.
     counts: Vec<usize>,
+    /// Where the first cell begins, and cells a length, along each axis.
+    corner: Vec<f64>,
+    scale: Vec<f64>,
     cell_of: Vec<u32>,
     starts: Vec<u32>,
     members: Vec<u32>,
@@ -52,17 +56,16 @@ impl CellGrid {
         let counts: [usize; D] = std::array::from_fn(|d| (lengths[d] / range).floor().clamp(1.0, 4.0 * most) as usize);
         let cell_count: usize = counts.iter().product();
         let scale: Vector<D> = std::array::from_fn(|d| counts[d] as f64 / lengths[d]);
+        for (column, values) in [(&mut self.corner, &corner), (&mut self.scale, &scale)] {
+            column.clear();
+            column.extend_from_slice(values);
+        }
         self.counts.clear();
         self.counts.extend_from_slice(&counts);
         self.cell_of.resize(points.len(), 0);
         side_by_side::each(self.cell_of.chunks_mut(PIECE).zip(points.chunks(PIECE)), |(cells, points)| {
-            for (cell_of, point) in cells.iter_mut().zip(points) {
-                let mut cell = 0;
-                for d in (0..D).rev() {
-                    let index = ((point[d] - corner[d]) * scale[d]).max(0.0) as usize;
-                    cell = cell * counts[d] + index.min(counts[d] - 1);
-                }
-                *cell_of = cell as u32;
+            for (cell_of, &point) in cells.iter_mut().zip(points) {
+                *cell_of = cell_at(point, (corner, scale, counts)) as u32;
             }
         });
         // Counted one cell further on, so that filling a cell moves its start to where it belongs.
@@ -81,6 +84,12 @@ impl CellGrid {
             self.members[*next as usize] = disk as u32;
             *next += 1;
         }
+    }
+
+    /// The cell of a point of the domain.
+    fn cell_at<const D: usize>(&self, point: Vector<D>) -> usize {
+        let [corner, scale] = [&self.corner, &self.scale].map(|column| std::array::from_fn(|d| column[d]));
+        cell_at(point, (corner, scale, std::array::from_fn(|d| self.counts[d])))
     }
 
     /// The last of the disks of a cell.
@@ -129,6 +138,17 @@ impl CellGrid {
             }
         }
     }
+}
+
+/// The cell of a point, or the nearest one.
+#[inline(always)]
+fn cell_at<const D: usize>(point: Vector<D>, (corner, scale, counts): (Vector<D>, Vector<D>, [usize; D])) -> usize {
+    let mut cell = 0;
+    for d in (0..D).rev() {
+        let index = ((point[d] - corner[d]) * scale[d]).max(0.0) as usize;
+        cell = cell * counts[d] + index.min(counts[d] - 1);
+    }
+    cell
 }
 
 /// Room for making a list, kept between two: only the first one asks for memory.
@@ -205,40 +225,94 @@ pub fn build_pairs<const D: usize>(
         }
     });
     let (grid, points, sorted) = (&*grid, &*points, &*sorted);
-    let nearby = Nearby { disks, skin, lengths, grid, points, sorted, coefficient: &coefficient };
-    pairs.fill(points.len(), disks.mobile_count, || TileSearch {
+    let nearby = Nearby { disks, skin, lengths, grid, points, sorted };
+    let (counts, keeps_places) = ((points.len(), disks.mobile_count), PairList::<D>::keeps_places(points.len()));
+    pairs.fill(counts, keeps_places, || TileSearch {
         nearby,
         cell: usize::MAX,
         runs: Vec::new(),
-        ends: Ends { anchors: [([1.0; D], [0.0; D]); BLOCK], radii: [(1.0, 1.0); BLOCK] },
+        anchored: Anchored::new(disks, &coefficient),
     })
 }
 
+/// Adds the pairs that a list made by [`build_pairs`] lacks now that some disks were listed anew. Nothing is done, and false
+/// returned, where there are not places enough.
+///
+/// # Shape
+/// `listed` tells where each disk was listed last, from its anchor: `roaming` are the disks that were listed anew since the list was made,
+/// those marked among them just now.
+pub(super) fn amend_pairs<const D: usize>(
+    (disks, listed): (&Disks<'_, D>, &[Vector<D>]),
+    (roaming, marked): (&[u32], &[bool]),
+    skin: f64,
+    coefficient: impl Fn(f64, f64) -> f64 + Sync,
+    room: &ListRoom<D>,
+    pairs: &mut PairList<D>,
+) -> bool {
+    let lengths = disks.domain.lengths();
+    let at = |disk: u32| sum(disks.anchors[disk as usize], listed[disk as usize]);
+    let (mut lacking, mut had, mut runs) = (Vec::new(), Vec::new(), Vec::new());
+    for &disk in roaming.iter().filter(|&&disk| marked[disk as usize]) {
+        let point = at(disk);
+        let reach = disks.radii[disk as usize] + skin;
+        let mut offer = |other: u32| {
+            let mut apart = difference(point, at(other));
+            if let Some(lengths) = lengths {
+                for d in 0..D {
+                    apart[d] -= (apart[d] / lengths[d]).round_ties_even() * lengths[d];
+                }
+            }
+            let range = reach + disks.radii[other as usize];
+            let (first, second) = (disk.min(other), disk.max(other));
+            if disk != other && dot(apart, apart) < range * range && (first as usize) < disks.mobile_count {
+                lacking.push(Lacking { first, second, name: second });
+            }
+        };
+        // Others are in the cells they were in; those that were listed anew are not, and are looked at one by one.
+        let cell = room.grid.cell_at(disks.domain.wrapped(point));
+        room.grid.neighbourhood(cell, lengths, &mut runs);
+        for Run { cells, .. } in &runs {
+            let (start, end) = (room.grid.starts[cells.start] as usize, room.grid.starts[cells.end] as usize);
+            room.grid.members[start..end].iter().for_each(|&other| offer(other));
+        }
+        roaming.iter().for_each(|&other| offer(other));
+    }
+    pairs.pairs_of(marked, &mut had);
+    without(&mut lacking, &mut had);
+    pairs.amend(&lacking, &mut Anchored::new(disks, &coefficient))
+}
+
 /// What every tile is searched in.
-struct Nearby<'a, const D: usize, C> {
+#[derive(Clone, Copy)]
+struct Nearby<'a, const D: usize> {
     disks: &'a Disks<'a, D>,
     skin: f64,
     lengths: Option<Vector<D>>,
     grid: &'a CellGrid,
     points: &'a [Vector<D>],
     sorted: &'a [(Vector<D>, f64)],
-    coefficient: &'a C,
 }
-
-impl<const D: usize, C> Clone for Nearby<'_, D, C> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<const D: usize, C> Copy for Nearby<'_, D, C> {}
 
 /// The search of one tile: the cell of the last disk looked at, and the cells around it.
 struct TileSearch<'a, const D: usize, C> {
-    nearby: Nearby<'a, D, C>,
+    nearby: Nearby<'a, D>,
     cell: usize,
     runs: Vec<Run<D>>,
+    anchored: Anchored<'a, D, C>,
+}
+
+/// Pairs of disks as they are at their anchors.
+struct Anchored<'a, const D: usize, C> {
+    disks: &'a Disks<'a, D>,
+    coefficient: &'a C,
     ends: Ends<D>,
+}
+
+impl<'a, const D: usize, C> Anchored<'a, D, C> {
+    fn new(disks: &'a Disks<'a, D>, coefficient: &'a C) -> Self {
+        let ends = Ends { anchors: [([1.0; D], [0.0; D]); BLOCK], radii: [(1.0, 1.0); BLOCK] };
+        Anchored { disks, coefficient, ends }
+    }
 }
 
 impl<const D: usize, C: Fn(f64, f64) -> f64> Search<D> for TileSearch<'_, D, C> {
@@ -275,14 +349,24 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Search<D> for TileSearch<'_, D, C> 
 }
 
 impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for TileSearch<'_, D, C> {
+    fn second(&self, pair: u32) -> u32 {
+        self.anchored.second(pair)
+    }
+
+    fn measure(&mut self, first: &[u32], second: &[u32], measured: &mut Measured<D>) {
+        self.anchored.measure(first, second, measured);
+    }
+}
+
+impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for Anchored<'_, D, C> {
     /// A pair of a disk bears the number of the other one.
     fn second(&self, pair: u32) -> u32 {
         pair
     }
 
     fn measure(&mut self, first: &[u32], second: &[u32], measured: &mut Measured<D>) {
-        let Nearby { disks, lengths, coefficient, .. } = self.nearby;
-        let ends = &mut self.ends;
+        let Anchored { disks, coefficient, ends } = self;
+        let lengths = disks.domain.lengths();
         for (place, (&first, &second)) in first.iter().zip(second).enumerate() {
             let (first, second) = (first as usize, second as usize);
             ends.anchors[place] = (disks.anchors[first], disks.anchors[second]);

@@ -13,7 +13,7 @@
 
 use std::ops::Range;
 
-use crate::contact::tiles::{Tile, connect};
+use crate::contact::tiles::Tile;
 use crate::contact::turns::Turns;
 use crate::packing::PackingError;
 use crate::side_by_side;
@@ -55,6 +55,8 @@ pub struct PairList<const D: usize> {
     pub(super) tile_size: usize,
     /// Disks from this one on are never first: they do not move.
     pub(super) first_count: usize,
+    /// Whether tiles have places for pairs to come.
+    pub(super) keeps_places: bool,
     /// What one thread does with the tiles in a step.
     pub(super) turns: Turns,
     arranger: Box<Arranger<D>>,
@@ -96,6 +98,13 @@ pub(super) struct Block {
     pub row_count: usize,
     pub row_length: usize,
     pub origin: u32,
+}
+
+impl Block {
+    /// Its pairs.
+    pub fn pairs(&self) -> Range<usize> {
+        self.pairs..self.pairs + self.pair_count
+    }
 }
 
 /// Where pairs come from, each under a number of its own.
@@ -212,17 +221,18 @@ impl<const D: usize> PairList<D> {
     }
 
     /// Empties the list and fills it with what `search`, made anew for each tile, finds: each pair is named by one of its disks only.
-    /// Disks from `first_count` on are never first.
+    /// Disks from `first_count` on are never first. A list that `keeps_places` may be amended.
     ///
     /// # Errors
     /// Two disks with the same centre.
     pub(super) fn fill<S: Search<D>>(
         &mut self,
-        disk_count: usize,
-        first_count: usize,
+        (disk_count, first_count): (usize, usize),
+        keeps_places: bool,
         search: impl Fn() -> S + Sync,
     ) -> Result<(), PackingError> {
         self.first_count = first_count;
+        self.keeps_places = keeps_places;
         // Sixteen layers of disks: few pairs cross its border.
         let layer = (disk_count as f64).powf(1.0 - 1.0 / D as f64);
         let tile_size = LEAST_TILE.max(16 * layer as usize);
@@ -253,6 +263,7 @@ impl<const D: usize> PairList<D> {
             parts.resize(tiles.len(), PairList::default());
             side_by_side::each(tiles.iter_mut().zip(&mut parts).enumerate(), |(place, (tile, part))| {
                 part.clear();
+                part.keeps_places = self.keeps_places;
                 add(part, place, tile);
             });
             self.join(&parts, &mut tiles);
@@ -265,11 +276,7 @@ impl<const D: usize> PairList<D> {
             }
         }
         self.tiles = tiles;
-        connect(&mut self.tiles, tile_size, &self.first, &self.second);
-        self.turns.take(&self.tiles, |pair| {
-            let second = self.second[pair] as usize;
-            (second < self.first_count).then_some(second / tile_size)
-        });
+        self.connect();
     }
 
     /// Asks for room for so many tiles more, like those that are done: a column that grows by and by is copied again and again.
@@ -280,7 +287,8 @@ impl<const D: usize> PairList<D> {
         for column in [&mut self.first, &mut self.second, &mut self.ends] {
             column.reserve(pairs);
         }
-        for column in self.separation.0.iter_mut().chain([&mut self.distance, &mut self.overlap, &mut self.coefficient]) {
+        for column in self.separation.0.iter_mut().chain([&mut self.distance, &mut self.overlap, &mut self.coefficient])
+        {
             column.reserve(pairs);
         }
         self.rows.reserve(rows);
@@ -301,13 +309,18 @@ impl<const D: usize> PairList<D> {
         arranger.origin = origin as u32;
         inner(self, &mut arranger, source);
         self.close_group(&mut arranger, source);
+        if self.keeps_places {
+            self.add_places(arranger.origin, false);
+        }
         let (middle, border_pairs) = (self.blocks.len(), self.len());
         arranger.origin = 0;
         border(self, &mut arranger, source);
         self.close_group(&mut arranger, source);
+        if self.keeps_places {
+            self.add_places(0, true);
+        }
         (tile.inner, tile.border) = (begin..middle, middle..self.blocks.len());
         tile.border_pairs = border_pairs..self.len();
-        tile.incoming.clear();
         self.arranger = arranger;
     }
 
@@ -446,12 +459,27 @@ impl<const D: usize> PairList<D> {
             *pair = source.second(*pair);
         }
         self.ends.extend(second.iter().map(|&disk| disk - origin));
+        self.extend_by(measured, count);
+    }
+
+    /// Adds what so many pairs have at the anchors.
+    pub(super) fn extend_by(&mut self, measured: &Measured<D>, count: usize) {
         for (column, measured) in self.separation.0.iter_mut().zip(&measured.separation) {
             column.extend_from_slice(&measured[..count]);
         }
         self.distance.extend_from_slice(&measured.distance[..count]);
         self.overlap.extend_from_slice(&measured.overlap[..count]);
         self.coefficient.extend_from_slice(&measured.coefficient[..count]);
+    }
+
+    /// What a pair has at the anchors, from a place of a block.
+    pub(super) fn set_pair(&mut self, pair: usize, (measured, place): (&Measured<D>, usize)) {
+        for (column, measured) in self.separation.0.iter_mut().zip(&measured.separation) {
+            column[pair] = measured[place];
+        }
+        self.distance[pair] = measured.distance[place];
+        self.overlap[pair] = measured.overlap[place];
+        self.coefficient[pair] = measured.coefficient[place];
     }
 }
 

@@ -32,9 +32,22 @@ pub(super) fn best_skin(radius: f64, way: f64) -> f64 {
 }
 
 impl<const D: usize> PairList<D> {
+    /// Adds the pairs of a wider list that it lacks, of marked disks that were listed anew. Nothing is done, and false returned, where
+    /// there are not places enough.
+    pub(super) fn amend_from(
+        &mut self,
+        whole: &PairList<D>,
+        marked: &[bool],
+        (listed, skin): (&[Vector<D>], f64),
+    ) -> bool {
+        let lacking = self.lacking(whole, marked, (listed, skin));
+        self.amend(&lacking, &mut Pruned { whole, displacements: listed, skin })
+    }
+
     /// Empties the list and fills it with the pairs of another one whose disks are nearer than reach + `skin`.
     pub(super) fn prune(&mut self, whole: &PairList<D>, displacements: &[Vector<D>], skin: f64) {
         self.first_count = whole.first_count;
+        self.keeps_places = whole.keeps_places;
         self.fill_tiles(whole.tiles.len(), whole.tile_size, |list, place, tile| {
             let blocks = &whole.tiles[place];
             list.add_blocks(

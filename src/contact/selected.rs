@@ -11,7 +11,7 @@ impl<const D: usize> PairList<D> {
     pub(crate) fn select(&mut self, whole: &PairList<D>, starts: &[u32], seconds: &[(u32, u32)]) {
         let disk_count = starts.len() - 1;
         // No two centres are the same in `whole`.
-        let _ = self.fill(disk_count, disk_count, || Selected { whole, starts, seconds });
+        let _ = self.fill((disk_count, disk_count), false, || Selected { whole, starts, seconds });
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::contact::pair_list::Block;
+
 /// A tile: its blocks, and what comes to its disks from others.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tile {
@@ -20,16 +22,19 @@ pub(super) struct Tile {
 /// Finds what comes to each tile from others, and what lies inside of it.
 ///
 /// # Shape
-/// `first` and `second` are the disks of all pairs of the list; tiles know their own.
-pub(super) fn connect(tiles: &mut [Tile], tile_size: usize, first: &[u32], second: &[u32]) {
+/// `blocks`, `first` and `second` are those of the list; tiles know their own.
+pub(super) fn connect(tiles: &mut [Tile], tile_size: usize, blocks: &[Block], (first, second): (&[u32], &[u32])) {
+    tiles.iter_mut().for_each(|tile| tile.incoming.clear());
     for tile in 0..tiles.len() {
-        for (place, pair) in tiles[tile].border_pairs.clone().enumerate() {
+        let begin = tiles[tile].border_pairs.start;
+        for pair in blocks[tiles[tile].border.clone()].iter().flat_map(Block::pairs) {
             let second = second[pair];
-            tiles[second as usize / tile_size].incoming.push((second, tile as u32, place as u32));
+            tiles[second as usize / tile_size].incoming.push((second, tile as u32, (pair - begin) as u32));
         }
     }
     for (place, tile) in tiles.iter_mut().enumerate() {
-        let touched = first[tile.border_pairs.clone()].iter().chain(tile.incoming.iter().map(|(disk, ..)| disk));
+        let own = blocks[tile.border.clone()].iter().flat_map(Block::pairs).map(|pair| &first[pair]);
+        let touched = own.chain(tile.incoming.iter().map(|(disk, ..)| disk));
         let mut touched: Vec<usize> = touched.map(|&disk| disk as usize - place * tile_size).collect();
         touched.sort_unstable();
         touched.push(tile_size);

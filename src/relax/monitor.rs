@@ -272,7 +272,8 @@ pub fn rounding_floor<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> 
 
 /// Mean force of the contacts between members, 0 where there are none \[force\].
 fn mean_force(links: &Links, members: &[bool]) -> f64 {
-    let of_members = links.ends.iter().zip(&links.forces).filter(|((a, b), _)| members[*a as usize] && members[*b as usize]);
+    let of_members =
+        links.ends.iter().zip(&links.forces).filter(|((a, b), _)| members[*a as usize] && members[*b as usize]);
     let (count, total) = of_members.fold((0usize, 0.0), |(count, total), (_, &force)| (count + 1, total + force));
     if count == 0 { 0.0 } else { total / count as f64 }
 }

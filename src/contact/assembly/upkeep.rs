@@ -10,7 +10,7 @@ use crate::side_by_side::{self, PIECE};
 use crate::vector::{Vector, larger, longest_difference_squared};
 
 /// How far a disk may go from where it was listed over the width of the skin: half of it, less the rounding of the comparison.
-const LISTED: f64 = 0.4999;
+pub(super) const LISTED: f64 = 0.4999;
 
 /// Calls of [`Assembly::keep_listed`] after which the way of the disks is looked at for the first time; then at twice as many.
 const FIRST_LOOK: usize = 16;
@@ -62,7 +62,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         if self.moved <= limit && !looks {
             return Ok(false);
         }
-        let largest = self.longest_way(&self.listed);
+        let largest = self.longest_way(self.listed_in_use());
         if largest.is_nan() {
             // Not a position any more: the forces are NaN too, and the relaxer stops on them.
             return Ok(false);
@@ -73,7 +73,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             return Ok(false);
         }
         if !spent {
-            let way = self.longest_way(&self.seen) / (self.age - self.seen_at) as f64;
+            let way = self.felt_way(&self.seen) / (self.age - self.seen_at) as f64;
             self.seen.clone_from(&self.displacements);
             (self.seen_at, self.look_at) = (self.age, 2 * self.age);
             let best = best_skin(self.smallest_radius, way);
@@ -83,10 +83,13 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             }
             return Ok(narrower);
         }
-        let way = if self.prunes { self.moved / self.age as f64 } else { f64::INFINITY };
+
+        if self.prunes && self.amend() {
+            return Ok(true);
+        }
+        let way = if self.prunes { self.felt_way(self.listed_in_use()) / self.age as f64 } else { f64::INFINITY };
         let best = best_skin(self.smallest_radius, way);
-        // Anchors are where the list of all pairs was made.
-        let moved = self.longest_displacement();
+        let moved = self.longest_way(&self.listed);
         if self.near_skin.is_none() || moved > LISTED * self.skin {
             self.rebuild()?;
             if best < WIDEST_NEAR * self.skin {
@@ -99,14 +102,13 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
                 self.prune(best.min(longest));
             } else {
                 (self.near_skin, self.moved) = (None, moved);
-                self.listed.fill([0.0; D]);
             }
         }
         Ok(true)
     }
 
     /// The longest way of a mobile disk from where it was \[length\]; NaN if one is.
-    fn longest_way(&self, from: &[Vector<D>]) -> f64 {
+    pub(super) fn longest_way(&self, from: &[Vector<D>]) -> f64 {
         let mobile = &self.displacements[..self.mobile_count];
         let pieces = mobile.chunks(PIECE).zip(from[..self.mobile_count].chunks(PIECE));
         let squares = side_by_side::each(pieces, |(now, before)| longest_difference_squared(now, before));
@@ -117,14 +119,27 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     fn prune(&mut self, skin: f64) {
         self.near_pairs.prune(&self.pairs, &self.displacements, skin);
         self.near_skin = Some(skin);
+        self.near_listed.clone_from(&self.displacements);
+        self.begin_list();
+    }
+
+    /// The list of all pairs is new.
+    pub(super) fn begin_all(&mut self) {
+        self.near_skin = None;
+        self.listed.clone_from(&self.displacements);
+        self.roaming.clear();
         self.begin_list();
     }
 
     /// The list in use is new.
     pub(super) fn begin_list(&mut self) {
-        self.listed.clone_from(&self.displacements);
         self.moved = 0.0;
         self.prune_lists(self.prunes);
+    }
+
+    /// Where the disks were when the list in use was made, or listed anew.
+    fn listed_in_use(&self) -> &[Vector<D>] {
+        if self.near_skin.is_some() { &self.near_listed } else { &self.listed }
     }
 
     /// Width of the skin of the list in use \[length\].

@@ -1,0 +1,161 @@
+//! Pairs added to a list for the few disks that went far, so that it lasts for the others.
+//!
+//! ```text
+//! |x_i − x_j| < R_i + R_j + s     x: where a disk was listed last;  complete while no disk is farther than s/2 from there
+//! ```
+//!
+//! In a large packing some disks in a thousand go far at every time, rattlers mostly, and a list would end with the fastest of them. In place
+//! of that it gets the pairs they lack where they are now, which becomes where they were listed. Tiles keep places for such pairs: a
+//! block or two that are empty to begin with.
+
+use std::ops::Range;
+
+use crate::contact::pair_list::{BLOCK, Block, Measured, PairList, Source};
+use crate::contact::tiles::connect;
+use crate::vector::{Vector, dot};
+
+/// Fewest disks of a list that keeps places: a list of fewer is made quickly, and has few disks that go far.
+const FEWEST: usize = 4096;
+
+/// Blocks of a tile that are empty to begin with: within it, and across its border.
+const INNER: usize = 2;
+const BORDER: usize = 1;
+
+/// Separation of no pair: a gap that no way closes, and whose square is a number.
+const NOWHERE: f64 = 1e100;
+
+/// A pair to be added: its disks, and how its source names it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Lacking {
+    pub first: u32,
+    pub second: u32,
+    pub name: u32,
+}
+
+impl<const D: usize> PairList<D> {
+    /// Whether a list of so many disks keeps places for pairs to come.
+    pub(super) fn keeps_places(disk_count: usize) -> bool {
+        disk_count >= FEWEST
+    }
+
+    /// Adds the empty blocks within a tile, which begins with disk `origin`, or across its border.
+    pub(super) fn add_places(&mut self, origin: u32, border: bool) {
+        for _ in 0..if border { BORDER } else { INNER } {
+            let (pairs, rows) = (self.len(), self.rows.len());
+            let whole = pairs + BLOCK;
+            let origin = if border { 0 } else { origin };
+            self.blocks.push(Block { pairs, pair_count: 0, rows, row_count: 0, row_length: 1, origin });
+            self.rows.resize(rows + BLOCK, 0);
+            for column in [&mut self.first, &mut self.second, &mut self.ends] {
+                column.resize(whole, 0);
+            }
+            let nowhere = Measured {
+                separation: [[NOWHERE; BLOCK]; D],
+                distance: [NOWHERE * (D as f64).sqrt(); BLOCK],
+                overlap: [-NOWHERE * (D as f64).sqrt(); BLOCK],
+                coefficient: [1.0; BLOCK],
+            };
+            self.extend_by(&nowhere, BLOCK);
+        }
+    }
+
+    /// Pairs that have a marked disk.
+    pub(super) fn pairs_of(&self, marked: &[bool], found: &mut Vec<Lacking>) {
+        found.clear();
+        for block in &self.blocks {
+            for pair in block.pairs..block.pairs + block.pair_count {
+                let (first, second) = (self.first[pair], self.second[pair]);
+                if marked[first as usize] | marked[second as usize] {
+                    found.push(Lacking { first, second, name: pair as u32 });
+                }
+            }
+        }
+    }
+
+    /// Of the pairs of a wider list that have a marked disk, those that this one lacks and that are nearer than reach + `skin` where their
+    /// disks were `listed`.
+    pub(super) fn lacking(
+        &self,
+        whole: &PairList<D>,
+        marked: &[bool],
+        (listed, skin): (&[Vector<D>], f64),
+    ) -> Vec<Lacking> {
+        let (mut lacking, mut had) = (Vec::new(), Vec::new());
+        whole.pairs_of(marked, &mut lacking);
+        lacking.retain(|&Lacking { first, second, name }| {
+            let (pair, a, b) = (name as usize, listed[first as usize], listed[second as usize]);
+            let anchored = whole.separation.of(pair);
+            let apart: Vector<D> = std::array::from_fn(|d| anchored[d] + (a[d] - b[d]));
+            let range = whole.distance[pair] + whole.overlap[pair] + skin;
+            dot(apart, apart) < range * range
+        });
+        self.pairs_of(marked, &mut had);
+        without(&mut lacking, &mut had);
+        lacking
+    }
+
+    /// Adds pairs the list lacks, in the order given. Nothing is done, and false returned, where there are not places enough.
+    pub(super) fn amend(&mut self, lacking: &[Lacking], source: &mut impl Source<D>) -> bool {
+        // Which block each of them goes to; blocks that it fills are not used any more.
+        let mut taken = vec![0; self.blocks.len()];
+        let mut places = Vec::with_capacity(lacking.len());
+        for &Lacking { first, second, .. } in lacking {
+            let tile = first as usize / self.tile_size;
+            let inside = tile == second as usize / self.tile_size;
+            let mut blocks = places_of(&self.tiles[tile].inner, INNER);
+            if !inside {
+                blocks = places_of(&self.tiles[tile].border, BORDER);
+            }
+            let free = |&place: &usize| self.blocks[place].pair_count + taken[place] < BLOCK;
+            let Some(place) = blocks.into_iter().find(free) else { return false };
+            taken[place] += 1;
+            places.push(place);
+        }
+        let mut measured = Measured::default();
+        for (lacking, places) in lacking.chunks(BLOCK).zip(places.chunks(BLOCK)) {
+            let first: Vec<u32> = lacking.iter().map(|pair| pair.first).collect();
+            let names: Vec<u32> = lacking.iter().map(|pair| pair.name).collect();
+            source.measure(&first, &names, &mut measured);
+            for (k, (pair, &place)) in lacking.iter().zip(places).enumerate() {
+                self.put(*pair, place, (&measured, k));
+            }
+        }
+        self.connect();
+        true
+    }
+
+    /// Puts a pair in a block that has a place for it.
+    fn put(&mut self, pair: Lacking, block: usize, measured: (&Measured<D>, usize)) {
+        let block = &mut self.blocks[block];
+        let (place, row) = (block.pairs + block.pair_count, block.rows + block.row_count);
+        block.pair_count += 1;
+        block.row_count += 1;
+        let origin = block.origin;
+        (self.first[place], self.second[place]) = (pair.first, pair.second);
+        (self.rows[row], self.ends[place]) = (pair.first - origin, pair.second - origin);
+        self.set_pair(place, measured);
+    }
+
+    /// Finds what comes to each tile from others.
+    pub(super) fn connect(&mut self) {
+        connect(&mut self.tiles, self.tile_size, &self.blocks, (&self.first, &self.second));
+        self.turns.take(&self.tiles, |pair| {
+            let second = self.second[pair] as usize;
+            (second < self.first_count).then_some(second / self.tile_size)
+        });
+    }
+}
+
+/// The last ones of the blocks of a tile, which were empty to begin with.
+fn places_of(blocks: &Range<usize>, count: usize) -> Range<usize> {
+    blocks.end - count..blocks.end
+}
+
+/// Takes pairs from others that are had already, and leaves each of the rest once, sorted.
+pub(super) fn without(lacking: &mut Vec<Lacking>, had: &mut [Lacking]) {
+    let disks = |pair: &Lacking| (pair.first, pair.second);
+    had.sort_unstable();
+    lacking.sort_unstable();
+    lacking.dedup_by_key(|pair| disks(pair));
+    lacking.retain(|pair| had.binary_search_by_key(&disks(pair), disks).is_err());
+}

@@ -1,0 +1,125 @@
+//! The few disks that go far while the others hardly move: they are listed anew, so that a list lasts for the others.
+
+use crate::contact::assembly::Assembly;
+use crate::contact::assembly::upkeep::LISTED;
+use crate::contact::law::PairLaw;
+use crate::contact::neighbours::{Disks, amend_pairs};
+use crate::vector::{Vector, difference, dot};
+
+/// A disk has gone far if it went this share of the way for which its list holds \[1\].
+const FAR: f64 = 0.5;
+
+/// Disks of which one may go far.
+const ONE_OF: usize = 256;
+
+/// Time of amending near pairs over that of picking them \[1\].
+const AMENDING: f64 = 0.4;
+
+/// Time of picking near pairs of large lists over what it gains, over that of small ones \[1\].
+const PICKING: f64 = 3.5;
+
+impl<const D: usize, L: PairLaw> Assembly<D, L> {
+    /// Lists the disks that went far anew, if they are few, and adds the pairs that the list in use lacks then. False if that cannot be: near
+    /// pairs are not good any more then, and the list of all pairs is as it was.
+    pub(super) fn amend(&mut self) -> bool {
+        let Some(skin) = self.near_skin else {
+            let amended = self.amend_all();
+            if amended {
+                self.begin_list();
+            }
+            self.moved = self.longest_way(&self.listed);
+            return amended;
+        };
+        if self.longest_way(&self.listed) > FAR * LISTED * self.skin && !self.amend_all() {
+            return false;
+        }
+        // Near pairs are looked for in the list of all pairs, so they must be nearer in that one too. It listed the far disk where it was no
+        // farther from here than the longest way, and another one no farther from where it is near than that and half a near skin.
+        if 2.0 * self.longest_way(&self.listed) + 1.5 * skin > self.skin {
+            return false;
+        }
+        let Some(far) = self.far_from(&self.near_listed, skin) else { return false };
+        for &disk in &far {
+            self.near_listed[disk as usize] = self.displacements[disk as usize];
+        }
+        let marked = self.marked(&far);
+        self.moved = self.longest_way(&self.near_listed);
+        self.near_pairs.amend_from(&self.pairs, &marked, (&self.near_listed, skin))
+    }
+
+    /// The same for the list of all pairs.
+    fn amend_all(&mut self) -> bool {
+        let Some(far) = self.far_from(&self.listed, self.skin) else { return false };
+        let (mut listed, mut roaming) = (self.listed.clone(), self.roaming.clone());
+        for &disk in &far {
+            listed[disk as usize] = self.displacements[disk as usize];
+        }
+        roaming.extend(&far);
+        roaming.sort_unstable();
+        roaming.dedup();
+        if roaming.len() > self.len() / ONE_OF {
+            return false;
+        }
+        let marked = self.marked(&far);
+        let law = self.law;
+        let disks = Disks {
+            domain: &self.domain,
+            anchors: &self.anchors,
+            displacements: &self.displacements,
+            radii: &self.radii,
+            mobile_count: self.mobile_count,
+        };
+        let coefficient = |a, b| law.coefficient(a, b);
+        let (listing, who) = ((&disks, listed.as_slice()), (roaming.as_slice(), marked.as_slice()));
+        let amended = amend_pairs(listing, who, self.skin, coefficient, &self.list_room, &mut self.pairs);
+        if amended {
+            (self.listed, self.roaming) = (listed, roaming);
+        }
+        amended
+    }
+
+    /// The mobile disks that went far from where they were, if they are few and the list may be amended.
+    fn far_from(&self, listed: &[Vector<D>], skin: f64) -> Option<Vec<u32>> {
+        if !self.pairs.keeps_places {
+            return None;
+        }
+        let limit = FAR * LISTED * skin;
+        let mobile = self.displacements[..self.mobile_count].iter().zip(listed).enumerate();
+        let far = mobile.filter(|&(_, (&now, &before))| {
+            let way = difference(now, before);
+            dot(way, way) > limit * limit
+        });
+        let most = self.len() / ONE_OF;
+        let far: Vec<u32> = far.map(|(disk, _)| disk as u32).take(most + 1).collect();
+        (far.len() <= most).then_some(far)
+    }
+
+    fn marked(&self, disks: &[u32]) -> Vec<bool> {
+        let mut marked = vec![false; self.len()];
+        disks.iter().for_each(|&disk| marked[disk as usize] = true);
+        marked
+    }
+
+    /// The way from where they were by which disks wear near pairs out: as much less by those that roam as amending takes less than
+    /// picking; for large lists more, as picking takes longer there.
+    pub(super) fn felt_way(&self, from: &[Vector<D>]) -> f64 {
+        let longest = self.longest_way(from);
+        if self.pairs.keeps_places { PICKING * (self.common_way(from) + AMENDING * longest) } else { longest }
+    }
+
+    /// The way from where they were that all mobile disks but a few, which may roam, did not exceed \[length\].
+    pub(super) fn common_way(&self, from: &[Vector<D>]) -> f64 {
+        if !self.pairs.keeps_places || self.mobile_count == 0 {
+            return self.longest_way(from);
+        }
+        let mobile = self.displacements[..self.mobile_count].iter().zip(from);
+        let mut squares: Vec<f64> = mobile
+            .map(|(&now, &before)| {
+                let way = difference(now, before);
+                dot(way, way)
+            })
+            .collect();
+        let place = squares.len() - 1 - squares.len() / (2 * ONE_OF);
+        squares.select_nth_unstable_by(place, f64::total_cmp).1.sqrt()
+    }
+}
