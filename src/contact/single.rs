@@ -282,7 +282,8 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Pressed<'_, D, L> {
     ) -> &'a [[f32; D]; BLOCK] {
         gather(&mut columns.pull, self.pairs, &self.pairs.blocks[block], ways);
         let (law, listed) = (self.law, &self.blocks[block]);
-        pulp::Arch::new().dispatch(Arithmetic { law, listed, columns, asks: self.pairs.tiles.len() > 1 });
+        let (pair_count, asks) = (self.pairs.blocks[block].pair_count, self.pairs.tiles.len() > 1);
+        pulp::Arch::new().dispatch(Arithmetic { law, listed, columns, pair_count, asks });
         &columns.pull
     }
 }
@@ -306,6 +307,7 @@ struct Arithmetic<'a, const D: usize, L> {
     law: &'a L,
     listed: &'a Rounded<D>,
     columns: &'a mut Columns<D>,
+    pair_count: usize,
     /// Whether a later block is asked for meanwhile: it is far away where there are many.
     asks: bool,
 }
@@ -315,8 +317,8 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Arithmetic { law, listed, columns, asks } = self;
-        let count = BLOCK / S::F32_LANES;
+        let Arithmetic { law, listed, columns, pair_count, asks } = self;
+        let count = pair_count.div_ceil(S::F32_LANES).min(BLOCK / S::F32_LANES);
         let read = |column| &S::as_simd_f32s(column).0[..count];
         let (zero, one) = (simd.splat_f32s(0.0), simd.splat_f32s(1.0));
         let pull = &mut S::as_mut_simd_f32s(columns.pull.as_flattened_mut()).0[..D * count];
@@ -391,8 +393,15 @@ mod tests {
         let law = Hertzian::default();
         for asks in [false, true] {
             let [mut widest, mut scalar] = [(); 2].map(|()| Columns { pull, ..Columns::new() });
-            pulp::Arch::new().dispatch(Arithmetic { law: &law, listed: &listed, columns: &mut widest, asks });
-            let alone = Arithmetic { law: &law, listed: &listed, columns: &mut scalar, asks };
+            let pair_count = BLOCK;
+            pulp::Arch::new().dispatch(Arithmetic {
+                law: &law,
+                listed: &listed,
+                columns: &mut widest,
+                pair_count,
+                asks,
+            });
+            let alone = Arithmetic { law: &law, listed: &listed, columns: &mut scalar, pair_count, asks };
             pulp::WithSimd::with_simd(alone, pulp::Scalar::new());
             let bits = |columns: &Columns<2>| columns.pull.map(|pull| pull.map(f32::to_bits));
             assert_eq!(bits(&widest), bits(&scalar));

@@ -176,4 +176,5 @@ mod derivatives;
 mod invariance;
 mod network;
 mod refusals;
+mod roaming;
 mod single;

@@ -1,0 +1,92 @@
+//! Disks that go far in a large packing: its list is amended for them, and misses no contact.
+
+use super::*;
+use crate::scenes::tiled::tiled;
+use jamscope::io::read_packing;
+
+/// 22192 disks in three tiles, a few of which, side by side where two tiles meet, go through each other and the rest, straight on, each in a
+/// direction of its own.
+struct Crossing {
+    assembly: Assembly<2, Hertzian>,
+    roaming: Vec<usize>,
+    /// Ways of those and of the others a step.
+    ways: (f64, f64),
+    steps: usize,
+}
+
+impl Crossing {
+    fn new(count: usize, ways: (f64, f64)) -> Self {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N5548_p100.xyz");
+        let packing = tiled(&read_packing::<2>(file).expect("a stored packing"), 2).expect("a periodic packing");
+        let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("no coincidence");
+        assembly.prune_lists(true);
+        // Tiles have 8192 disks, in rows from below.
+        let sides = packing.domain().lengths().expect("a periodic packing");
+        let middle = [0.5 * sides[0], sides[1] * 8192.0 / packing.len() as f64];
+        let away = |&disk: &usize| norm(difference(assembly.place(disk), middle));
+        let mut roaming: Vec<usize> = (0..packing.len()).collect();
+        roaming.sort_by(|one, two| away(one).total_cmp(&away(two)));
+        roaming.truncate(count);
+        Crossing { assembly, roaming, ways, steps: 0 }
+    }
+
+    fn step(&mut self) {
+        let mobile = self.assembly.mobile_count();
+        let direction = |disk: usize| [(1.7 * disk as f64).cos(), (1.7 * disk as f64).sin()];
+        for disk in 0..mobile {
+            // There and back again for the others.
+            let way = if self.steps / 50 % 2 == 0 { self.ways.1 } else { -self.ways.1 };
+            let displacement = &mut self.assembly.displacements[disk];
+            *displacement = sum(*displacement, direction(disk).map(|along| way * along));
+        }
+        for &disk in &self.roaming {
+            let displacement = &mut self.assembly.displacements[disk];
+            *displacement = sum(*displacement, direction(disk).map(|along| self.ways.0 * along));
+        }
+        self.steps += 1;
+        self.assembly.keep_listed(self.ways.0 + self.ways.1).expect("no coincidence");
+    }
+
+    /// Contacts and forces of the list as it is are those of one made anew.
+    fn check(&self) {
+        let [mut amended, mut anew] = [self.assembly.clone(), self.assembly.clone()];
+        anew.reanchor().expect("no coincidence");
+        let (found, expected) = (amended.evaluate_totals(), anew.evaluate_totals());
+        assert_eq!(found.contact_count, expected.contact_count, "step {}", self.steps);
+        // Sums of some 50 000 terms in another order, those of the disks that went far known to ulps of ways of several radii.
+        assert!((found.energy - expected.energy).abs() < 1e-12 * expected.energy, "step {}", self.steps);
+        let largest = amended.forces.iter().map(|&force| norm(force)).fold(0.0, f64::max);
+        for (one, two) in amended.forces.iter().zip(&anew.forces) {
+            // Overlaps known to 4 u of ways up to 10 radii, over overlaps of a tenth and less where forces are large.
+            assert!(norm(difference(*one, *two)) < 1e-13 * largest, "step {}: {one:?} {two:?}", self.steps);
+        }
+    }
+}
+
+#[test]
+fn a_list_amended_for_disks_that_go_far_misses_no_contact() {
+    let mut crossing = Crossing::new(60, (0.03, 0.0));
+    for step in 1..=140 {
+        crossing.step();
+        if step % 7 == 0 {
+            crossing.check();
+        }
+    }
+    // Some eight ways of half a skin, for each of which a list would be made.
+    assert!(crossing.assembly.rebuild_count() <= 4, "{} lists", crossing.assembly.rebuild_count());
+}
+
+#[test]
+fn near_pairs_amended_for_disks_that_go_far_miss_no_contact() {
+    let mut crossing = Crossing::new(40, (2e-4, 1e-6));
+    let (all, mut near) = (crossing.assembly.pairs().len(), 0);
+    for step in 1..=1500 {
+        crossing.step();
+        near += usize::from(crossing.assembly.pairs().len() < all * 9 / 10);
+        if step % 75 == 0 {
+            crossing.check();
+        }
+    }
+    assert_eq!(crossing.assembly.rebuild_count(), 1);
+    assert!(near > 1000, "near pairs in {near} of 1500 steps");
+}
