@@ -6,7 +6,7 @@
 //!
 //! In a large packing some disks in a thousand go far at every time, rattlers mostly, and a list would end with the fastest of them. In place
 //! of that it gets the pairs they lack where they are now, which becomes where they were listed. Tiles keep places for such pairs: a
-//! block or two that are empty to begin with.
+//! few blocks that are empty to begin with.
 
 use std::ops::Range;
 
@@ -18,8 +18,8 @@ use crate::vector::{Vector, dot};
 const FEWEST: usize = 4096;
 
 /// Blocks of a tile that are empty to begin with: within it, and across its border.
-const INNER: usize = 2;
-const BORDER: usize = 1;
+const INNER: usize = 4;
+const BORDER: usize = 2;
 
 /// Separation of no pair: a gap that no way closes, and whose square is a number.
 const NOWHERE: f64 = 1e100;

@@ -259,7 +259,10 @@ pub(super) fn amend_pairs<const D: usize>(
             let mut apart = difference(point, at(other));
             if let Some(lengths) = lengths {
                 for d in 0..D {
-                    apart[d] -= (apart[d] / lengths[d]).round_ties_even() * lengths[d];
+                    // Most are near as they are.
+                    if 2.0 * apart[d].abs() > lengths[d] {
+                        apart[d] -= (apart[d] / lengths[d]).round_ties_even() * lengths[d];
+                    }
                 }
             }
             let range = reach + disks.radii[other as usize];

@@ -9,14 +9,21 @@ use crate::vector::{Vector, difference, dot};
 /// A disk has gone far if it went this share of the way for which its list holds \[1\].
 const FAR: f64 = 0.5;
 
-/// Disks of which one may go far.
-const ONE_OF: usize = 256;
+/// Disks of which one may go far at once, and one may have been listed anew since a list was made.
+const ONE_OF: usize = 128;
+const ROAMING_ONE_OF: usize = 64;
+
+/// Most of the latter: each that goes far is compared with all of them.
+const MOST_ROAMING: usize = 4096;
 
 /// Time of amending near pairs over that of picking them \[1\].
 const AMENDING: f64 = 0.4;
 
 /// Time of picking near pairs of large lists over what it gains, over that of small ones \[1\].
 const PICKING: f64 = 3.5;
+
+/// Disks of which one may go farther than the way that is common to the others.
+const COMMON_BUT_ONE_OF: usize = 512;
 
 impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Lists the disks that went far anew, if they are few, and adds the pairs that the list in use lacks then. False if that cannot be: near
@@ -57,7 +64,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         roaming.extend(&far);
         roaming.sort_unstable();
         roaming.dedup();
-        if roaming.len() > self.len() / ONE_OF {
+        if roaming.len() > MOST_ROAMING.min(self.len() / ROAMING_ONE_OF) {
             return false;
         }
         let marked = self.marked(&far);
@@ -119,7 +126,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
                 dot(way, way)
             })
             .collect();
-        let place = squares.len() - 1 - squares.len() / (2 * ONE_OF);
+        let place = squares.len() - 1 - squares.len() / COMMON_BUT_ONE_OF;
         squares.select_nth_unstable_by(place, f64::total_cmp).1.sqrt()
     }
 }

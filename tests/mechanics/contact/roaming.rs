@@ -35,7 +35,7 @@ impl Crossing {
         let direction = |disk: usize| [(1.7 * disk as f64).cos(), (1.7 * disk as f64).sin()];
         for disk in 0..mobile {
             // There and back again for the others.
-            let way = if self.steps / 50 % 2 == 0 { self.ways.1 } else { -self.ways.1 };
+            let way = if (self.steps / 50).is_multiple_of(2) { self.ways.1 } else { -self.ways.1 };
             let displacement = &mut self.assembly.displacements[disk];
             *displacement = sum(*displacement, direction(disk).map(|along| way * along));
         }
