@@ -21,6 +21,7 @@ mod scene_file;
 #[path = "cli/study.rs"]
 mod study;
 
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -118,7 +119,8 @@ fn main() -> ExitCode {
         Some(Command::Precision(arguments)) => precision::run(&arguments),
     };
     result.unwrap_or_else(|error| {
-        eprintln!("jamscope: {error}");
+        // Nobody may be there to read it: the exit code tells as well.
+        let _ = writeln!(std::io::stderr(), "jamscope: {error}");
         ExitCode::FAILURE
     })
 }
@@ -199,7 +201,6 @@ fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
 
 /// Prints to the standard output; a reader that has gone away (`| head`) is no failure.
 fn print(text: &str) -> Result<ExitCode, Failure> {
-    use std::io::Write;
     match std::io::stdout().lock().write_all(text.as_bytes()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(ExitCode::SUCCESS),

@@ -38,12 +38,20 @@ impl<const D: usize> PairList<D> {
         disk_count >= FEWEST
     }
 
-    /// Adds the empty blocks within a tile, which begins with disk `origin`, or across its border.
-    pub(super) fn add_places(&mut self, origin: u32, border: bool) {
-        for _ in 0..if border { BORDER } else { INNER } {
+    /// Adds the empty blocks within a tile, whose rows are counted from disk `origin`.
+    pub(super) fn add_inner_places(&mut self, origin: u32) {
+        self.add_places(origin, INNER);
+    }
+
+    /// Adds the empty blocks across the border of a tile.
+    pub(super) fn add_border_places(&mut self) {
+        self.add_places(0, BORDER);
+    }
+
+    fn add_places(&mut self, origin: u32, count: usize) {
+        for _ in 0..count {
             let (pairs, rows) = (self.len(), self.rows.len());
             let whole = pairs + BLOCK;
-            let origin = if border { 0 } else { origin };
             self.blocks.push(Block { pairs, pair_count: 0, rows, row_count: 0, row_length: 1, origin });
             self.rows.resize(rows + BLOCK, 0);
             for column in [&mut self.first, &mut self.second, &mut self.ends] {
@@ -96,18 +104,16 @@ impl<const D: usize> PairList<D> {
 
     /// Adds pairs the list lacks, in the order given. Nothing is done, and false returned, where there are not places enough.
     pub(super) fn amend(&mut self, lacking: &[Lacking], source: &mut impl Source<D>) -> bool {
-        // Which block each of them goes to; blocks that it fills are not used any more.
+        // The block each of them goes to, before anything is written.
         let mut taken = vec![0; self.blocks.len()];
         let mut places = Vec::with_capacity(lacking.len());
         for &Lacking { first, second, .. } in lacking {
             let tile = first as usize / self.tile_size;
             let inside = tile == second as usize / self.tile_size;
-            let mut blocks = places_of(&self.tiles[tile].inner, INNER);
-            if !inside {
-                blocks = places_of(&self.tiles[tile].border, BORDER);
-            }
+            let tile = &self.tiles[tile];
+            let mut blocks = if inside { places_of(&tile.inner, INNER) } else { places_of(&tile.border, BORDER) };
             let free = |&place: &usize| self.blocks[place].pair_count + taken[place] < BLOCK;
-            let Some(place) = blocks.into_iter().find(free) else { return false };
+            let Some(place) = blocks.find(free) else { return false };
             taken[place] += 1;
             places.push(place);
         }

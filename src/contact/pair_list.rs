@@ -199,12 +199,12 @@ impl Waiting {
 }
 
 impl<const D: usize> PairList<D> {
-    /// Number of pairs.
+    /// Number of pairs, with the places that are kept for pairs to come: gaps that nothing closes.
     pub fn len(&self) -> usize {
         self.first.len()
     }
 
-    /// Whether no pair may touch.
+    /// Whether there is no pair, and no place for one.
     pub fn is_empty(&self) -> bool {
         self.first.is_empty()
     }
@@ -310,14 +310,14 @@ impl<const D: usize> PairList<D> {
         inner(self, &mut arranger, source);
         self.close_group(&mut arranger, source);
         if self.keeps_places {
-            self.add_places(arranger.origin, false);
+            self.add_inner_places(arranger.origin);
         }
         let (middle, border_pairs) = (self.blocks.len(), self.len());
         arranger.origin = 0;
         border(self, &mut arranger, source);
         self.close_group(&mut arranger, source);
         if self.keeps_places {
-            self.add_places(0, true);
+            self.add_border_places();
         }
         (tile.inner, tile.border) = (begin..middle, middle..self.blocks.len());
         tile.border_pairs = border_pairs..self.len();

@@ -31,6 +31,23 @@ fn complaint(arguments: &[&str]) -> String {
     String::from_utf8(output.stderr).expect("Unicode") + &String::from_utf8(output.stdout).expect("Unicode")
 }
 
+/// An end to write to whose reader has gone away.
+fn unread() -> std::io::PipeWriter {
+    let (reader, writer) = std::io::pipe().expect("a pipe");
+    drop(reader);
+    writer
+}
+
+#[test]
+fn a_reader_that_has_gone_away_changes_no_exit_code() {
+    let status = |arguments: &[&str]| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_jamscope"));
+        program.args(arguments).stdout(unread()).stderr(unread()).status().expect("the program starts").code()
+    };
+    assert_eq!(status(&["scene"]), Some(0));
+    assert_eq!(status(&["inspect", "no_such_packing.xyz"]), Some(1));
+}
+
 #[test]
 fn inspect_gives_the_stored_numbers_of_every_packing() {
     let expected: Value =
