@@ -4,25 +4,20 @@ use super::*;
 use crate::scenes::tiled::tiled;
 use jamscope::io::read_packing;
 
-/// 22192 disks in three tiles, a few of which, side by side where two tiles meet, go through each other and the rest, straight on, each in a
-/// direction of its own.
-struct Crossing {
-    assembly: Assembly<2, Hertzian>,
+/// A packing a few disks of which, side by side, go through each other and the rest, straight on, each in a direction of its own.
+struct Crossing<const D: usize> {
+    assembly: Assembly<D, Hertzian>,
     roaming: Vec<usize>,
     /// Ways of those and of the others a step.
     ways: (f64, f64),
     steps: usize,
 }
 
-impl Crossing {
-    fn new(count: usize, ways: (f64, f64)) -> Self {
-        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N5548_p100.xyz");
-        let packing = tiled(&read_packing::<2>(file).expect("a stored packing"), 2).expect("a periodic packing");
-        let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("no coincidence");
+impl<const D: usize> Crossing<D> {
+    /// The `count` disks nearest to `middle`, seen from the corner of the box, go far.
+    fn new(packing: &Packing<D>, (count, middle): (usize, Vector<D>), ways: (f64, f64)) -> Self {
+        let mut assembly = Assembly::new(packing, Hertzian::default()).expect("no coincidence");
         assembly.prune_lists(true);
-        // Tiles have 8192 disks, in rows from below.
-        let sides = packing.domain().lengths().expect("a periodic packing");
-        let middle = [0.5 * sides[0], sides[1] * 8192.0 / packing.len() as f64];
         let away = |&disk: &usize| norm(difference(assembly.place(disk), middle));
         let mut roaming: Vec<usize> = (0..packing.len()).collect();
         roaming.sort_by(|one, two| away(one).total_cmp(&away(two)));
@@ -32,7 +27,9 @@ impl Crossing {
 
     fn step(&mut self) {
         let mobile = self.assembly.mobile_count();
-        let direction = |disk: usize| [(1.7 * disk as f64).cos(), (1.7 * disk as f64).sin()];
+        // Components of 1 and less: √D times the way at most.
+        let direction =
+            |disk: usize| -> Vector<D> { std::array::from_fn(|d| (1.7 * disk as f64 + 2.0 * d as f64).cos()) };
         for disk in 0..mobile {
             // There and back again for the others.
             let way = if (self.steps / 50).is_multiple_of(2) { self.ways.1 } else { -self.ways.1 };
@@ -44,7 +41,7 @@ impl Crossing {
             *displacement = sum(*displacement, direction(disk).map(|along| self.ways.0 * along));
         }
         self.steps += 1;
-        self.assembly.keep_listed(self.ways.0 + self.ways.1).expect("no coincidence");
+        self.assembly.keep_listed((D as f64).sqrt() * (self.ways.0 + self.ways.1)).expect("no coincidence");
     }
 
     /// Contacts and forces of the list as it is are those of one made anew.
@@ -63,9 +60,26 @@ impl Crossing {
     }
 }
 
+/// 22192 disks in three tiles, and where two of these meet: tiles have 8192 disks, in rows from below.
+fn three_tiles() -> (Packing<2>, Vector<2>) {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N5548_p100.xyz");
+    let packing = tiled(&read_packing::<2>(file).expect("a stored packing"), 2).expect("a periodic packing");
+    let sides = packing.domain().lengths().expect("a periodic packing");
+    let middle = [0.5 * sides[0], sides[1] * 8192.0 / packing.len() as f64];
+    (packing, middle)
+}
+
+/// 4913 balls on a cubic lattice, pressed by a fiftieth of a diameter.
+fn balls() -> Packing<3> {
+    let place = |ball: usize| [ball % 17, ball / 17 % 17, ball / 289].map(|along| 0.98 * along as f64);
+    let domain = Domain::Periodic { corner: [0.0; 3], lengths: [17.0 * 0.98; 3] };
+    Packing::new(domain, (0..4913).map(place).collect(), vec![0.5; 4913]).expect("a packing")
+}
+
 #[test]
 fn a_list_amended_for_disks_that_go_far_misses_no_contact() {
-    let mut crossing = Crossing::new(60, (0.03, 0.0));
+    let (packing, middle) = three_tiles();
+    let mut crossing = Crossing::new(&packing, (60, middle), (0.03, 0.0));
     for step in 1..=140 {
         crossing.step();
         if step % 7 == 0 {
@@ -77,8 +91,22 @@ fn a_list_amended_for_disks_that_go_far_misses_no_contact() {
 }
 
 #[test]
+fn so_does_one_of_balls() {
+    // Through the corner of the box, where images meet.
+    let mut crossing = Crossing::new(&balls(), (16, [0.0; 3]), (0.03, 0.0));
+    for step in 1..=140 {
+        crossing.step();
+        if step % 7 == 0 {
+            crossing.check();
+        }
+    }
+    assert!(crossing.assembly.rebuild_count() <= 4, "{} lists", crossing.assembly.rebuild_count());
+}
+
+#[test]
 fn near_pairs_amended_for_disks_that_go_far_miss_no_contact() {
-    let mut crossing = Crossing::new(40, (2e-4, 1e-6));
+    let (packing, middle) = three_tiles();
+    let mut crossing = Crossing::new(&packing, (40, middle), (1e-4, 1e-6));
     let (all, mut near) = (crossing.assembly.pairs().len(), 0);
     for step in 1..=1500 {
         crossing.step();
