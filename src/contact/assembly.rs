@@ -336,26 +336,31 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
                 }
             }
         });
-        let disks = Disks {
+        let law = self.law;
+        let (mut pairs, mut room) = (std::mem::take(&mut self.pairs), std::mem::take(&mut self.list_room));
+        let built = build_pairs(&self.disks(), self.skin, |a, b| law.coefficient(a, b), &mut room, &mut pairs);
+        (self.pairs, self.list_room) = (pairs, room);
+        built.map_err(|error| match error {
+            PackingError::CoincidentCentres { first, second } => {
+                let (a, b) = (self.order[first] as usize, self.order[second] as usize);
+                PackingError::CoincidentCentres { first: a.min(b), second: a.max(b) }
+            }
+            other => other,
+        })?;
+        self.begin_all();
+        self.rebuild_count += 1;
+        Ok(())
+    }
+
+    /// The disks as the list builder sees them.
+    fn disks(&self) -> Disks<'_, D> {
+        Disks {
             domain: &self.domain,
             anchors: &self.anchors,
             displacements: &self.displacements,
             radii: &self.radii,
             mobile_count: self.mobile_count,
-        };
-        let law = self.law;
-        build_pairs(&disks, self.skin, |a, b| law.coefficient(a, b), &mut self.list_room, &mut self.pairs).map_err(
-            |error| match error {
-                PackingError::CoincidentCentres { first, second } => {
-                    let (a, b) = (self.order[first] as usize, self.order[second] as usize);
-                    PackingError::CoincidentCentres { first: a.min(b), second: a.max(b) }
-                }
-                other => other,
-            },
-        )?;
-        self.begin_all();
-        self.rebuild_count += 1;
-        Ok(())
+        }
     }
 
     /// Upper bound on the largest eigenvalue of the stiffness matrix (masses 1), by Gershgorin's rows \[1 / time²\].

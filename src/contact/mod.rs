@@ -11,6 +11,7 @@ pub mod damping;
 pub mod forces;
 #[cfg(feature = "linear")]
 pub mod hessian;
+mod joined;
 pub mod law;
 pub mod neighbours;
 pub mod network;

@@ -3,7 +3,7 @@
 use crate::contact::assembly::Assembly;
 use crate::contact::assembly::upkeep::LISTED;
 use crate::contact::law::PairLaw;
-use crate::contact::neighbours::{Disks, amend_pairs};
+use crate::contact::neighbours::amend_pairs;
 use crate::vector::{Vector, difference, dot};
 
 /// A disk has gone far if it went this share of the way for which its list holds \[1\].
@@ -69,16 +69,11 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
         let marked = self.marked(&far);
         let law = self.law;
-        let disks = Disks {
-            domain: &self.domain,
-            anchors: &self.anchors,
-            displacements: &self.displacements,
-            radii: &self.radii,
-            mobile_count: self.mobile_count,
-        };
         let coefficient = |a, b| law.coefficient(a, b);
-        let (listing, who) = ((&disks, listed.as_slice()), (roaming.as_slice(), marked.as_slice()));
-        let amended = amend_pairs(listing, who, self.skin, coefficient, &self.list_room, &mut self.pairs);
+        let mut pairs = std::mem::take(&mut self.pairs);
+        let (listing, who) = ((&self.disks(), listed.as_slice()), (roaming.as_slice(), marked.as_slice()));
+        let amended = amend_pairs(listing, who, self.skin, coefficient, &self.list_room, &mut pairs);
+        self.pairs = pairs;
         if amended {
             (self.listed, self.roaming) = (listed, roaming);
         }

@@ -44,6 +44,16 @@ impl<const D: usize> Crossing<D> {
         self.assembly.keep_listed((D as f64).sqrt() * (self.ways.0 + self.ways.1)).expect("no coincidence");
     }
 
+    /// 140 steps, every seventh checked.
+    fn go(&mut self) {
+        for step in 1..=140 {
+            self.step();
+            if step % 7 == 0 {
+                self.check();
+            }
+        }
+    }
+
     /// Contacts and forces of the list as it is are those of one made anew.
     fn check(&self) {
         let [mut amended, mut anew] = [self.assembly.clone(), self.assembly.clone()];
@@ -80,12 +90,7 @@ fn balls() -> Packing<3> {
 fn a_list_amended_for_disks_that_go_far_misses_no_contact() {
     let (packing, middle) = three_tiles();
     let mut crossing = Crossing::new(&packing, (60, middle), (0.03, 0.0));
-    for step in 1..=140 {
-        crossing.step();
-        if step % 7 == 0 {
-            crossing.check();
-        }
-    }
+    crossing.go();
     // Some eight ways of half a skin, for each of which a list would be made.
     assert!(crossing.assembly.rebuild_count() <= 4, "{} lists", crossing.assembly.rebuild_count());
 }
@@ -94,12 +99,7 @@ fn a_list_amended_for_disks_that_go_far_misses_no_contact() {
 fn so_does_one_of_balls() {
     // Through the corner of the box, where images meet.
     let mut crossing = Crossing::new(&balls(), (16, [0.0; 3]), (0.03, 0.0));
-    for step in 1..=140 {
-        crossing.step();
-        if step % 7 == 0 {
-            crossing.check();
-        }
-    }
+    crossing.go();
     assert!(crossing.assembly.rebuild_count() <= 4, "{} lists", crossing.assembly.rebuild_count());
 }
 

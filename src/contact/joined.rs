@@ -1,0 +1,73 @@
+//! Lists of tiles put one after the other, and room for them.
+
+use std::ops::Range;
+
+use crate::contact::pair_list::{Block, PairList};
+use crate::contact::tiles::Tile;
+use crate::side_by_side;
+
+impl<const D: usize> PairList<D> {
+    /// Asks for room for so many tiles more, like those that are done: a column that grows by and by is copied again and again.
+    pub(super) fn reserve(&mut self, tiles: usize, done: usize) {
+        // A sixteenth more, for tiles that have more.
+        let more = |count: usize| (count + count / 16) * tiles / done;
+        let (pairs, rows, blocks) = (more(self.len()), more(self.rows.len()), more(self.blocks.len()));
+        for column in [&mut self.first, &mut self.second, &mut self.ends] {
+            column.reserve(pairs);
+        }
+        for column in self.separation.0.iter_mut().chain([&mut self.distance, &mut self.overlap, &mut self.coefficient])
+        {
+            column.reserve(pairs);
+        }
+        self.rows.reserve(rows);
+        self.blocks.reserve(blocks);
+    }
+
+    /// Overwrites the list by lists of one tile each, one after the other.
+    pub(super) fn join(&mut self, parts: &[PairList<D>], tiles: &mut [Tile]) {
+        self.rows.clear();
+        self.blocks.clear();
+        let (mut pairs, mut blocks) = (0, 0);
+        for (part, tile) in parts.iter().zip(tiles) {
+            let rows = self.rows.len();
+            self.rows.extend_from_slice(&part.rows);
+            let moved = |block: &Block| Block { pairs: block.pairs + pairs, rows: block.rows + rows, ..*block };
+            self.blocks.extend(part.blocks.iter().map(moved));
+            let moved = |range: &Range<usize>, by: usize| range.start + by..range.end + by;
+            (tile.inner, tile.border) = (moved(&tile.inner, blocks), moved(&tile.border, blocks));
+            tile.border_pairs = moved(&tile.border_pairs, pairs);
+            (pairs, blocks) = (pairs + part.len(), self.blocks.len());
+        }
+        join_column(&mut self.first, parts, |part| &part.first);
+        join_column(&mut self.second, parts, |part| &part.second);
+        join_column(&mut self.ends, parts, |part| &part.ends);
+        for d in 0..D {
+            join_column(&mut self.separation.0[d], parts, |part| &part.separation.0[d]);
+        }
+        join_column(&mut self.distance, parts, |part| &part.distance);
+        join_column(&mut self.overlap, parts, |part| &part.overlap);
+        join_column(&mut self.coefficient, parts, |part| &part.coefficient);
+    }
+}
+
+/// Overwrites a column by that of every part, one after the other.
+fn join_column<const D: usize, T: Copy + Default + Send + Sync>(
+    column: &mut Vec<T>,
+    parts: &[PairList<D>],
+    of_part: impl Fn(&PairList<D>) -> &Vec<T>,
+) {
+    let count = parts.iter().map(PairList::len).sum();
+    if column.capacity() < count {
+        // Zeros come untouched from the system, so the threads that copy are the first to touch them; a quarter more, for the next list.
+        *column = vec![T::default(); count + count / 4];
+    }
+    column.resize(count, T::default());
+    let mut rest = column.as_mut_slice();
+    let pieces = parts.iter().map(|part| {
+        let source = of_part(part);
+        let (piece, after) = std::mem::take(&mut rest).split_at_mut(source.len());
+        rest = after;
+        (piece, source)
+    });
+    side_by_side::each(pieces, |(piece, source)| piece.copy_from_slice(source));
+}
