@@ -7,8 +7,9 @@ use pulp::Simd;
 
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, Block, PairList};
+use crate::simd::ahead::Cache;
+use crate::simd::components;
 use crate::simd::roots::{Unit, positive_part, reciprocal, square_roots};
-use crate::simd::{components, prefetch};
 use crate::vector::Vector;
 
 /// How far ahead the list is asked for: its memory is two blocks of arithmetic away \[pairs\].
@@ -101,7 +102,7 @@ impl<const D: usize> Columns<D> {
         let apart = self.apart.each_mut().map(|column| &mut S::as_mut_simd_f64s(column).0[..count]);
         let overlap = &mut S::as_mut_simd_f64s(&mut self.overlap).0[..count];
         let inverse = &mut S::as_mut_simd_f64s(&mut self.inverse).0[..count];
-        let (zero, unit) = (simd.splat_f64s(0.0), Unit::here());
+        let (zero, unit, cache) = (simd.splat_f64s(0.0), Unit::here(), Cache::here());
         for k in (0..count).step_by(2) {
             let mut squares = [zero; 2];
             for (half, square) in squares.iter_mut().enumerate() {
@@ -119,7 +120,7 @@ impl<const D: usize> Columns<D> {
                         _ => (simd.add_f64s(*square, squared), simd.add_f64s(change, changed)),
                     };
                     apart[d][k] = along;
-                    prefetch(simd, anchors.separation[d], AHEAD + k * S::F64_LANES);
+                    cache.ask(anchors.separation[d], AHEAD + k * S::F64_LANES);
                 }
                 overlap[k] = change;
             }
@@ -133,8 +134,8 @@ impl<const D: usize> Columns<D> {
             let change = simd.mul_f64s(overlap[k], simd.mul_f64s(distance, of_both));
             overlap[k] = positive_part(simd, simd.sub_f64s(anchor_overlap[k], change));
             inverse[k] = simd.mul_f64s(both, of_both);
-            prefetch(simd, anchors.distance, AHEAD + k * S::F64_LANES);
-            prefetch(simd, anchors.overlap, AHEAD + k * S::F64_LANES);
+            cache.ask(anchors.distance, AHEAD + k * S::F64_LANES);
+            cache.ask(anchors.overlap, AHEAD + k * S::F64_LANES);
         }
     }
 
@@ -143,7 +144,7 @@ impl<const D: usize> Columns<D> {
     pub fn press<S: Simd, L: PairLaw, const RESOLVE: bool>(&mut self, simd: S, law: &L, anchors: &Anchors<'_, D>) {
         let count = anchors.turns::<S>();
         let coefficient = &S::as_simd_f64s(anchors.coefficient).0[..count];
-        let one = simd.splat_f64s(anchors.coefficient[0]);
+        let (one, cache) = (simd.splat_f64s(anchors.coefficient[0]), Cache::here());
         let overlap = &S::as_simd_f64s(&self.overlap).0[..count];
         let inverse = &S::as_simd_f64s(&self.inverse).0[..count];
         let apart = self.apart.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
@@ -159,8 +160,8 @@ impl<const D: usize> Columns<D> {
                 }
             }
             if !L::ONE_COEFFICIENT {
-                prefetch(simd, anchors.coefficient, AHEAD + k * S::F64_LANES);
-                prefetch(simd, anchors.coefficient, AHEAD + (k + 1) * S::F64_LANES);
+                cache.ask(anchors.coefficient, AHEAD + k * S::F64_LANES);
+                cache.ask(anchors.coefficient, AHEAD + (k + 1) * S::F64_LANES);
             }
         }
     }

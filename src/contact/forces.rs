@@ -19,7 +19,7 @@ use std::ops::Range;
 use crate::contact::columns::{Anchors, Columns, with_anchors};
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, Block, PairList};
-use crate::contact::rows::{gather, scatter};
+use crate::contact::rows::{ask_for_later_rows, gather, scatter};
 use crate::contact::tiles::Tile;
 use crate::contact::totals::{Tally, Totals};
 use crate::side_by_side;
@@ -244,6 +244,7 @@ pub(super) fn fill<const D: usize, L: PairLaw>(
     block: &Block,
     columns: &mut Columns<D>,
 ) {
+    ask_for_later_rows(pairs, block);
     gather(&mut columns.pull, pairs, block, displacements);
     with_anchors(pairs, block, |anchors| pulp::Arch::new().dispatch(Arithmetic { law, columns, anchors }));
 }

@@ -17,6 +17,7 @@ use crate::contact::tiles::Tile;
 use crate::contact::turns::Turns;
 use crate::packing::PackingError;
 use crate::side_by_side;
+use crate::simd::ahead::Cache;
 use crate::vector::Vector;
 
 /// Most pairs of a block; its columns stay in the nearest cache.
@@ -207,6 +208,12 @@ impl<const D: usize> PairList<D> {
     /// Whether there is no pair, and no place for one.
     pub fn is_empty(&self) -> bool {
         self.first.is_empty()
+    }
+
+    /// Where a later block is asked to while one is worked on: lists of several tiles are far away, and read once a step.
+    #[inline(always)]
+    pub(super) fn asks(&self) -> Option<Cache> {
+        (self.tiles.len() > 1).then(Cache::here)
     }
 
     /// Copies what a pair has at the anchors to a place of a block.

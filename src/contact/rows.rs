@@ -33,6 +33,18 @@ macro_rules! with_length {
     };
 }
 
+/// How far ahead rows and second disks are asked for \[blocks\].
+const AHEAD: usize = 2;
+
+/// Asks for the rows and second disks of a later block, if the list is long: gathering waits for them otherwise.
+#[inline(always)]
+pub(super) fn ask_for_later_rows<const D: usize>(pairs: &PairList<D>, block: &Block) {
+    if let Some(cache) = pairs.asks() {
+        cache.ask_for(&pairs.ends, block.pairs + AHEAD * BLOCK, BLOCK);
+        cache.ask_for(&pairs.rows, block.rows + AHEAD * block.row_count, block.row_count);
+    }
+}
+
 /// Relative displacements of the pairs of a block; the array begins with disk `begin`.
 pub(super) fn gather<T: Number, const D: usize>(
     moved: &mut [[T; D]; BLOCK],

@@ -19,17 +19,24 @@ use crate::contact::assembly::Assembly;
 use crate::contact::forces::{Across, Kernel, all_tiles};
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, Block, PairList};
-use crate::contact::rows::gather;
+use crate::contact::rows::{ask_for_later_rows, gather};
 use crate::side_by_side::{self, PIECE};
+use crate::simd::ahead::Cache;
+use crate::simd::components;
 use crate::simd::roots::positive_part_in_single;
-use crate::simd::{components, prefetch};
 use crate::vector::Vector;
 
 /// Blocks of pairs rounded by one thread at a time.
 const PORTION: usize = 64;
 
-/// How far ahead the list is asked for: its memory is four blocks of arithmetic away \[blocks\].
-const AHEAD: usize = 4;
+/// How far ahead the list is asked for: its memory is so many blocks of arithmetic away, and the first cache has not room for more than
+/// two \[blocks\].
+fn blocks_ahead(cache: Cache) -> usize {
+    match cache {
+        Cache::Second => 4,
+        Cache::First => 2,
+    }
+}
 
 /// Units of numbers in single precision, powers of two.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -280,10 +287,11 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Pressed<'_, D, L> {
         ways: (&[[f32; D]], u32),
         (columns, ()): &'a mut (Columns<D>, ()),
     ) -> &'a [[f32; D]; BLOCK] {
+        ask_for_later_rows(self.pairs, &self.pairs.blocks[block]);
         gather(&mut columns.pull, self.pairs, &self.pairs.blocks[block], ways);
         let (law, listed) = (self.law, &self.blocks[block]);
-        let (pair_count, asks) = (self.pairs.blocks[block].pair_count, self.pairs.tiles.len() > 1);
-        pulp::Arch::new().dispatch(Arithmetic { law, listed, columns, pair_count, asks });
+        let pair_count = self.pairs.blocks[block].pair_count;
+        pulp::Arch::new().dispatch(Arithmetic { law, listed, columns, pair_count, asks: self.pairs.asks() });
         &columns.pull
     }
 }
@@ -308,8 +316,8 @@ struct Arithmetic<'a, const D: usize, L> {
     listed: &'a Rounded<D>,
     columns: &'a mut Columns<D>,
     pair_count: usize,
-    /// Whether a later block is asked for meanwhile: it is far away where there are many.
-    asks: bool,
+    /// Where a later block is asked to meanwhile, if the list is long.
+    asks: Option<Cache>,
 }
 
 impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
@@ -341,15 +349,15 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
                 };
                 apart[d][k] = along;
             }
-            if asks {
-                let next = AHEAD * size_of::<Rounded<D>>() / size_of::<f32>() + k * S::F32_LANES;
+            if let Some(cache) = asks {
+                let next = blocks_ahead(cache) * size_of::<Rounded<D>>() / size_of::<f32>() + k * S::F32_LANES;
                 for column in &listed.separation {
-                    prefetch(simd, column, next);
+                    cache.ask(column, next);
                 }
-                prefetch(simd, &listed.distance, next);
-                prefetch(simd, &listed.overlap, next);
+                cache.ask(&listed.distance, next);
+                cache.ask(&listed.overlap, next);
                 if !L::ONE_COEFFICIENT {
-                    prefetch(simd, &listed.coefficient, next);
+                    cache.ask(&listed.coefficient, next);
                 }
             }
             change[k] = changed;
@@ -391,7 +399,7 @@ mod tests {
         let [x, y] = [wave(3.1, 0.0, 0.05), wave(0.9, 0.0, 0.05)];
         let pull: [[f32; 2]; BLOCK] = std::array::from_fn(|k| [x[k], y[k]]);
         let law = Hertzian::default();
-        for asks in [false, true] {
+        for asks in [None, Some(Cache::First), Some(Cache::Second)] {
             let [mut widest, mut scalar] = [(); 2].map(|()| Columns { pull, ..Columns::new() });
             let pair_count = BLOCK;
             pulp::Arch::new().dispatch(Arithmetic {
