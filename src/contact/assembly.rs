@@ -65,8 +65,9 @@ pub struct Assembly<const D: usize, L> {
     roaming: Vec<u32>,
     /// Displacements to come back to, if the relaxer set a checkpoint.
     checkpoint: Vec<Vector<D>>,
-    /// A bound on how far any disk has moved since `listed`.
+    /// A bound on how far any disk has moved since `listed`, and whether it is the longest way itself.
     moved: f64,
+    moved_exactly: bool,
     rebuild_count: usize,
     /// Centre minus anchor of each disk; a relaxer moves the first [`Assembly::mobile_count`] of them \[length\].
     pub displacements: Vec<Vector<D>>,
@@ -120,6 +121,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             roaming: Vec::new(),
             checkpoint: Vec::new(),
             moved: 0.0,
+            moved_exactly: false,
             rebuild_count: 0,
             from_sites: Vec::new(),
             pairs: PairList::default(),

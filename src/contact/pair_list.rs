@@ -210,10 +210,16 @@ impl<const D: usize> PairList<D> {
         self.first.is_empty()
     }
 
-    /// Where a later block is asked to while one is worked on: lists of several tiles are far away, and read once a step.
+    /// Whether it has several tiles: then it is far from the processor, and read once a step.
+    #[inline(always)]
+    pub(super) fn is_long(&self) -> bool {
+        self.tiles.len() > 1
+    }
+
+    /// Where a later block is asked to while one is worked on, if the list is long.
     #[inline(always)]
     pub(super) fn asks(&self) -> Option<Cache> {
-        (self.tiles.len() > 1).then(Cache::here)
+        self.is_long().then(Cache::here)
     }
 
     /// Copies what a pair has at the anchors to a place of a block.

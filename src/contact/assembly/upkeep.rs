@@ -43,9 +43,25 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Whether the list will neither be changed nor looked at when no disk has moved by more than `bound` at the next call of
     /// [`Assembly::keep_listed`].
     pub(in crate::contact) fn holds_beyond(&self, bound: f64) -> bool {
-        let looks = self.prunes && self.age + 1 == self.look_at;
         // Written so that NaN does not hold.
-        !looks && self.moved + bound <= LISTED * self.skin()
+        !self.looks_next() && self.moved + bound <= LISTED * self.skin()
+    }
+
+    /// Whether [`Assembly::take_way`] might show that the list holds beyond `bound` where [`Assembly::holds_beyond`] denies it, and is worth
+    /// its time: going through a long list array by array takes half as long again.
+    pub fn may_hold_beyond(&self, bound: f64) -> bool {
+        self.pairs().is_long() && !self.moved_exactly && !self.looks_next() && !self.holds_beyond(bound)
+    }
+
+    /// Takes the longest way of a disk since it was listed, in place of a bound on it; a relaxer that keeps displacements elsewhere has
+    /// put the disks where they are.
+    pub fn take_way(&mut self) {
+        (self.moved, self.moved_exactly) = (self.longest_way(self.listed_in_use()), true);
+    }
+
+    /// Whether the way of the disks is looked at in the next call of [`Assembly::keep_listed`], however short it is.
+    fn looks_next(&self) -> bool {
+        self.prunes && self.age + 1 == self.look_at
     }
 
     /// Tells that no disk has moved by more than `bound` since the last call, and changes the list if it must be. True if it is
@@ -55,6 +71,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Two disks with the same centre.
     pub fn keep_listed(&mut self, bound: f64) -> Result<bool, PackingError> {
         self.moved += bound;
+        self.moved_exactly = false;
         self.age += 1;
         let looks = self.prunes && self.age == self.look_at;
         // Written so that NaN asks for the exact look.
@@ -62,12 +79,11 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         if self.moved <= limit && !looks {
             return Ok(false);
         }
-        let largest = self.longest_way(self.listed_in_use());
-        if largest.is_nan() {
+        self.take_way();
+        if self.moved.is_nan() {
             // Not a position any more: the forces are NaN too, and the relaxer stops on them.
             return Ok(false);
         }
-        self.moved = largest;
         let spent = self.moved > limit;
         if !spent && !looks {
             return Ok(false);

@@ -121,6 +121,10 @@ impl<const D: usize> Motion<D> {
         step: Step,
         bound: f64,
     ) -> Option<(f64, Products)> {
+        if assembly.may_hold_beyond(bound) {
+            self.settle(assembly);
+            assembly.take_way();
+        }
         match self {
             Motion::Double(velocities) => {
                 let (speeds, parts) = assembly.advance(velocities, bound, |f, v, u| step.kick(f, v, u), products_of)?;
