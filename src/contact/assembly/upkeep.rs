@@ -47,8 +47,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         !self.looks_next() && self.moved + bound <= LISTED * self.skin()
     }
 
-    /// Whether [`Assembly::take_way`] might show that the list holds beyond `bound` where [`Assembly::holds_beyond`] denies it, and is worth
-    /// its time: going through a long list array by array takes half as long again.
+    /// Whether [`Assembly::take_way`] might show that the list holds beyond `bound` where the bounds added up so far deny it, and is
+    /// worth its time: going through a long list array by array takes half as long again.
     pub fn may_hold_beyond(&self, bound: f64) -> bool {
         self.pairs().is_long() && !self.moved_exactly && !self.looks_next() && !self.holds_beyond(bound)
     }

@@ -118,3 +118,35 @@ fn near_pairs_amended_for_disks_that_go_far_miss_no_contact() {
     assert_eq!(crossing.assembly.rebuild_count(), 1);
     assert!(near > 1000, "near pairs in {near} of 1500 steps");
 }
+
+/// A bound of ten times the way is told at every step: a tenth of the way that the list holds for, it says that it does not.
+#[test]
+fn a_way_that_is_taken_stands_for_the_bounds_of_a_long_list() {
+    let (packing, middle) = three_tiles();
+    let mut crossing = Crossing::new(&packing, (1, middle), (0.0, 0.0));
+    let assembly = &mut crossing.assembly;
+    // No looks: without near pairs the list in use is that of all, with a skin of half a radius, and holds for ways of an eighth of a diameter.
+    assembly.prune_lists(false);
+    let (way, bound) = (1e-3, 1e-2);
+    let mut taken = 0;
+    for step in 0..120 {
+        if assembly.may_hold_beyond(bound) {
+            assembly.take_way();
+            taken += 1;
+            let holds = assembly.advance(&mut vec![[0.0; 2]; assembly.mobile_count()], bound, |_, _, _| (), |_, _| ());
+            // Whatever it shows, it is not worth being taken again.
+            assert!(!assembly.may_hold_beyond(bound), "step {step}");
+            assert_eq!(holds.is_some(), f64::from(step) * way + bound < 0.12497, "step {step}");
+        }
+        assembly.displacements[0][0] += way;
+        assert_eq!(assembly.keep_listed(bound), Ok(false), "step {step}");
+    }
+    assert!((10..60).contains(&taken), "taken {taken} times");
+}
+
+#[test]
+fn a_short_list_is_gone_through_array_by_array_at_once() {
+    let mut crossing = Crossing::new(&balls(), (1, [0.0; 3]), (0.0, 0.0));
+    assert!(!crossing.assembly.may_hold_beyond(f64::INFINITY));
+    crossing.step();
+}
