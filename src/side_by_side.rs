@@ -24,6 +24,18 @@ pub fn is_shared(piece_count: usize) -> bool {
     }
 }
 
+/// Overwrites a column by `count` things that are made each on its own; none is copied, and memory is first touched by who writes it.
+pub fn fill<T: Send>(column: &mut Vec<T>, count: usize, make: impl Fn(usize) -> T + Send + Sync) {
+    #[cfg(feature = "parallel")]
+    if is_shared(count) {
+        use rayon::prelude::*;
+        (0..count).into_par_iter().map(make).collect_into_vec(column);
+        return;
+    }
+    column.clear();
+    column.extend((0..count).map(make));
+}
+
 /// Applies `work` to every piece; the results in the order of the pieces.
 pub fn each<T: Send, R: Send>(pieces: impl Iterator<Item = T>, work: impl Fn(T) -> R + Send + Sync) -> Vec<R> {
     #[cfg(feature = "parallel")]

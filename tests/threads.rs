@@ -59,12 +59,12 @@ fn forces_across_tiles_are_those_of_the_plain_loop() {
     let (law, pairs) = (*assembly.law(), assembly.pairs());
     let mut plain = vec![[0.0; 2]; assembly.len()];
     let mut largest: f64 = 0.0;
-    for pair in 0..pairs.len() {
+    for pair in pairs.numbers() {
         let (i, j) = (pairs.first[pair] as usize, pairs.second[pair] as usize);
         let moved = difference(assembly.displacements[i], assembly.displacements[j]);
-        let apart = sum(pairs.separation.of(pair), moved);
-        let overlap = (pairs.distance[pair] + pairs.overlap[pair] - norm(apart)).max(0.0);
-        let force = scaled(law.force(pairs.coefficient[pair], overlap) / norm(apart), apart);
+        let apart = sum(pairs.separation(pair), moved);
+        let overlap = (pairs.distance(pair) + pairs.overlap(pair) - norm(apart)).max(0.0);
+        let force = scaled(law.force(pairs.coefficient(pair), overlap) / norm(apart), apart);
         plain[i] = sum(plain[i], force);
         plain[j] = difference(plain[j], force);
         largest = largest.max(norm(force));
@@ -91,12 +91,12 @@ fn sums_of_stiffness_across_tiles_are_those_of_the_plain_loop() {
         let bound = assembly.row_bound(&mut rows, |_, _, stiffness| stiffness);
         let (law, pairs, mobile) = (*assembly.law(), assembly.pairs(), assembly.mobile_count());
         let mut plain = vec![0.0; assembly.len()];
-        for pair in 0..pairs.len() {
+        for pair in pairs.numbers() {
             let (i, j) = (pairs.first[pair] as usize, pairs.second[pair] as usize);
             let moved = difference(assembly.displacements[i], assembly.displacements[j]);
-            let apart = norm(sum(pairs.separation.of(pair), moved));
-            let overlap = (pairs.distance[pair] + pairs.overlap[pair] - apart).max(0.0);
-            let stiffness = law.stiffness(law.force(pairs.coefficient[pair], overlap), overlap);
+            let apart = norm(sum(pairs.separation(pair), moved));
+            let overlap = (pairs.distance(pair) + pairs.overlap(pair) - apart).max(0.0);
+            let stiffness = law.stiffness(law.force(pairs.coefficient(pair), overlap), overlap);
             plain[i] += if j < mobile { 2.0 * stiffness } else { stiffness };
             plain[j] += if j < mobile { 2.0 * stiffness } else { 0.0 };
         }
@@ -117,7 +117,7 @@ fn damped_forces_across_tiles_are_elastic_forces_and_damping() {
     let mut assembly = Assembly::new(&large(), Hertzian::default()).expect("disks apart");
     assembly.evaluate();
     let (law, damping, pairs) = (*assembly.law(), ConstantDamping { rate: 500.0 }, assembly.pairs());
-    let coefficients = vec![damping.coefficient(0.5, 0.5); pairs.len()];
+    let coefficients = vec![damping.coefficient(0.5, 0.5); pairs.place_count()];
     let wave = |disk: usize| [1e-2 * (disk as f64).sin(), 1e-2 * (2.0 * disk as f64).cos()];
     let (at, velocities) = (&assembly.displacements, (0..assembly.len()).map(wave).collect::<Vec<_>>());
     let mut apart = assembly.forces.clone();

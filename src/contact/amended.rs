@@ -10,7 +10,8 @@
 
 use std::ops::Range;
 
-use crate::contact::pair_list::{BLOCK, Block, Measured, PairList, Source};
+use crate::contact::measured::Measured;
+use crate::contact::pair_list::{BLOCK, Block, PairList, Source};
 use crate::contact::tiles::connect;
 use crate::vector::{Vector, dot};
 
@@ -20,9 +21,6 @@ const FEWEST: usize = 4096;
 /// Blocks of a tile that are empty to begin with: within it, and across its border.
 const INNER: usize = 4;
 const BORDER: usize = 2;
-
-/// Separation of no pair: a gap that no way closes, and whose square is a number.
-const NOWHERE: f64 = 1e100;
 
 /// A pair to be added: its disks, and how its source names it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -50,28 +48,19 @@ impl<const D: usize> PairList<D> {
 
     fn add_places(&mut self, origin: u32, count: usize) {
         for _ in 0..count {
-            let (pairs, rows) = (self.len(), self.rows.len());
-            let whole = pairs + BLOCK;
-            self.blocks.push(Block { pairs, pair_count: 0, rows, row_count: 0, row_length: 1, origin });
-            self.rows.resize(rows + BLOCK, 0);
-            for column in [&mut self.first, &mut self.second, &mut self.ends] {
-                column.resize(whole, 0);
-            }
-            let nowhere = Measured {
-                separation: [[NOWHERE; BLOCK]; D],
-                distance: [NOWHERE * (D as f64).sqrt(); BLOCK],
-                overlap: [-NOWHERE * (D as f64).sqrt(); BLOCK],
-                coefficient: [1.0; BLOCK],
-            };
-            self.extend_by(&nowhere, BLOCK);
+            self.begin_block(Block { row_length: 1, origin, ..Block::default() });
+            self.rows.resize(self.rows.len() + BLOCK, 0);
+            self.measured.push(Measured::default());
         }
     }
 
     /// Pairs that have a marked disk.
     pub(super) fn pairs_of(&self, marked: &[bool], found: &mut Vec<Lacking>) {
         found.clear();
-        for block in &self.blocks {
-            for pair in block.pairs..block.pairs + block.pair_count {
+        for (tile, disks) in self.tiles.iter().zip(marked.chunks(self.tile_size)) {
+            // A pair is in the tile of its first disk; only those across a border have another disk elsewhere.
+            let begin = if disks.contains(&true) { tile.inner.start } else { tile.border.start };
+            for pair in self.blocks[begin..tile.border.end].iter().flat_map(Block::pairs) {
                 let (first, second) = (self.first[pair], self.second[pair]);
                 if marked[first as usize] | marked[second as usize] {
                     found.push(Lacking { first, second, name: pair as u32 });
@@ -92,9 +81,9 @@ impl<const D: usize> PairList<D> {
         whole.pairs_of(marked, &mut lacking);
         lacking.retain(|&Lacking { first, second, name }| {
             let (pair, a, b) = (name as usize, listed[first as usize], listed[second as usize]);
-            let anchored = whole.separation.of(pair);
+            let anchored = whole.separation(pair);
             let apart: Vector<D> = std::array::from_fn(|d| anchored[d] + (a[d] - b[d]));
-            let range = whole.distance[pair] + whole.overlap[pair] + skin;
+            let range = whole.distance(pair) + whole.overlap(pair) + skin;
             dot(apart, apart) < range * range
         });
         self.pairs_of(marked, &mut had);
@@ -139,7 +128,7 @@ impl<const D: usize> PairList<D> {
         let origin = block.origin;
         (self.first[place], self.second[place]) = (pair.first, pair.second);
         (self.rows[row], self.ends[place]) = (pair.first - origin, pair.second - origin);
-        self.set_pair(place, measured);
+        self.measured[place / BLOCK].copy(place % BLOCK, measured);
     }
 
     /// Finds what comes to each tile from others.

@@ -6,14 +6,17 @@
 use pulp::Simd;
 
 use crate::contact::law::PairLaw;
+use crate::contact::measured::Measured;
 use crate::contact::pair_list::{BLOCK, Block, PairList};
 use crate::simd::ahead::Cache;
 use crate::simd::components;
 use crate::simd::roots::{Unit, positive_part, reciprocal, square_roots};
 use crate::vector::Vector;
 
-/// How far ahead the list is asked for: its memory is two blocks of arithmetic away \[pairs\].
-const AHEAD: usize = 2 * BLOCK;
+/// How far ahead the list is asked for: its memory is two blocks of arithmetic away \[numbers\].
+const fn ahead<const D: usize>() -> usize {
+    2 * size_of::<Measured<D>>() / size_of::<f64>()
+}
 
 /// One block of pairs, column by column.
 #[repr(align(64))]
@@ -29,54 +32,23 @@ pub(super) struct Columns<const D: usize> {
     pub inverse: [f64; BLOCK],
 }
 
-/// What the list has of each pair of a block: whole columns, whatever stands in the places of a block that is not full.
+/// What the list has of a block, and how many pairs that are.
 pub(super) struct Anchors<'a, const D: usize> {
     pair_count: usize,
-    separation: [&'a [f64]; D],
-    distance: &'a [f64],
-    overlap: &'a [f64],
-    coefficient: &'a [f64],
+    listed: &'a Measured<D>,
 }
 
-impl<const D: usize> Anchors<'_, D> {
+impl<'a, const D: usize> Anchors<'a, D> {
+    #[inline(always)]
+    pub fn of(pairs: &'a PairList<D>, block: &Block) -> Self {
+        Anchors { pair_count: block.pair_count, listed: pairs.of_pair(block.pairs).0 }
+    }
+
     /// Vectors of pairs, an even number of them.
     #[inline(always)]
     fn turns<S: Simd>(&self) -> usize {
         (2 * self.pair_count.div_ceil(2 * S::F64_LANES)).min(BLOCK / S::F64_LANES)
     }
-}
-
-/// Calls a function of what a list has of a block.
-#[inline(always)]
-pub(super) fn with_anchors<const D: usize, T>(
-    pairs: &PairList<D>,
-    block: &Block,
-    call: impl FnOnce(Anchors<'_, D>) -> T,
-) -> T {
-    let whole = block.pairs..block.pairs + BLOCK;
-    if whole.end <= pairs.len() {
-        // A block that is not full goes on into the next one; what comes of that is not used.
-        return call(Anchors {
-            pair_count: block.pair_count,
-            separation: pairs.separation.columns().map(|column| &column[whole.clone()]),
-            distance: &pairs.distance[whole.clone()],
-            overlap: &pairs.overlap[whole.clone()],
-            coefficient: &pairs.coefficient[whole],
-        });
-    }
-    let padded = |column: &[f64]| {
-        let mut whole = [1.0; BLOCK];
-        whole[..block.pair_count].copy_from_slice(&column[block.pairs..block.pairs + block.pair_count]);
-        whole
-    };
-    let separation = pairs.separation.columns().map(padded);
-    call(Anchors {
-        pair_count: block.pair_count,
-        separation: separation.each_ref().map(|column| &column[..]),
-        distance: &padded(&pairs.distance),
-        overlap: &padded(&pairs.overlap),
-        coefficient: &padded(&pairs.coefficient),
-    })
 }
 
 impl<const D: usize> Columns<D> {
@@ -95,9 +67,10 @@ impl<const D: usize> Columns<D> {
     #[inline(always)]
     pub fn measure<S: Simd>(&mut self, simd: S, anchors: &Anchors<'_, D>) {
         let count = anchors.turns::<S>();
+        let (listed, ahead) = (anchors.listed, ahead::<D>());
         let read = |column| &S::as_simd_f64s(column).0[..count];
-        let anchor_separation = anchors.separation.map(read);
-        let (anchor_distance, anchor_overlap) = (read(anchors.distance), read(anchors.overlap));
+        let anchor_separation = listed.separation.each_ref().map(|column| read(&column[..]));
+        let (anchor_distance, anchor_overlap) = (read(&listed.distance), read(&listed.overlap));
         let moved = &S::as_simd_f64s(self.pull.as_flattened()).0[..D * count];
         let apart = self.apart.each_mut().map(|column| &mut S::as_mut_simd_f64s(column).0[..count]);
         let overlap = &mut S::as_mut_simd_f64s(&mut self.overlap).0[..count];
@@ -120,7 +93,7 @@ impl<const D: usize> Columns<D> {
                         _ => (simd.add_f64s(*square, squared), simd.add_f64s(change, changed)),
                     };
                     apart[d][k] = along;
-                    cache.ask(anchors.separation[d], AHEAD + k * S::F64_LANES);
+                    cache.ask(&listed.separation[d], ahead + k * S::F64_LANES);
                 }
                 overlap[k] = change;
             }
@@ -134,8 +107,8 @@ impl<const D: usize> Columns<D> {
             let change = simd.mul_f64s(overlap[k], simd.mul_f64s(distance, of_both));
             overlap[k] = positive_part(simd, simd.sub_f64s(anchor_overlap[k], change));
             inverse[k] = simd.mul_f64s(both, of_both);
-            cache.ask(anchors.distance, AHEAD + k * S::F64_LANES);
-            cache.ask(anchors.overlap, AHEAD + k * S::F64_LANES);
+            cache.ask(&listed.distance, ahead + k * S::F64_LANES);
+            cache.ask(&listed.overlap, ahead + k * S::F64_LANES);
         }
     }
 
@@ -143,8 +116,9 @@ impl<const D: usize> Columns<D> {
     #[inline(always)]
     pub fn press<S: Simd, L: PairLaw, const RESOLVE: bool>(&mut self, simd: S, law: &L, anchors: &Anchors<'_, D>) {
         let count = anchors.turns::<S>();
-        let coefficient = &S::as_simd_f64s(anchors.coefficient).0[..count];
-        let (one, cache) = (simd.splat_f64s(anchors.coefficient[0]), Cache::here());
+        let (listed, ahead) = (anchors.listed, ahead::<D>());
+        let coefficient = &S::as_simd_f64s(&listed.coefficient).0[..count];
+        let (one, cache) = (simd.splat_f64s(listed.coefficient[0]), Cache::here());
         let overlap = &S::as_simd_f64s(&self.overlap).0[..count];
         let inverse = &S::as_simd_f64s(&self.inverse).0[..count];
         let apart = self.apart.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
@@ -160,8 +134,8 @@ impl<const D: usize> Columns<D> {
                 }
             }
             if !L::ONE_COEFFICIENT {
-                cache.ask(anchors.coefficient, AHEAD + k * S::F64_LANES);
-                cache.ask(anchors.coefficient, AHEAD + (k + 1) * S::F64_LANES);
+                cache.ask(&listed.coefficient, ahead + k * S::F64_LANES);
+                cache.ask(&listed.coefficient, ahead + (k + 1) * S::F64_LANES);
             }
         }
     }

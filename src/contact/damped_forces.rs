@@ -6,7 +6,7 @@
 //!
 //! Blocks, rows and columns as in [`super::forces`]; tiles play no part.
 
-use crate::contact::columns::{Anchors, Columns, with_anchors};
+use crate::contact::columns::{Anchors, Columns};
 use crate::contact::damping::DampingLaw;
 use crate::contact::forces::geometry;
 use crate::contact::law::PairLaw;
@@ -39,10 +39,8 @@ pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
         gather(&mut columns.pull, pairs, block, (displacements, 0));
         gather(&mut apace, pairs, block, (velocities, 0));
         let (apace, coefficient) = (&apace[..block.pair_count], &damping_coefficient[listed]);
-        power += with_anchors(pairs, block, |anchors| {
-            let damping = Damping { law: damping, coefficient, apace };
-            pulp::Arch::new().dispatch(Arithmetic { law, damping, columns: &mut columns, anchors })
-        });
+        let (damping, anchors) = (Damping { law: damping, coefficient, apace }, Anchors::of(pairs, block));
+        power += pulp::Arch::new().dispatch(Arithmetic { law, damping, columns: &mut columns, anchors });
         scatter(&columns.pull, pairs, block, (forces, 0));
     }
     power
@@ -115,7 +113,7 @@ pub fn add_damping<const D: usize, C: DampingLaw>(
     forces: &mut [Vector<D>],
 ) -> f64 {
     let mut dissipation = 0.0;
-    for k in 0..pairs.len() {
+    for k in pairs.numbers() {
         let (i, j) = (pairs.first[k] as usize, pairs.second[k] as usize);
         let (apart, distance, overlap) = geometry(pairs, k, displacements);
         if overlap > 0.0 {

@@ -16,7 +16,7 @@
 
 use std::ops::Range;
 
-use crate::contact::columns::{Anchors, Columns, with_anchors};
+use crate::contact::columns::{Anchors, Columns};
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, Block, PairList};
 use crate::contact::rows::{ask_for_later_rows, gather, scatter};
@@ -246,7 +246,7 @@ pub(super) fn fill<const D: usize, L: PairLaw>(
 ) {
     ask_for_later_rows(pairs, block);
     gather(&mut columns.pull, pairs, block, displacements);
-    with_anchors(pairs, block, |anchors| pulp::Arch::new().dispatch(Arithmetic { law, columns, anchors }));
+    pulp::Arch::new().dispatch(Arithmetic { law, columns, anchors: Anchors::of(pairs, block) });
 }
 
 /// The arithmetic of a block as a job that is compiled for each vector width the machine may have, and started for the widest
@@ -289,7 +289,7 @@ pub fn geometry<const D: usize>(
     displacements: &[Vector<D>],
 ) -> (Vector<D>, f64, f64) {
     let (a, b) = (displacements[pairs.first[pair] as usize], displacements[pairs.second[pair] as usize]);
-    let anchored = pairs.separation.of(pair);
+    let anchored = pairs.separation(pair);
     let mut apart = [0.0; D];
     let mut squared = 0.0;
     let mut change = 0.0;
@@ -300,6 +300,6 @@ pub fn geometry<const D: usize>(
         change += moved * (anchored[d] + apart[d]);
     }
     let distance = squared.sqrt();
-    let inverse = 1.0 / (distance * (distance + pairs.distance[pair]));
-    (apart, distance, pairs.overlap[pair] - change * (distance * inverse))
+    let inverse = 1.0 / (distance * (distance + pairs.distance(pair)));
+    (apart, distance, pairs.overlap(pair) - change * (distance * inverse))
 }

@@ -225,7 +225,7 @@ impl<const D: usize> Hessian<D> {
         let (pairs, law, prestress) = (assembly.pairs(), assembly.law(), self.prestress);
         self.links.clear();
         self.near.clear();
-        for pair in 0..pairs.len() {
+        for pair in pairs.numbers() {
             let (apart, distance, overlap) = geometry(pairs, pair, &assembly.displacements);
             let (ends, reach) = ((pairs.first[pair], pairs.second[pair]), reach(pair));
             // Written so that NaN becomes an entry, and is refused there.
@@ -236,7 +236,7 @@ impl<const D: usize> Hessian<D> {
             if overlap <= -reach {
                 continue;
             }
-            let force = if overlap < 0.0 { 0.0 } else { law.force(pairs.coefficient[pair], overlap) };
+            let force = if overlap < 0.0 { 0.0 } else { law.force(pairs.coefficient(pair), overlap) };
             let stiffness = if overlap.is_nan() { overlap } else { law.stiffness(force, overlap) };
             let across = prestress.across(force, distance);
             let (stiffness, across) = weights(&StiffContact { pair, ends, stiffness, across });

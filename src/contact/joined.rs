@@ -11,16 +11,13 @@ impl<const D: usize> PairList<D> {
     pub(super) fn reserve(&mut self, tiles: usize, done: usize) {
         // A sixteenth more, for tiles that have more.
         let more = |count: usize| (count + count / 16) * tiles / done;
-        let (pairs, rows, blocks) = (more(self.len()), more(self.rows.len()), more(self.blocks.len()));
+        let (pairs, rows, blocks) = (more(self.place_count()), more(self.rows.len()), more(self.blocks.len()));
         for column in [&mut self.first, &mut self.second, &mut self.ends] {
-            column.reserve(pairs);
-        }
-        for column in self.separation.0.iter_mut().chain([&mut self.distance, &mut self.overlap, &mut self.coefficient])
-        {
             column.reserve(pairs);
         }
         self.rows.reserve(rows);
         self.blocks.reserve(blocks);
+        self.measured.reserve(blocks);
     }
 
     /// Overwrites the list by lists of one tile each, one after the other.
@@ -36,17 +33,20 @@ impl<const D: usize> PairList<D> {
             let moved = |range: &Range<usize>, by: usize| range.start + by..range.end + by;
             (tile.inner, tile.border) = (moved(&tile.inner, blocks), moved(&tile.border, blocks));
             tile.border_pairs = moved(&tile.border_pairs, pairs);
-            (pairs, blocks) = (pairs + part.len(), self.blocks.len());
+            (pairs, blocks) = (pairs + part.place_count(), self.blocks.len());
         }
         join_column(&mut self.first, parts, |part| &part.first);
         join_column(&mut self.second, parts, |part| &part.second);
         join_column(&mut self.ends, parts, |part| &part.ends);
-        for d in 0..D {
-            join_column(&mut self.separation.0[d], parts, |part| &part.separation.0[d]);
-        }
-        join_column(&mut self.distance, parts, |part| &part.distance);
-        join_column(&mut self.overlap, parts, |part| &part.overlap);
-        join_column(&mut self.coefficient, parts, |part| &part.coefficient);
+        let begins = parts.iter().scan(0, |blocks, part| {
+            *blocks += part.blocks.len();
+            Some(*blocks - part.blocks.len())
+        });
+        let begins: Vec<usize> = begins.collect();
+        side_by_side::fill(&mut self.measured, self.blocks.len(), |block| {
+            let part = begins.partition_point(|&begin| begin <= block) - 1;
+            parts[part].measured[block - begins[part]].clone()
+        });
     }
 }
 
@@ -56,7 +56,7 @@ fn join_column<const D: usize, T: Copy + Default + Send + Sync>(
     parts: &[PairList<D>],
     of_part: impl Fn(&PairList<D>) -> &Vec<T>,
 ) {
-    let count = parts.iter().map(PairList::len).sum();
+    let count = parts.iter().map(PairList::place_count).sum();
     if column.capacity() < count {
         // Zeros come untouched from the system, so the threads that copy are the first to touch them; a quarter more, for the next list.
         *column = vec![T::default(); count + count / 4];

@@ -13,6 +13,7 @@ pub mod forces;
 pub mod hessian;
 mod joined;
 pub mod law;
+mod measured;
 pub mod neighbours;
 pub mod network;
 pub mod on_site;

@@ -5,7 +5,8 @@
 //! looked at only while the list is built.
 
 use crate::contact::amended::{Lacking, without};
-use crate::contact::pair_list::{BLOCK, Measured, PairList, Search, Source};
+use crate::contact::measured::Measured;
+use crate::contact::pair_list::{BLOCK, PairList, Search, Source};
 use crate::packing::{Domain, PackingError};
 use crate::side_by_side::{self, PIECE};
 use crate::vector::{Vector, difference, dot, extended_norm, extended_sum, sum, two_sum};

@@ -13,12 +13,12 @@
 
 use std::ops::Range;
 
+use crate::contact::measured::Measured;
 use crate::contact::tiles::Tile;
 use crate::contact::turns::Turns;
 use crate::packing::PackingError;
 use crate::side_by_side;
 use crate::simd::ahead::Cache;
-use crate::vector::Vector;
 
 /// Most pairs of a block; its columns stay in the nearest cache.
 pub const BLOCK: usize = 128;
@@ -32,21 +32,15 @@ pub const LONGEST_ROW: usize = 8;
 /// Fewest disks of a tile: packings of up to so many have no border.
 const LEAST_TILE: usize = 8192;
 
-/// Pairs that may touch, as parallel columns.
+/// Pairs that may touch. A pair bears the number of its place: block after block has [`BLOCK`] of them, the last of which may be vacant.
 #[derive(Debug, Clone, Default)]
 pub struct PairList<const D: usize> {
-    /// First disk of each pair.
+    /// First disk of each pair; the first of all in a vacant place.
     pub first: Vec<u32>,
-    /// Second disk of each pair.
+    /// Second disk of each pair; the first of all in a vacant place.
     pub second: Vec<u32>,
-    /// From the anchor of the second to that of the first along the nearest image, D \[length\].
-    pub separation: Separations<D>,
-    /// Distance of the anchors, |D| \[length\].
-    pub distance: Vec<f64>,
-    /// Overlap at the anchors, R_i + R_j − |D|, rounded once only; negative for a pair apart \[length\].
-    pub overlap: Vec<f64>,
-    /// Coefficient of the contact law for this pair \[force / length^(α−1)\].
-    pub coefficient: Vec<f64>,
+    /// What the pairs of each block have at the anchors.
+    pub(super) measured: Vec<Measured<D>>,
     /// First disk of each row and second disk of each pair, counted from the origin of the block.
     pub(super) rows: Vec<u32>,
     pub(super) ends: Vec<u32>,
@@ -65,33 +59,9 @@ pub struct PairList<const D: usize> {
     parts: Vec<PairList<D>>,
 }
 
-/// Separations of pairs, each component in a column of its own.
-#[derive(Debug, Clone)]
-pub struct Separations<const D: usize>(pub(super) [Vec<f64>; D]);
-
-impl<const D: usize> Default for Separations<D> {
-    fn default() -> Self {
-        Separations(std::array::from_fn(|_| Vec::new()))
-    }
-}
-
-impl<const D: usize> Separations<D> {
-    /// The separation of a pair \[length\].
-    #[inline(always)]
-    pub fn of(&self, pair: usize) -> Vector<D> {
-        std::array::from_fn(|d| self.0[d][pair])
-    }
-
-    /// The component of every pair along each axis \[length\].
-    #[inline(always)]
-    pub fn columns(&self) -> [&[f64]; D] {
-        self.0.each_ref().map(Vec::as_slice)
-    }
-}
-
 /// A block: where its pairs and rows begin, how many rows it has and how many pairs each of them; and the disk from which its rows
 /// and ends are counted, the first one of the tile where all of them are in one, so that the loop over a tile has nothing to take off.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Block {
     pub pairs: usize,
     pub pair_count: usize,
@@ -121,26 +91,6 @@ pub(super) trait Source<const D: usize> {
 pub(super) trait Search<const D: usize>: Source<D> {
     /// Adds the pairs of a first disk.
     fn find(&mut self, first: usize, pairs: &mut Vec<u32>);
-}
-
-/// What a block of pairs has at the anchors, column by column; see [`PairList`].
-#[derive(Debug, Clone)]
-pub(super) struct Measured<const D: usize> {
-    pub separation: [[f64; BLOCK]; D],
-    pub distance: [f64; BLOCK],
-    pub overlap: [f64; BLOCK],
-    pub coefficient: [f64; BLOCK],
-}
-
-impl<const D: usize> Default for Measured<D> {
-    fn default() -> Self {
-        Measured {
-            separation: [[0.0; BLOCK]; D],
-            distance: [0.0; BLOCK],
-            overlap: [0.0; BLOCK],
-            coefficient: [0.0; BLOCK],
-        }
-    }
 }
 
 /// Rows waiting for the end of their group or of their tile.
@@ -200,14 +150,24 @@ impl Waiting {
 }
 
 impl<const D: usize> PairList<D> {
-    /// Number of pairs, with the places that are kept for pairs to come: gaps that nothing closes.
-    pub fn len(&self) -> usize {
+    /// Number of places; a column with one entry a pair is as long.
+    pub fn place_count(&self) -> usize {
         self.first.len()
     }
 
-    /// Whether there is no pair, and no place for one.
+    /// Number of pairs.
+    pub fn len(&self) -> usize {
+        self.blocks.iter().map(|block| block.pair_count).sum()
+    }
+
+    /// Whether there is no pair.
     pub fn is_empty(&self) -> bool {
-        self.first.is_empty()
+        self.len() == 0
+    }
+
+    /// The places that have a pair.
+    pub fn numbers(&self) -> impl Iterator<Item = usize> + use<'_, D> {
+        self.blocks.iter().flat_map(Block::pairs)
     }
 
     /// Whether it has several tiles: then it is far from the processor, and read once a step.
@@ -220,17 +180,6 @@ impl<const D: usize> PairList<D> {
     #[inline(always)]
     pub(super) fn asks(&self) -> Option<Cache> {
         self.is_long().then(Cache::here)
-    }
-
-    /// Copies what a pair has at the anchors to a place of a block.
-    #[inline(always)]
-    pub(super) fn copy_pair(&self, pair: usize, place: usize, measured: &mut Measured<D>) {
-        for (measured, column) in measured.separation.iter_mut().zip(&self.separation.0) {
-            measured[place] = column[pair];
-        }
-        measured.distance[place] = self.distance[pair];
-        measured.overlap[place] = self.overlap[pair];
-        measured.coefficient[place] = self.coefficient[pair];
     }
 
     /// Empties the list and fills it with what `search`, made anew for each tile, finds: each pair is named by one of its disks only.
@@ -253,7 +202,8 @@ impl<const D: usize> PairList<D> {
         self.fill_tiles(disk_count.div_ceil(tile_size), tile_size, |list, place, tile| {
             list.add_tile(disks(place), first_count, search(), tile);
         });
-        let together = self.distance.iter().enumerate().filter(|&(_, &distance)| distance == 0.0);
+        let distances = self.measured.iter().flat_map(|block| &block.distance);
+        let together = distances.enumerate().filter(|&(_, &distance)| distance == 0.0);
         // The first two in the order of the disks, wherever they lie in the list.
         if let Some((first, second)) = together.map(|(pair, _)| (self.first[pair], self.second[pair])).min() {
             return Err(PackingError::CoincidentCentres { first: first as usize, second: second as usize });
@@ -309,7 +259,7 @@ impl<const D: usize> PairList<D> {
         if self.keeps_places {
             self.add_inner_places(arranger.origin);
         }
-        let (middle, border_pairs) = (self.blocks.len(), self.len());
+        let (middle, border_pairs) = (self.blocks.len(), self.place_count());
         arranger.origin = 0;
         border(self, &mut arranger, source);
         self.close_group(&mut arranger, source);
@@ -317,7 +267,7 @@ impl<const D: usize> PairList<D> {
             self.add_border_places();
         }
         (tile.inner, tile.border) = (begin..middle, middle..self.blocks.len());
-        tile.border_pairs = border_pairs..self.len();
+        tile.border_pairs = border_pairs..self.place_count();
         self.arranger = arranger;
     }
 
@@ -349,10 +299,7 @@ impl<const D: usize> PairList<D> {
     fn clear(&mut self) {
         self.first.clear();
         self.second.clear();
-        self.separation.0.iter_mut().for_each(Vec::clear);
-        self.distance.clear();
-        self.overlap.clear();
-        self.coefficient.clear();
+        self.measured.clear();
         self.rows.clear();
         self.ends.clear();
         self.blocks.clear();
@@ -405,14 +352,13 @@ impl<const D: usize> PairList<D> {
         measured: &mut Measured<D>,
         source: &mut impl Source<D>,
     ) {
-        let (begin, first_row) = (self.len(), self.rows.len());
         let row_length = rows[0].length;
         let count = rows.len() * row_length;
+        self.begin_block(Block { pair_count: count, row_count: rows.len(), row_length, origin, ..Block::default() });
+        let (begin, first_row) = (self.first.len() - BLOCK, self.rows.len());
         self.rows.resize(first_row + rows.len(), 0);
-        self.first.resize(begin + count, 0);
-        self.second.resize(begin + count, 0);
         let (of_rows, first, second) =
-            (&mut self.rows[first_row..], &mut self.first[begin..], &mut self.second[begin..]);
+            (&mut self.rows[first_row..], &mut self.first[begin..][..count], &mut self.second[begin..][..count]);
         let mut pair = 0;
         for (row, &Row { first: disk, begin, length }) in of_rows.iter_mut().zip(rows) {
             *row = disk - origin;
@@ -423,34 +369,22 @@ impl<const D: usize> PairList<D> {
             }
             pair += length;
         }
-        let (pair_count, row_count) = (count, rows.len());
-        self.blocks.push(Block { pairs: begin, pair_count, rows: first_row, row_count, row_length, origin });
         source.measure(first, second, measured);
-        for pair in &mut *second {
+        for (pair, end) in second.iter_mut().zip(&mut self.ends[begin..]) {
             *pair = source.second(*pair);
+            *end = *pair - origin;
         }
-        self.ends.extend(second.iter().map(|&disk| disk - origin));
-        self.extend_by(measured, count);
+        measured.vacate(count);
+        self.measured.push(measured.clone());
     }
 
-    /// Adds what so many pairs have at the anchors.
-    pub(super) fn extend_by(&mut self, measured: &Measured<D>, count: usize) {
-        for (column, measured) in self.separation.0.iter_mut().zip(&measured.separation) {
-            column.extend_from_slice(&measured[..count]);
+    /// Begins a block, all of whose places are vacant; what they have at the anchors is still to be added.
+    pub(super) fn begin_block(&mut self, block: Block) {
+        let pairs = self.first.len();
+        self.blocks.push(Block { pairs, rows: self.rows.len(), ..block });
+        for column in [&mut self.first, &mut self.second, &mut self.ends] {
+            column.resize(pairs + BLOCK, 0);
         }
-        self.distance.extend_from_slice(&measured.distance[..count]);
-        self.overlap.extend_from_slice(&measured.overlap[..count]);
-        self.coefficient.extend_from_slice(&measured.coefficient[..count]);
-    }
-
-    /// What a pair has at the anchors, from a place of a block.
-    pub(super) fn set_pair(&mut self, pair: usize, (measured, place): (&Measured<D>, usize)) {
-        for (column, measured) in self.separation.0.iter_mut().zip(&measured.separation) {
-            column[pair] = measured[place];
-        }
-        self.distance[pair] = measured.distance[place];
-        self.overlap[pair] = measured.overlap[place];
-        self.coefficient[pair] = measured.coefficient[place];
     }
 }
 

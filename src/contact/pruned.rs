@@ -13,7 +13,8 @@
 //! # Source
 //! Pruned pair lists: Páll et al. (2020), J. Chem. Phys. 153, 134110, §IV.
 
-use crate::contact::pair_list::{Arranger, BLOCK, Block, LONGEST_ROW, Measured, PairList, Source};
+use crate::contact::measured::Measured;
+use crate::contact::pair_list::{Arranger, BLOCK, Block, LONGEST_ROW, PairList, Source};
 use crate::contact::rows::{gather, rows_of};
 use crate::vector::Vector;
 
@@ -102,7 +103,7 @@ impl<const D: usize> Source<D> for Pruned<'_, D> {
 
     fn measure(&mut self, _first: &[u32], pairs: &[u32], measured: &mut Measured<D>) {
         for (place, &pair) in pairs.iter().enumerate() {
-            self.whole.copy_pair(pair as usize, place, measured);
+            measured.copy(place, self.whole.of_pair(pair as usize));
         }
     }
 }
@@ -122,9 +123,9 @@ impl<const D: usize> pulp::WithSimd for Excess<'_, D> {
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
         let count = self.excess.len();
         let Pruned { whole, skin, .. } = *self.near;
-        let range = self.first..self.first + count;
-        let separation = whole.separation.columns().map(|column| &column[range.clone()]);
-        let (distance, overlap) = (&whole.distance[range.clone()], &whole.overlap[range]);
+        let (listed, _) = whole.of_pair(self.first);
+        let separation = listed.separation.each_ref().map(|column| &column[..count]);
+        let (distance, overlap) = (&listed.distance[..count], &listed.overlap[..count]);
         let moved = &self.moved[..count];
         for k in 0..count {
             let mut squared = 0.0;

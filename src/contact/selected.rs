@@ -1,6 +1,7 @@
 //! Some pairs of a list as a list of its own, under other numbers.
 
-use crate::contact::pair_list::{Measured, PairList, Search, Source};
+use crate::contact::measured::Measured;
+use crate::contact::pair_list::{PairList, Search, Source};
 
 impl<const D: usize> PairList<D> {
     /// Empties the list and fills it with pairs of another one under other numbers.
@@ -36,7 +37,7 @@ impl<const D: usize> Source<D> for Selected<'_, D> {
 
     fn measure(&mut self, _first: &[u32], pairs: &[u32], measured: &mut Measured<D>) {
         for (place, &pair) in pairs.iter().enumerate() {
-            self.whole.copy_pair(self.seconds[pair as usize].1 as usize, place, measured);
+            measured.copy(place, self.whole.of_pair(self.seconds[pair as usize].1 as usize));
         }
     }
 }
@@ -60,7 +61,7 @@ mod tests {
         // Every second pair from `begin` on, its disks under these numbers.
         let selected = |begin: usize, number: &dyn Fn(u32) -> u32| {
             let pair = |pair: usize| (number(whole.first[pair]), number(whole.second[pair]), pair as u32);
-            let mut found: Vec<(u32, u32, u32)> = (begin..whole.len()).step_by(2).map(pair).collect();
+            let mut found: Vec<(u32, u32, u32)> = whole.numbers().skip(begin).step_by(2).map(pair).collect();
             found.sort_unstable();
             let start = |disk: u32| found.partition_point(|&(first, ..)| first < disk) as u32;
             let starts: Vec<u32> = (0..=count as u32).map(start).collect();

@@ -241,10 +241,10 @@ impl<const D: usize> pulp::WithSimd for Round<'_, D> {
     fn with_simd<S: Simd>(self, _simd: S) {
         let Round { pairs, block, moved, units: (unit, unit_of_coefficients), rounded } = self;
         let count = block.pair_count;
-        let listed = block.pairs..block.pairs + count;
-        let separation = pairs.separation.columns().map(|column| &column[listed.clone()]);
-        let (distances, overlaps) = (&pairs.distance[listed.clone()], &pairs.overlap[listed.clone()]);
-        let coefficients = &pairs.coefficient[listed];
+        let (listed, _) = pairs.of_pair(block.pairs);
+        let separation = listed.separation.each_ref().map(|column| &column[..count]);
+        let (distances, overlaps) = (&listed.distance[..count], &listed.overlap[..count]);
+        let coefficients = &listed.coefficient[..count];
         let moved = &moved[..count];
         let apart = rounded.separation.each_mut().map(|column| &mut column[..count]);
         let (distance, overlap) = (&mut rounded.distance[..count], &mut rounded.overlap[..count]);

@@ -1,6 +1,6 @@
 //! Sums of stiffness over the contacts of each disk, by the blocks and tiles of the hot loop.
 
-use crate::contact::columns::{Anchors, Columns, with_anchors};
+use crate::contact::columns::{Anchors, Columns};
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, Block, PairList};
 use crate::contact::rows::{gather, scatter_with};
@@ -50,23 +50,23 @@ impl<const D: usize, L: PairLaw, W: Fn(usize, f64, f64) -> f64> Task<'_, D, L, W
     fn of_tile(&self, tile: &Tile, offset: usize, row: &mut [f64]) -> Vec<f64> {
         let (pairs, mobile) = (self.pairs, self.mobile_count);
         row.fill(0.0);
-        let mut across = Vec::with_capacity(tile.border_pairs.len());
+        let mut across = vec![0.0; tile.border_pairs.len()];
         let mut columns = Columns::<D>::new();
         let values = &mut [[0.0]; BLOCK];
         for place in tile.inner.start..tile.border.end {
             let block = &pairs.blocks[place];
             gather(&mut columns.pull, pairs, block, (self.displacements, 0));
-            with_anchors(pairs, block, |anchors| {
-                let columns = &mut columns;
-                pulp::Arch::new().dispatch(Arithmetic { task: self, block, columns, anchors, values });
-            });
+            let (columns, anchors) = (&mut columns, Anchors::of(pairs, block));
+            pulp::Arch::new().dispatch(Arithmetic { task: self, block, columns, anchors, values });
             if tile.inner.contains(&place) {
                 scatter_with(values, pairs, block, (row.as_chunks_mut::<1>().0, offset as u32), sum);
                 continue;
             }
             for (&[value], pair) in values.iter().zip(block.pairs..block.pairs + block.pair_count) {
                 row[pairs.first[pair] as usize - offset] += value;
-                across.push(if (pairs.second[pair] as usize) < mobile { value } else { 0.0 });
+                if (pairs.second[pair] as usize) < mobile {
+                    across[pair - tile.border_pairs.start] = value;
+                }
             }
         }
         let held = mobile.saturating_sub(offset).min(row.len());

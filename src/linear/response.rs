@@ -237,7 +237,7 @@ fn push_of<const D: usize, L: PairLaw>(
     let (pairs, law, radii) = (assembly.pairs(), assembly.law(), assembly.radii());
     let mut push = vec![0.0; hessian.matrix().dimension()];
     let grows = |disk: u32| assembly.order()[disk as usize] as usize == centre;
-    for pair in 0..pairs.len() {
+    for pair in pairs.numbers() {
         let (first, second) = (pairs.first[pair], pairs.second[pair]);
         if !(grows(first) || grows(second)) {
             continue;
@@ -249,7 +249,7 @@ fn push_of<const D: usize, L: PairLaw>(
             continue;
         }
         let (growing, other) = if grows(first) { (first, second) } else { (second, first) };
-        let force = law.force(pairs.coefficient[pair], overlap);
+        let force = law.force(pairs.coefficient(pair), overlap);
         let growth = law.coefficient_growth(radii[growing as usize], radii[other as usize]);
         let push_on_first = scaled((law.stiffness(force, overlap) + force * growth) / distance, apart);
         for (disk, sign) in [(first, 1.0), (second, -1.0)] {

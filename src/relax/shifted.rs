@@ -97,7 +97,7 @@ impl<const D: usize> Shifted<D> {
         let power = law.exponent() - 1.0;
         let displacements = &assembly.displacements;
         // F = F' δ / (α − 1).
-        let across = |pair: usize, overlap: f64, stiffness: f64| stiffness * overlap / (power * pairs.distance[pair]);
+        let across = |pair: usize, overlap: f64, stiffness: f64| stiffness * overlap / (power * pairs.distance(pair));
         stiffness_rows(law, pairs, displacements, mobile, across, &mut self.prestress);
         stiffness_rows(law, pairs, displacements, mobile, |_, _, stiffness| stiffness, &mut self.stiffness);
         if L::ON_SITE && law.on_site_coupling() > 0.0 {

@@ -4,7 +4,8 @@ use crate::contact::assembly::Assembly;
 use crate::contact::assembly::upkeep::LISTED;
 use crate::contact::law::PairLaw;
 use crate::contact::neighbours::amend_pairs;
-use crate::vector::{Vector, difference, dot};
+use crate::side_by_side::{self, PIECE};
+use crate::vector::{Vector, difference, dot, larger, longest_difference_squared};
 
 /// A disk has gone far if it went this share of the way for which its list holds \[1\].
 const FAR: f64 = 0.5;
@@ -37,26 +38,30 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             self.moved = self.longest_way(&self.listed);
             return amended;
         };
-        if self.longest_way(&self.listed) > FAR * LISTED * self.skin && !self.amend_all() {
-            return false;
+        let mut moved = self.longest_way(&self.listed);
+        if moved > FAR * LISTED * self.skin {
+            if !self.amend_all() {
+                return false;
+            }
+            moved = self.longest_way(&self.listed);
         }
         // Near pairs are looked for in the list of all pairs, so they must be nearer in that one too. It listed the far disk where it was no
         // farther from here than the longest way, and another one no farther from where it is near than that and half a near skin.
-        if 2.0 * self.longest_way(&self.listed) + 1.5 * skin > self.skin {
+        if 2.0 * moved + 1.5 * skin > self.skin {
             return false;
         }
-        let Some(far) = self.far_from(&self.near_listed, skin) else { return false };
+        let Some((far, moved)) = self.far_from(&self.near_listed, skin) else { return false };
         for &disk in &far {
             self.near_listed[disk as usize] = self.displacements[disk as usize];
         }
         let marked = self.marked(&far);
-        self.moved = self.longest_way(&self.near_listed);
+        self.moved = moved;
         self.near_pairs.amend_from(&self.pairs, &marked, (&self.near_listed, skin))
     }
 
     /// The same for the list of all pairs.
     fn amend_all(&mut self) -> bool {
-        let Some(far) = self.far_from(&self.listed, self.skin) else { return false };
+        let Some((far, _)) = self.far_from(&self.listed, self.skin) else { return false };
         let (mut listed, mut roaming) = (self.listed.clone(), self.roaming.clone());
         for &disk in &far {
             listed[disk as usize] = self.displacements[disk as usize];
@@ -80,20 +85,34 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         amended
     }
 
-    /// The mobile disks that went far from where they were, if they are few and the list may be amended.
-    fn far_from(&self, listed: &[Vector<D>], skin: f64) -> Option<Vec<u32>> {
+    /// The mobile disks that went far from where they were, if they are few and the list may be amended, and the longest way of the others.
+    fn far_from(&self, listed: &[Vector<D>], skin: f64) -> Option<(Vec<u32>, f64)> {
         if !self.pairs.keeps_places {
             return None;
         }
         let limit = FAR * LISTED * skin;
-        let mobile = self.displacements[..self.mobile_count].iter().zip(listed).enumerate();
-        let far = mobile.filter(|&(_, (&now, &before))| {
-            let way = difference(now, before);
-            dot(way, way) > limit * limit
+        let mobile = &self.displacements[..self.mobile_count];
+        let pieces = mobile.chunks(PIECE).zip(listed[..self.mobile_count].chunks(PIECE)).enumerate();
+        let found = side_by_side::each(pieces, |(piece, (now, before))| {
+            let longest = longest_difference_squared(now, before);
+            if longest <= limit * limit {
+                return (Vec::new(), longest);
+            }
+            let (mut far, mut longest) = (Vec::new(), 0.0);
+            for (place, (&now, &before)) in now.iter().zip(before).enumerate() {
+                let way = difference(now, before);
+                let squared = dot(way, way);
+                if squared > limit * limit {
+                    far.push((piece * PIECE + place) as u32);
+                } else {
+                    longest = larger(longest, squared);
+                }
+            }
+            (far, longest)
         });
-        let most = self.len() / ONE_OF;
-        let far: Vec<u32> = far.map(|(disk, _)| disk as u32).take(most + 1).collect();
-        (far.len() <= most).then_some(far)
+        let longest = found.iter().fold(0.0, |longest, &(_, squared)| larger(longest, squared)).sqrt();
+        let far: Vec<u32> = found.into_iter().flat_map(|(far, _)| far).collect();
+        (far.len() <= self.len() / ONE_OF).then_some((far, longest))
     }
 
     fn marked(&self, disks: &[u32]) -> Vec<bool> {

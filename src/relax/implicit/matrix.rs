@@ -146,15 +146,16 @@ impl<const D: usize> StepMatrix<D> {
         let (pairs, law) = (assembly.pairs(), assembly.law());
         let way = |disk: u32| self.ways.get(disk as usize).copied().unwrap_or(0.0);
         self.links.clear();
-        self.margins.clear();
-        self.along.clear();
-        for pair in 0..pairs.len() {
+        for column in [&mut self.margins, &mut self.along] {
+            column.clear();
+            column.resize(pairs.place_count(), 0.0);
+        }
+        for pair in pairs.numbers() {
             let ends = (pairs.first[pair], pairs.second[pair]);
             let margin = (OUTLOOK * larger(way(ends.0), way(ends.1))).min(terms.margin);
             let (apart, distance, overlap) = geometry(pairs, pair, &assembly.displacements);
-            self.margins.push(margin);
+            self.margins[pair] = margin;
             if overlap <= -margin {
-                self.along.push(0.0);
                 continue;
             }
             let wide = overlap + margin;
@@ -162,8 +163,8 @@ impl<const D: usize> StepMatrix<D> {
                 Inertia::Massive => terms.damping.damping(terms.damping_coefficient[pair], wide),
                 Inertia::Friction(_) => 0.0,
             };
-            let along = law.stiffness(law.force(pairs.coefficient[pair], wide), wide) + damping / terms.scale;
-            self.along.push(along);
+            let along = law.stiffness(law.force(pairs.coefficient(pair), wide), wide) + damping / terms.scale;
+            self.along[pair] = along;
             self.links.push(Link { ends, normal: scaled(1.0 / distance, apart), damping });
         }
     }

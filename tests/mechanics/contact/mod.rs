@@ -124,14 +124,15 @@ fn assert_list_is_complete<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>
     let pairs = assembly.pairs();
     let order = assembly.order();
     let blur = blur(packing);
-    let listed: BTreeSet<(usize, usize)> = (0..pairs.len())
+    let listed: BTreeSet<(usize, usize)> = pairs
+        .numbers()
         .map(|pair| {
             let (i, j) = (pairs.first[pair] as usize, pairs.second[pair] as usize);
             assert!(i < j && i < assembly.mobile_count(), "pair {i} {j} is held–held or in the wrong order");
             let (a, b) = (order[i] as usize, order[j] as usize);
             if fresh {
                 let reach = packing.radii()[a] + packing.radii()[b] + SKIN * smallest;
-                assert!(pairs.distance[pair] < reach + blur, "pair {a} {b} is beyond the skin");
+                assert!(pairs.distance(pair) < reach + blur, "pair {a} {b} is beyond the skin");
             }
             (a.min(b), a.max(b))
         })

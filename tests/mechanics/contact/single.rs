@@ -49,10 +49,10 @@ fn compare<const D: usize, L: PairLaw>(packing: &Packing<D>, law: L, length: f64
 /// Sum of the contact forces on a disk.
 fn pulls<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, disk: usize) -> f64 {
     let (law, pairs) = (assembly.law(), assembly.pairs());
-    let with = (0..pairs.len()).filter(|&k| pairs.first[k] as usize == disk || pairs.second[k] as usize == disk);
+    let with = pairs.numbers().filter(|&k| pairs.first[k] as usize == disk || pairs.second[k] as usize == disk);
     with.map(|k| {
         let (_, _, overlap) = jamscope::contact::forces::geometry(pairs, k, &assembly.displacements);
-        law.force(pairs.coefficient[k], overlap.max(0.0))
+        law.force(pairs.coefficient(k), overlap.max(0.0))
     })
     .sum()
 }

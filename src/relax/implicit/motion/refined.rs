@@ -85,18 +85,19 @@ impl<const D: usize> Refinement<D> {
         self.list = list;
         self.starts.clear();
         self.starts.resize(disk_count + 1, 0);
-        for &disk in pairs.first.iter().chain(&pairs.second) {
-            self.starts[disk as usize + 1] += 1;
+        for pair in pairs.numbers() {
+            self.starts[pairs.first[pair] as usize + 1] += 1;
+            self.starts[pairs.second[pair] as usize + 1] += 1;
         }
         for disk in 0..disk_count {
             self.starts[disk + 1] += self.starts[disk];
         }
         self.pairs.clear();
         self.pairs.resize(2 * pairs.len(), 0);
-        for (pair, (&first, &second)) in pairs.first.iter().zip(&pairs.second).enumerate() {
-            for disk in [first as usize, second as usize] {
-                self.pairs[self.starts[disk] as usize] = pair as u32;
-                self.starts[disk] += 1;
+        for pair in pairs.numbers() {
+            for disk in [pairs.first[pair], pairs.second[pair]] {
+                self.pairs[self.starts[disk as usize] as usize] = pair as u32;
+                self.starts[disk as usize] += 1;
             }
         }
         // Each start has run to that of the next disk.

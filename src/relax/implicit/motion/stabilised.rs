@@ -111,14 +111,14 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         blocks.clear();
         blocks.resize(assembly.len(), [[0.0; D]; D]);
         let mut ratio = 0.0;
-        for pair in 0..pairs.len() {
+        for pair in pairs.numbers() {
             let (apart, distance, overlap) = geometry(pairs, pair, &assembly.displacements);
             if overlap + self.margin <= 0.0 {
                 continue;
             }
             let damping = self.damping.damping(self.damping_coefficient[pair], overlap.max(0.0));
             if overlap > 0.0 {
-                let force = law.force(pairs.coefficient[pair], overlap);
+                let force = law.force(pairs.coefficient(pair), overlap);
                 ratio = larger(law.stiffness(force, overlap) / damping, ratio);
             }
             let (i, j) = (pairs.first[pair] as usize, pairs.second[pair] as usize);
