@@ -54,6 +54,20 @@ impl<const D: usize> Crossing<D> {
         }
     }
 
+    /// 1500 steps, most of them by near pairs, every 75th checked; the list of all pairs is not made anew.
+    fn go_slowly(&mut self) {
+        let (all, mut near) = (self.assembly.pairs().len(), 0);
+        for step in 1..=1500 {
+            self.step();
+            near += usize::from(self.assembly.pairs().len() < all * 9 / 10);
+            if step % 75 == 0 {
+                self.check();
+            }
+        }
+        assert_eq!(self.assembly.rebuild_count(), 1);
+        assert!(near > 1000, "near pairs in {near} of 1500 steps");
+    }
+
     /// Contacts and forces of the list as it is are those of one made anew.
     fn check(&self) {
         let [mut amended, mut anew] = [self.assembly.clone(), self.assembly.clone()];
@@ -109,36 +123,16 @@ fn so_does_one_of_balls() {
 #[test]
 fn near_pairs_amended_for_disks_that_go_far_miss_no_contact() {
     let (packing, middle) = three_tiles();
-    let mut crossing = Crossing::new(&packing, (40, middle), (1e-4, 1e-6));
-    let (all, mut near) = (crossing.assembly.pairs().len(), 0);
-    for step in 1..=1500 {
-        crossing.step();
-        near += usize::from(crossing.assembly.pairs().len() < all * 9 / 10);
-        if step % 75 == 0 {
-            crossing.check();
-        }
-    }
-    assert_eq!(crossing.assembly.rebuild_count(), 1);
-    assert!(near > 1000, "near pairs in {near} of 1500 steps");
+    Crossing::new(&packing, (40, middle), (1e-4, 1e-6)).go_slowly();
 }
 
 #[test]
 fn so_do_those_of_balls() {
     // Shaken, so that some of the pairs listed are not near.
-    let mut crossing = Crossing::new(&balls(0.1), (8, [0.0; 3]), (1e-4, 1e-6));
-    let (all, mut near) = (crossing.assembly.pairs().len(), 0);
-    for step in 1..=1500 {
-        crossing.step();
-        near += usize::from(crossing.assembly.pairs().len() < all * 9 / 10);
-        if step % 75 == 0 {
-            crossing.check();
-        }
-    }
-    assert_eq!(crossing.assembly.rebuild_count(), 1);
-    assert!(near > 1000, "near pairs in {near} of 1500 steps");
+    Crossing::new(&balls(0.1), (8, [0.0; 3]), (1e-4, 1e-6)).go_slowly();
 }
 
-/// A bound of ten times the way is told at every step: a tenth of the way that the list holds for, it says that it does not.
+/// A bound of ten times the way is told at every step: added up, it ends the list after a tenth of what that holds for.
 #[test]
 fn a_way_that_is_taken_stands_for_the_bounds_of_a_long_list() {
     let (packing, middle) = three_tiles();
