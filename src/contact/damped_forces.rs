@@ -8,10 +8,10 @@
 
 use crate::contact::columns::{Anchors, Columns};
 use crate::contact::damping::DampingLaw;
-use crate::contact::forces::geometry;
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, PairList};
 use crate::contact::rows::{gather, scatter};
+use crate::contact::walk::{Walked, walk};
 use crate::simd::lanes;
 use crate::vector::Vector;
 
@@ -113,11 +113,10 @@ pub fn add_damping<const D: usize, C: DampingLaw>(
     forces: &mut [Vector<D>],
 ) -> f64 {
     let mut dissipation = 0.0;
-    for k in pairs.numbers() {
-        let (i, j) = (pairs.first[k] as usize, pairs.second[k] as usize);
-        let (apart, distance, overlap) = geometry(pairs, k, displacements);
+    walk(pairs, displacements, |&Walked { pair, ends, apart, distance, overlap, .. }| {
         if overlap > 0.0 {
-            let damping = law.damping(damping_coefficient[k], overlap);
+            let (i, j) = (ends.0 as usize, ends.1 as usize);
+            let damping = law.damping(damping_coefficient[pair], overlap);
             let mut along = 0.0;
             for d in 0..D {
                 along += (velocities[i][d] - velocities[j][d]) * apart[d];
@@ -130,7 +129,7 @@ pub fn add_damping<const D: usize, C: DampingLaw>(
                 forces[j][d] += factor * apart[d];
             }
         }
-    }
+    });
     dissipation
 }
 

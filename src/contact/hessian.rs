@@ -10,9 +10,9 @@
 //! without contacts are left out by construction, since their rows would be zero.
 
 use crate::contact::assembly::Assembly;
-use crate::contact::forces::geometry;
 use crate::contact::law::PairLaw;
 use crate::contact::network::backbone;
+use crate::contact::walk::{Walked, walk};
 use crate::packing::{Packing, PackingError};
 use crate::sparse::{BlockPattern, Graph, SymmetricMatrix};
 use crate::vector::{Vector, dot, scaled};
@@ -225,24 +225,23 @@ impl<const D: usize> Hessian<D> {
         let (pairs, law, prestress) = (assembly.pairs(), assembly.law(), self.prestress);
         self.links.clear();
         self.near.clear();
-        for pair in pairs.numbers() {
-            let (apart, distance, overlap) = geometry(pairs, pair, &assembly.displacements);
-            let (ends, reach) = ((pairs.first[pair], pairs.second[pair]), reach(pair));
+        walk(pairs, &assembly.displacements, |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
+            let reach = reach(pair);
             // Written so that NaN becomes an entry, and is refused there.
             if overlap <= -(reach + spare) {
-                continue;
+                return;
             }
             self.near.push(ends);
             if overlap <= -reach {
-                continue;
+                return;
             }
-            let force = if overlap < 0.0 { 0.0 } else { law.force(pairs.coefficient(pair), overlap) };
+            let force = if overlap < 0.0 { 0.0 } else { law.force(coefficient, overlap) };
             let stiffness = if overlap.is_nan() { overlap } else { law.stiffness(force, overlap) };
             let across = prestress.across(force, distance);
             let (stiffness, across) = weights(&StiffContact { pair, ends, stiffness, across });
             let block = contact_block(stiffness, across, apart, distance);
             self.links.push(Link { ends, block });
-        }
+        });
     }
 
     fn set_members<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {

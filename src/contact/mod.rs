@@ -27,6 +27,7 @@ pub mod stiffness;
 mod tiles;
 pub mod totals;
 mod turns;
+pub mod walk;
 
 pub use assembly::Assembly;
 #[cfg(feature = "linear")]

@@ -11,8 +11,8 @@
 use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
 use crate::contact::damping::DampingLaw;
-use crate::contact::forces::geometry;
 use crate::contact::hessian::{Hessian, Members, Prestress};
+use crate::contact::walk::{Walked, walk};
 use crate::linear::iterative::{IncompleteFactor, IterationLimits, conjugate_gradients};
 use crate::linear::{Analysis, Factorisation, LinearError};
 use crate::relax::implicit::motion::{Inertia, Work};
@@ -150,23 +150,21 @@ impl<const D: usize> StepMatrix<D> {
             column.clear();
             column.resize(pairs.place_count(), 0.0);
         }
-        for pair in pairs.numbers() {
-            let ends = (pairs.first[pair], pairs.second[pair]);
+        walk(pairs, &assembly.displacements, |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
             let margin = (OUTLOOK * larger(way(ends.0), way(ends.1))).min(terms.margin);
-            let (apart, distance, overlap) = geometry(pairs, pair, &assembly.displacements);
             self.margins[pair] = margin;
             if overlap <= -margin {
-                continue;
+                return;
             }
             let wide = overlap + margin;
             let damping = match terms.inertia {
                 Inertia::Massive => terms.damping.damping(terms.damping_coefficient[pair], wide),
                 Inertia::Friction(_) => 0.0,
             };
-            let along = law.stiffness(law.force(pairs.coefficient(pair), wide), wide) + damping / terms.scale;
+            let along = law.stiffness(law.force(coefficient, wide), wide) + damping / terms.scale;
             self.along[pair] = along;
             self.links.push(Link { ends, normal: scaled(1.0 / distance, apart), damping });
-        }
+        });
     }
 }
 

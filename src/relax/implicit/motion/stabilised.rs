@@ -3,7 +3,7 @@
 use crate::contact::PairLaw;
 use crate::contact::damped_forces::damped_forces;
 use crate::contact::damping::DampingLaw;
-use crate::contact::forces::geometry;
+use crate::contact::walk::{Walked, walk};
 use crate::packing::PackingError;
 use crate::relax::implicit::chebyshev::{Chebyshev, StageTerms, Stiffness};
 use crate::relax::implicit::motion::{ImplicitMotion, Inertia};
@@ -111,17 +111,16 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         blocks.clear();
         blocks.resize(assembly.len(), [[0.0; D]; D]);
         let mut ratio = 0.0;
-        for pair in pairs.numbers() {
-            let (apart, distance, overlap) = geometry(pairs, pair, &assembly.displacements);
+        walk(pairs, &assembly.displacements, |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
             if overlap + self.margin <= 0.0 {
-                continue;
+                return;
             }
             let damping = self.damping.damping(self.damping_coefficient[pair], overlap.max(0.0));
             if overlap > 0.0 {
-                let force = law.force(pairs.coefficient(pair), overlap);
+                let force = law.force(coefficient, overlap);
                 ratio = larger(law.stiffness(force, overlap) / damping, ratio);
             }
-            let (i, j) = (pairs.first[pair] as usize, pairs.second[pair] as usize);
+            let (i, j) = (ends.0 as usize, ends.1 as usize);
             let weight = if j < mobile { damping } else { 0.5 * damping } / (distance * distance);
             for a in 0..D {
                 for b in 0..D {
@@ -130,7 +129,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
                     blocks[j][a][b] += value;
                 }
             }
-        }
+        });
         let decay = 2.0 * blocks[..mobile].iter().map(largest_eigenvalue).fold(0.0, larger);
         (ratio.is_finite() && decay.is_finite()).then_some(Stiffness { decay, ratio })
     }
