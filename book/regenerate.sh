@@ -65,7 +65,7 @@ take() { cp "$1" "$2.new" && mv "$2.new" "$2"; }
 first_run() {
     "$jamscope" run --out "$work/first_run"
     python3 book/pictures.py run "$work/first_run/report.html" "$images"
-    record "three_phases.svg, first_run/*.svg" "jamscope run && python3 book/pictures.py run jamscope-report/report.html $images" "3, 26, 11"
+    record "three_phases.svg, first_run/*.svg" "jamscope run && python3 book/pictures.py run jamscope-report/report.html $images" "3, 326, 11"
 }
 
 angular() {

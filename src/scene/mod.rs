@@ -118,7 +118,7 @@ impl Default for Scene {
                 },
                 Sample {
                     name: "plastic".into(),
-                    seed: 26,
+                    seed: 326,
                     source: Source::Pressure(10.0),
                     relaxer: RelaxerChoice::Fire(Fire::default()),
                 },

@@ -359,3 +359,32 @@ fn analyse_says_what_is_missing() {
     assert!(of_folder().contains("are both a state"), "{}", of_folder());
     assert!(!out.exists(), "nothing was written");
 }
+
+#[test]
+#[cfg(all(feature = "fit", feature = "linear", feature = "plot"))]
+fn the_first_run_prints_what_its_chapter_quotes() {
+    let chapter = Path::new(env!("CARGO_MANIFEST_DIR")).join("book/src/first_run.md");
+    let chapter = std::fs::read_to_string(chapter).expect("a chapter of the book");
+    let blocks = chapter.split("```");
+    let quoted = blocks.skip(1).step_by(2).find(|block| block.contains("jamscope 0.1.0,")).expect("what it prints");
+    let quoted: Vec<&str> = quoted.lines().skip(1).filter(|line| !line.is_empty() && *line != "…").collect();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_jamscope")).current_dir(&folder).output().expect("the program starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let printed = String::from_utf8(output.stdout).expect("Unicode");
+    // In their order, whatever stands between them.
+    let mut lines = printed.lines();
+    for line in &quoted {
+        assert!(lines.any(|printed| printed == *line), "not printed, or not in this place: {line:?}\n{printed}");
+    }
+    assert!(quoted.len() > 20, "{quoted:?}");
+    // The three phases, by all that says which.
+    let phases = ["phase", "by the radial profile", "by the sign of Δp", "by the angular spectrum"];
+    for row in phases {
+        let found = printed.lines().find(|line| line.trim_start().starts_with(&format!("{row} "))).expect(row);
+        let unjammed = if row == "phase" { "unjammed" } else { "–" };
+        let words: Vec<&str> = found.trim_start().strip_prefix(row).expect("found by it").split_whitespace().collect();
+        assert_eq!(words, [unjammed, "plastic", "quasielastic"], "{row}");
+    }
+}
