@@ -49,8 +49,8 @@ pub enum Members {
 /// that are).
 ///
 /// # Cost
-/// Linear in pairs of the list: six to ten evaluations of the forces with totals, from 1 000 to 89 000 disks
-/// (`cargo bench --bench linear`).
+/// Linear in pairs of the list: nine to fifteen evaluations of the forces with totals, from 1 000 to 89 000 disks
+/// (`examples/scaling`).
 #[derive(Debug, Clone)]
 pub struct Hessian<const D: usize> {
     prestress: Prestress,

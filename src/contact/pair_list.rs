@@ -32,6 +32,11 @@ pub const LONGEST_ROW: usize = 8;
 /// Fewest disks of a tile: packings of up to so many have no border.
 const LEAST_TILE: usize = 8192;
 
+/// Layers of disks in a tile of a large packing: few pairs cross its border, and there is a tile for each of many threads.
+const fn layers(dimension: usize) -> usize {
+    if dimension == 2 { 32 } else { 16 }
+}
+
 /// Pairs that may touch. A pair bears the number of its place: block after block has [`BLOCK`] of them, the last of which may be vacant.
 #[derive(Debug, Clone, Default)]
 pub struct PairList<const D: usize> {
@@ -195,9 +200,8 @@ impl<const D: usize> PairList<D> {
     ) -> Result<(), PackingError> {
         self.first_count = first_count;
         self.keeps_places = keeps_places;
-        // Sixteen layers of disks: few pairs cross its border.
         let layer = (disk_count as f64).powf(1.0 - 1.0 / D as f64);
-        let tile_size = LEAST_TILE.max(16 * layer as usize);
+        let tile_size = LEAST_TILE.max(layers(D) * layer as usize);
         let disks = |place: usize| place * tile_size..disk_count.min((place + 1) * tile_size);
         self.fill_tiles(disk_count.div_ceil(tile_size), tile_size, |list, place, tile| {
             list.add_tile(disks(place), first_count, search(), tile);
