@@ -12,8 +12,41 @@ use rand_pcg::Pcg64;
 
 use crate::sample::{Sample, radius_of};
 
-/// The plateau: from x to x, so that it is read at the same scaled distances at every pressure.
-const PLATEAU: [f64; 2] = [8.0, 16.0];
+/// What makes a distance a number, and with it where the plateau is read: at the same scaled distances at every pressure.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Scale {
+    /// x = r ΔZ.
+    Excess,
+    /// x = r √ΔZ.
+    Root,
+}
+
+impl Scale {
+    /// x over r \[1 / length\].
+    fn of(self, excess: f64) -> f64 {
+        match self {
+            Scale::Excess => excess,
+            Scale::Root => excess.sqrt(),
+        }
+    }
+
+    /// The plateau: from x to x. The two agree at ΔZ = 0.64.
+    fn plateau(self) -> [f64; 2] {
+        match self {
+            Scale::Excess => [8.0, 16.0],
+            Scale::Root => [10.0, 20.0],
+        }
+    }
+}
+
+impl fmt::Display for Scale {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(match self {
+            Scale::Excess => "ℓ ΔZ",
+            Scale::Root => "ℓ √ΔZ",
+        })
+    }
+}
 
 /// x up to which the figure goes.
 const DRAWN_TO: f64 = 20.0;
@@ -27,10 +60,11 @@ pub const SHARES: [f64; 3] = [0.7, 0.8, 0.9];
 /// Samples drawn anew for an error.
 const DRAWN: usize = 200;
 
-/// What is looked at: h_∥ r² or h_r r.
+/// What is looked at: h_∥ r², h_r r, or the same of changes of force −k d_∥.
 #[derive(Clone, Copy)]
 pub enum Field {
     Stretching,
+    Force,
     Radial,
 }
 
@@ -38,13 +72,14 @@ impl Field {
     fn of(self, sample: &Sample) -> &[Option<f64>] {
         match self {
             Field::Stretching => &sample.stretching,
+            Field::Force => &sample.force,
             Field::Radial => &sample.radial,
         }
     }
 
     fn tail(self) -> Tail {
         match self {
-            Field::Stretching => Tail::InverseSquare,
+            Field::Stretching | Field::Force => Tail::InverseSquare,
             Field::Radial => Tail::InverseDistance,
         }
     }
@@ -54,6 +89,7 @@ impl fmt::Display for Field {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.pad(match self {
             Field::Stretching => "h_∥ r²",
+            Field::Force => "h_F r²",
             Field::Radial => "h_r r",
         })
     }
@@ -85,23 +121,38 @@ impl Average {
     }
 }
 
-/// C at each share with its error, and the plateau over d_0.
+/// What is read from samples.
+#[derive(Clone, Copy)]
+pub struct Reading {
+    pub field: Field,
+    pub average: Average,
+    pub scale: Scale,
+}
+
+impl fmt::Display for Reading {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{:<6}, {:<16}, {:<5}", self.field, self.average, self.scale)
+    }
+}
+
+/// ℓ as x at each share with its error, and the plateau over d_0.
 pub struct Lengths {
+    scale: Scale,
     plateau: f64,
     products: [Option<(f64, f64)>; SHARES.len()],
 }
 
 impl Lengths {
     /// Of all samples of a pressure.
-    pub fn of(samples: &[Sample], (field, average): (Field, Average)) -> Result<Self, IsostaticError> {
+    pub fn of(samples: &[Sample], reading: Reading) -> Result<Self, IsostaticError> {
         let all: Vec<&Sample> = samples.iter().collect();
-        let (plateau, products) = read(&all, field, average)?;
+        let (plateau, products) = read(&all, reading)?;
         let mut generator = Pcg64::seed_from_u64(1);
         let mut drawn: [Vec<f64>; SHARES.len()] = Default::default();
         for _ in 0..DRAWN {
             let some: Vec<&Sample> =
                 samples.iter().map(|_| &samples[generator.random_range(0..samples.len())]).collect();
-            for (all, product) in drawn.iter_mut().zip(read(&some, field, average)?.1) {
+            for (all, product) in drawn.iter_mut().zip(read(&some, reading)?.1) {
                 all.extend(product);
             }
         }
@@ -110,16 +161,17 @@ impl Lengths {
             (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (values.len() as f64 - 1.0)).sqrt()
         };
         let products = std::array::from_fn(|place| Some((products[place]?, error(&drawn[place]))));
-        Ok(Lengths { plateau, products })
+        Ok(Lengths { scale: reading.scale, plateau, products })
     }
 }
 
 impl fmt::Display for Lengths {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.plateau.is_nan() {
-            return write!(formatter, "the box is too small for a plateau at x = {} to {}", PLATEAU[0], PLATEAU[1]);
+            let [from, to] = self.scale.plateau();
+            return write!(formatter, "the box is too small for a plateau at x = {from} to {to}");
         }
-        write!(formatter, "plateau {:.2} d_0; C =", self.plateau)?;
+        write!(formatter, "plateau {:.2} d_0;", self.plateau)?;
         self.products.iter().try_for_each(|product| match product {
             Some((product, error)) => write!(formatter, " {product:.2} ± {error:.2}"),
             None => write!(formatter, " none"),
@@ -137,14 +189,12 @@ fn mean(samples: &[&Sample], field: Field, average: Average) -> Vec<(f64, f64)> 
     enough.map(|(radius, values)| (radius, average.of(&values))).collect()
 }
 
-/// The plateau and C at every share of it.
-fn read(
-    samples: &[&Sample],
-    field: Field,
-    average: Average,
-) -> Result<(f64, [Option<f64>; SHARES.len()]), IsostaticError> {
-    let (excess, outer_radius) = (samples[0].excess, samples[0].outer_radius);
-    let [from, to] = PLATEAU.map(|x| x / (excess * outer_radius));
+/// The plateau and ℓ as x at every share of it.
+fn read(samples: &[&Sample], reading: Reading) -> Result<(f64, [Option<f64>; SHARES.len()]), IsostaticError> {
+    let Reading { field, average, scale } = reading;
+    let outer_radius = samples[0].outer_radius;
+    let per_length = scale.of(samples[0].excess);
+    let [from, to] = scale.plateau().map(|x| x / (per_length * outer_radius));
     if to > WITHIN {
         return Ok((f64::NAN, [None; SHARES.len()]));
     }
@@ -163,8 +213,8 @@ fn read(
             rule: IsostaticRule::Plateau { from, to, share },
             ..IsostaticSettings::default()
         };
-        let length = IsostaticLength::of(&rings, Some(excess), 1.0, outer_radius, &settings)?;
-        plateau = length.threshold.unwrap_or(f64::NAN) / (share * excess.powi(power));
+        let length = IsostaticLength::of(&rings, Some(per_length), 1.0, outer_radius, &settings)?;
+        plateau = length.threshold.unwrap_or(f64::NAN) / (share * per_length.powi(power));
         if let IsostaticOutcome::Reached { product: found, .. } = length.outcome {
             *product = Some(found);
         }
@@ -176,8 +226,9 @@ fn read(
 pub fn scaled(samples: &[Sample]) -> Result<IsostaticLength, IsostaticError> {
     let (excess, outer_radius) = (samples[0].excess, samples[0].outer_radius);
     let all: Vec<&Sample> = samples.iter().collect();
-    let (plateau, _) = read(&all, Field::Stretching, Average::Logarithms)?;
-    let drawn = mean(&all, Field::Stretching, Average::Logarithms).into_iter().filter(|(r, _)| r * excess < DRAWN_TO);
+    let reading = Reading { field: Field::Stretching, average: Average::Logarithms, scale: Scale::Excess };
+    let (plateau, _) = read(&all, reading)?;
+    let drawn = mean(&all, reading.field, reading.average).into_iter().filter(|(r, _)| r * excess < DRAWN_TO);
     let ring = |(radius, value): (f64, f64)| FluctuationRing {
         radius,
         count: samples.len(),
@@ -202,7 +253,7 @@ pub fn powers(pressures: &[(f64, Lengths)]) -> [Option<(f64, f64)>; SHARES.len()
             .iter()
             .filter_map(|(excess, lengths)| {
                 let (product, error) = lengths.products[place]?;
-                Some([excess.ln(), (product / excess).ln(), (product / error).powi(2)])
+                Some([excess.ln(), (product / lengths.scale.of(*excess)).ln(), (product / error).powi(2)])
             })
             .collect();
         let total: f64 = points.iter().map(|[_, _, weight]| weight).sum();

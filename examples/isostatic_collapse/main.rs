@@ -8,6 +8,7 @@
 //! that far away h_∥ falls as 1/r². Printed for every pressure: ΔZ, the plateau of h_∥ r² over d_0 and C at some shares of it, with errors from a
 //! bootstrap over centres; means over centres are those of h² and geometric ones. The same for h_r r. Then the power of ΔZ that the length follows.
 //!
+//! - `unstressed`: the linear response of springs at rest, contact forces left out.
 //! - `relaxed D_0`, `damped D_0`: the disk grows by D_0 and the packing relaxes, by FIRE and Newton or by damped dynamics; else the linear response.
 //! - `figure FILE`: h_∥ r² over its plateau against r ΔZ, geometric means, into an SVG file.
 //! - `held`: a circle with a held rim, its centre held or free; beside what is measured, what a point force makes of the difference.
@@ -23,7 +24,7 @@ use jamscope::linear::{ElasticModuli, LinearError};
 use jamscope::observe::IsostaticLength;
 use jamscope::report::figures::isostatic::isostatic_figure;
 
-use curve::{Average, Field, Lengths, SHARES, powers, scaled};
+use curve::{Average, Field, Lengths, Reading, SHARES, Scale, powers, scaled};
 use held::print_held;
 use sample::{Growth, Sample, prepared};
 
@@ -31,12 +32,20 @@ use sample::{Growth, Sample, prepared};
 const PRESSURES: [f64; 4] = [30.0, 100.0, 300.0, 1000.0];
 
 /// What is printed.
-const LOOKED_AT: [(Field, Average); 4] = [
-    (Field::Stretching, Average::Squares),
-    (Field::Stretching, Average::Logarithms),
-    (Field::Radial, Average::Squares),
-    (Field::Radial, Average::Logarithms),
+const LOOKED_AT: [Reading; 8] = [
+    reading(Field::Stretching, Average::Squares, Scale::Excess),
+    reading(Field::Stretching, Average::Logarithms, Scale::Excess),
+    reading(Field::Stretching, Average::Logarithms, Scale::Root),
+    reading(Field::Force, Average::Squares, Scale::Excess),
+    reading(Field::Force, Average::Logarithms, Scale::Excess),
+    reading(Field::Force, Average::Logarithms, Scale::Root),
+    reading(Field::Radial, Average::Squares, Scale::Excess),
+    reading(Field::Radial, Average::Logarithms, Scale::Excess),
 ];
+
+const fn reading(field: Field, average: Average, scale: Scale) -> Reading {
+    Reading { field, average, scale }
+}
 
 /// What is asked for.
 struct Arguments {
@@ -52,7 +61,7 @@ struct Arguments {
 impl Arguments {
     fn read() -> Result<Self, Box<dyn Error>> {
         let mut words = std::env::args().skip(1).peekable();
-        let (mut growth, mut held, mut figure) = (Growth::Linear, false, None);
+        let (mut growth, mut held, mut figure) = (Growth::Linear(Prestress::Included), false, None);
         while let Some(option) = words.next_if(|word| word.parse::<f64>().is_err()) {
             let mut increase = || {
                 words
@@ -63,10 +72,11 @@ impl Arguments {
             };
             match option.as_str() {
                 "held" => held = true,
+                "unstressed" => growth = Growth::Linear(Prestress::LeftOut),
                 "figure" => figure = Some(words.next().ok_or("figure needs a file")?),
                 "relaxed" => growth = Growth::Relaxed { increase: increase()?, damped: false },
                 "damped" => growth = Growth::Relaxed { increase: increase()?, damped: true },
-                _ => return Err(format!("{option:?} is none of relaxed, damped, figure, held").into()),
+                _ => return Err(format!("{option:?} is none of unstressed, relaxed, damped, figure, held").into()),
             }
         }
         let numbers: Vec<f64> = words.map(|word| word.parse()).collect::<Result<_, _>>()?;
@@ -107,13 +117,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
         for (looked_at, all) in LOOKED_AT.into_iter().zip(&mut lengths) {
             let found = Lengths::of(&samples, looked_at)?;
-            println!("  {:<6}, {:<16}: {found}", looked_at.0, looked_at.1);
+            println!("  {looked_at}: {found}");
             all.push((excess, found));
         }
         curves.push(samples);
     }
-    for ((field, average), lengths) in LOOKED_AT.iter().zip(&lengths) {
-        print!("the power of ΔZ that ℓ follows, {field:<6}, {average:<16}:");
+    for (looked_at, lengths) in LOOKED_AT.iter().zip(&lengths) {
+        print!("the power of ΔZ that ℓ follows, {looked_at}:");
         for power in powers(lengths) {
             match power {
                 Some((power, error)) => print!(" {power:.2} ± {error:.2}"),

@@ -7,19 +7,20 @@ use jamscope::contact::{Hertzian, Prestress};
 use jamscope::displacement::DisplacementField;
 use jamscope::inflation::{Boundary, Centre, Inflation, inflate};
 use jamscope::linear::LinearResponse;
-use jamscope::observe::bond_changes::{BondChanges, BondSet};
+use jamscope::observe::bond_changes::{BondChange, BondChanges, BondSet};
 use jamscope::observe::fluctuations::Fluctuations;
 use jamscope::observe::{ExcessCoordination, State};
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{ImplicitDynamics, Staged};
+use jamscope::vector::norm;
 use rayon::prelude::*;
 
 /// How a disk grows.
 #[derive(Clone, Copy)]
 pub enum Growth {
-    /// By an infinitesimal amount.
-    Linear,
+    /// By an infinitesimal amount, contact forces counted or left out (springs at rest).
+    Linear(Prestress),
     /// By this much \[length\], and everything comes to rest.
     Relaxed { increase: f64, damped: bool },
 }
@@ -27,7 +28,8 @@ pub enum Growth {
 impl fmt::Display for Growth {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Growth::Linear => write!(formatter, "linear response"),
+            Growth::Linear(Prestress::Included) => write!(formatter, "linear response"),
+            Growth::Linear(Prestress::LeftOut) => write!(formatter, "linear response of springs at rest"),
             Growth::Relaxed { increase, damped } => {
                 write!(formatter, "d_0 = {increase}, {}", if *damped { "damped dynamics" } else { "FIRE and Newton" })
             }
@@ -41,12 +43,14 @@ const RING: f64 = 0.08;
 /// Radius from which on rings count \[length\]: nearer are the contacts of the disk that grows, which it pushes itself.
 const FROM: f64 = 1.5;
 
-/// Around one disk: in each ring h of d_∥ r² and of d_r r over d_0, by the number of the ring; both are level in an elastic medium.
+/// Around one disk: in each ring h of d_∥ r², of k d_∥ r² over the mean k, and of d_r r over d_0, by the number of the ring; all are
+/// level in an elastic medium.
 pub struct Sample {
     /// ΔZ and L/2, means over packings.
     pub excess: f64,
     pub outer_radius: f64,
     pub stretching: Vec<Option<f64>>,
+    pub force: Vec<Option<f64>>,
     pub radial: Vec<Option<f64>>,
 }
 
@@ -90,6 +94,7 @@ pub fn in_rings(pairs: impl Iterator<Item = (f64, f64)>, outer_radius: f64) -> V
 
 impl Sample {
     fn new(
+        before: &Packing<2>,
         (excess, outer_radius): (f64, f64),
         bonds: &BondChanges<2>,
         field: &DisplacementField<2>,
@@ -97,11 +102,22 @@ impl Sample {
     ) -> Self {
         let stretching =
             bonds.bonds.iter().map(|bond| (bond.distance, bond.parallel * bond.distance.powi(2) / increase));
+        let stiffness = |bond: &BondChange<2>| {
+            let [first, second] = [bond.first, bond.second].map(|disk| before.radii()[disk as usize]);
+            let overlap = first + second - norm(bond.separation);
+            (overlap * first * second / (first + second)).max(0.0).sqrt()
+        };
+        let mean_stiffness = bonds.bonds.iter().map(stiffness).sum::<f64>() / bonds.bonds.len() as f64;
+        let force = bonds.bonds.iter().map(|bond| {
+            let share = stiffness(bond) / mean_stiffness;
+            (bond.distance, share * bond.parallel * bond.distance.powi(2) / increase)
+        });
         let radial = field.counted().map(|disk| (disk.distance, disk.radial * disk.distance / increase));
         Sample {
             excess,
             outer_radius,
             stretching: in_rings(stretching, outer_radius),
+            force: in_rings(force, outer_radius),
             radial: in_rings(radial, outer_radius),
         }
     }
@@ -116,7 +132,7 @@ impl Sample {
         let shape = (mean(states.iter().map(of).sum()), mean(packings.iter().map(half_side).sum()));
         let around = |state: &State<'_, 2>| -> Result<Vec<Sample>, String> {
             match growth {
-                Growth::Linear => linear(state, shape, count),
+                Growth::Linear(prestress) => linear(state, shape, count, prestress),
                 Growth::Relaxed { increase, damped } => relaxed(state, shape, count, (increase, damped)),
             }
         };
@@ -125,13 +141,18 @@ impl Sample {
     }
 }
 
-fn linear(state: &State<'_, 2>, shape: (f64, f64), count: usize) -> Result<Vec<Sample>, String> {
+fn linear(
+    state: &State<'_, 2>,
+    shape: (f64, f64),
+    count: usize,
+    prestress: Prestress,
+) -> Result<Vec<Sample>, String> {
     let mut samples = Vec::new();
     let (packing, centres) = (state.packing, centres(state, count));
-    LinearResponse::of_inflations(packing, &centres, &Hertzian::default(), Prestress::Included, |response| {
+    LinearResponse::of_inflations(packing, &centres, &Hertzian::default(), prestress, |response| {
         let bonds = BondChanges::of_linear_response(state, &response, 1.0);
         let field = DisplacementField::of_linear_response(&response, packing, 1.0, shape.1);
-        samples.push(Sample::new(shape, &bonds, &field, 1.0));
+        samples.push(Sample::new(packing, shape, &bonds, &field, 1.0));
     })
     .map_err(|error| error.to_string())?;
     Ok(samples)
@@ -154,7 +175,7 @@ fn relaxed(
         };
         let inflated = inflated.map_err(|error| error.to_string())?;
         let bonds = BondChanges::of_inflation(&inflated, &law, BondSet::Kept).map_err(|error| error.to_string())?;
-        Ok(Sample::new(shape, &bonds, &DisplacementField::of_inflation(&inflated), increase))
+        Ok(Sample::new(state.packing, shape, &bonds, &DisplacementField::of_inflation(&inflated), increase))
     };
     centres(state, count).par_iter().map(one).collect()
 }

@@ -169,7 +169,7 @@ impl<const D: usize> ContactNetwork<D> {
 
     /// Elastic energy of the contacts \[energy\].
     pub fn energy(&self) -> f64 {
-        self.contacts.iter().map(|contact| contact.energy).sum()
+        total(self.contacts.iter().map(|contact| contact.energy))
     }
 
     /// Energy −(Γ/2) Σ u² of the disks at their sites, 0 for a law without them \[energy\].
@@ -239,22 +239,23 @@ impl<const D: usize> ContactNetwork<D> {
 
     /// Pressure p = Σ F r / (D V) \[force / length^(D−1)\].
     pub fn pressure(&self, volume: f64) -> f64 {
-        let virial: f64 = self.contacts.iter().map(|contact| contact.force * norm(contact.separation)).sum();
+        let virial = total(self.contacts.iter().map(|contact| contact.force * norm(contact.separation)));
         virial / (D as f64 * volume)
     }
 
     /// Pressure of a cluster of disks with a held rim: contacts for which `rim` holds at one end count half \[force / length^(D−1)\].
     pub fn cluster_pressure(&self, volume: f64, rim: impl Fn(usize) -> bool) -> f64 {
-        let virial: f64 = self
-            .contacts
-            .iter()
-            .map(|contact| {
-                let share = if rim(contact.first as usize) || rim(contact.second as usize) { 0.5 } else { 1.0 };
-                share * contact.force * norm(contact.separation)
-            })
-            .sum();
+        let virial = total(self.contacts.iter().map(|contact| {
+            let share = if rim(contact.first as usize) || rim(contact.second as usize) { 0.5 } else { 1.0 };
+            share * contact.force * norm(contact.separation)
+        }));
         virial / (D as f64 * volume)
     }
+}
+
+/// The sum of values in their order; of none 0, where [`Iterator::sum`] has −0.
+fn total(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |sum, value| sum + value)
 }
 
 /// The contacts of an assembly, in working numbering and order of the list.

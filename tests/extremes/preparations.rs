@@ -69,5 +69,8 @@ fn nothing_but_rattlers_is_unjammed() {
         assert_eq!((prepared.criterion, prepared.pressure), (Criterion::Unjammed, 0.0), "{fraction:e}");
         let network = ContactNetwork::new(prepared.packing.get(), &Hertzian::default()).expect("no coincidence");
         assert_eq!((network.backbone_count(), network.rattlers().count()), (0, 50), "{fraction:e}");
+        // Zero, not the −0 of a sum over nothing, which a reader sees as "-0".
+        let sums = [network.energy(), network.pressure(1.0), network.cluster_pressure(1.0, |_| false)];
+        assert_eq!(sums.map(f64::to_bits), [0; 3], "{fraction:e}");
     }
 }
