@@ -34,7 +34,9 @@ excess_coordination  table  excess_coordination 1000 8
 scaling              table  scaling --out target/book/scaling
 angular_coverage     long   angular_coverage
 isostatic_held       table  isostatic_collapse held 5548 10 20 40 400 4000
-isostatic_collapse   long   isostatic_collapse figure book/src/images/isostatic/collapse_22184.svg 22184 8 50 30 100 300 1000
+isostatic_collapse   long   isostatic_collapse figures book/src/images/isostatic seeds 101 22184 40 25 10 30 100 300 1000
+isostatic_box        long   isostatic_collapse seeds 101 88776 8 60 10 30
+isostatic_unstressed table  isostatic_collapse unstressed seeds 101 22184 8 50 10 30 100 300 1000
 relaxers             long   relaxers
 same_minimum         long   same_minimum --tolerances 0.01,0.02,0.005
 LIST
@@ -86,9 +88,9 @@ transition() {
 }
 
 isostatic_collapse() {
-    local command="isostatic_collapse figure $images/isostatic/collapse_22184.svg 22184 8 50 30 100 300 1000"
+    local command="isostatic_collapse figures $images/isostatic seeds 101 22184 40 25 10 30 100 300 1000"
     table isostatic_collapse "$command"
-    record "isostatic/collapse_22184.svg" "cargo run --release --features measurements --example ${command/ / -- }" "1 to 8"
+    record "isostatic/*.svg" "cargo run --release --features measurements --example ${command/ / -- }" "101 to 140"
 }
 
 # The output behind a table, with what made it above it.

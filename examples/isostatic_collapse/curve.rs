@@ -5,51 +5,31 @@ use std::fmt;
 use jamscope::observe::IsostaticLength;
 use jamscope::observe::fluctuations::{FluctuationRing, Fluctuations};
 use jamscope::observe::isostatic::{
-    IsostaticError, IsostaticOutcome, IsostaticRule, IsostaticSettings, Normalisation, Tail,
+    IsostaticError, IsostaticOutcome, IsostaticRule, IsostaticSettings, Normalisation, Scale, Tail,
 };
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
 use crate::sample::{Sample, radius_of};
 
-/// What makes a distance a number, and with it where the plateau is read: at the same scaled distances at every pressure.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Scale {
-    /// x = r ΔZ.
-    Excess,
-    /// x = r √ΔZ.
-    Root,
-}
-
-impl Scale {
-    /// x over r \[1 / length\].
-    fn of(self, excess: f64) -> f64 {
-        match self {
-            Scale::Excess => excess,
-            Scale::Root => excess.sqrt(),
-        }
-    }
-
-    /// The plateau: from x to x. The two agree at ΔZ = 0.64.
-    fn plateau(self) -> [f64; 2] {
-        match self {
-            Scale::Excess => [8.0, 16.0],
-            Scale::Root => [10.0, 20.0],
-        }
+/// The plateau: from x to x, so that it is read at the same scaled distances at every pressure. The two agree at ΔZ = 0.64.
+fn plateau(scale: Scale) -> [f64; 2] {
+    match scale {
+        Scale::Excess => [8.0, 16.0],
+        Scale::RootExcess => [10.0, 20.0],
     }
 }
 
-impl fmt::Display for Scale {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.pad(match self {
-            Scale::Excess => "ℓ ΔZ",
-            Scale::Root => "ℓ √ΔZ",
-        })
+/// C, as printed.
+fn symbol(scale: Scale) -> &'static str {
+    match scale {
+        Scale::Excess => "ℓ ΔZ",
+        Scale::RootExcess => "ℓ √ΔZ",
     }
 }
 
-/// x up to which the figure goes.
-const DRAWN_TO: f64 = 20.0;
+/// x up to which figures go.
+const DRAWN_TO: f64 = 24.0;
 
 /// Share of L/2 within which it must end: farther out periodic images bend the field.
 const WITHIN: f64 = 0.7;
@@ -57,7 +37,7 @@ const WITHIN: f64 = 0.7;
 /// Shares of it that end the disordered region.
 pub const SHARES: [f64; 3] = [0.7, 0.8, 0.9];
 
-/// Samples drawn anew for an error.
+/// Sets of packings drawn anew for an error.
 const DRAWN: usize = 200;
 
 /// What is looked at: h_∥ r², h_r r, or the same of changes of force −k d_∥.
@@ -131,7 +111,7 @@ pub struct Reading {
 
 impl fmt::Display for Reading {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{:<6}, {:<16}, {:<5}", self.field, self.average, self.scale)
+        write!(formatter, "{:<6}, {:<16}, {:<5}", self.field, self.average, symbol(self.scale))
     }
 }
 
@@ -147,11 +127,13 @@ impl Lengths {
     pub fn of(samples: &[Sample], reading: Reading) -> Result<Self, IsostaticError> {
         let all: Vec<&Sample> = samples.iter().collect();
         let (plateau, products) = read(&all, reading)?;
+        let packings: Vec<Vec<&Sample>> =
+            all.chunk_by(|one, next| one.packing == next.packing).map(<[&Sample]>::to_vec).collect();
         let mut generator = Pcg64::seed_from_u64(1);
         let mut drawn: [Vec<f64>; SHARES.len()] = Default::default();
         for _ in 0..DRAWN {
             let some: Vec<&Sample> =
-                samples.iter().map(|_| &samples[generator.random_range(0..samples.len())]).collect();
+                packings.iter().flat_map(|_| &packings[generator.random_range(0..packings.len())]).copied().collect();
             for (all, product) in drawn.iter_mut().zip(read(&some, reading)?.1) {
                 all.extend(product);
             }
@@ -168,7 +150,7 @@ impl Lengths {
 impl fmt::Display for Lengths {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.plateau.is_nan() {
-            let [from, to] = self.scale.plateau();
+            let [from, to] = plateau(self.scale);
             return write!(formatter, "the box is too small for a plateau at x = {from} to {to}");
         }
         write!(formatter, "plateau {:.2} d_0;", self.plateau)?;
@@ -193,8 +175,8 @@ fn mean(samples: &[&Sample], field: Field, average: Average) -> Vec<(f64, f64)> 
 fn read(samples: &[&Sample], reading: Reading) -> Result<(f64, [Option<f64>; SHARES.len()]), IsostaticError> {
     let Reading { field, average, scale } = reading;
     let outer_radius = samples[0].outer_radius;
-    let per_length = scale.of(samples[0].excess);
-    let [from, to] = scale.plateau().map(|x| x / (per_length * outer_radius));
+    let excess = samples[0].excess;
+    let [from, to] = self::plateau(scale).map(|x| x / (scale.of(excess) * outer_radius));
     if to > WITHIN {
         return Ok((f64::NAN, [None; SHARES.len()]));
     }
@@ -210,11 +192,12 @@ fn read(samples: &[&Sample], reading: Reading) -> Result<(f64, [Option<f64>; SHA
         let settings = IsostaticSettings {
             normalisation: Normalisation::Length,
             tail: field.tail(),
+            scale,
             rule: IsostaticRule::Plateau { from, to, share },
             ..IsostaticSettings::default()
         };
-        let length = IsostaticLength::of(&rings, Some(per_length), 1.0, outer_radius, &settings)?;
-        plateau = length.threshold.unwrap_or(f64::NAN) / (share * per_length.powi(power));
+        let length = IsostaticLength::of(&rings, Some(excess), 1.0, outer_radius, &settings)?;
+        plateau = length.threshold.unwrap_or(f64::NAN) / (share * scale.of(excess).powi(power));
         if let IsostaticOutcome::Reached { product: found, .. } = length.outcome {
             *product = Some(found);
         }
@@ -222,27 +205,32 @@ fn read(samples: &[&Sample], reading: Reading) -> Result<(f64, [Option<f64>; SHA
     Ok((plateau, products))
 }
 
-/// y = h_∥ r² over its plateau against x, from the geometric mean, and C at the last of the shares: for the figure.
-pub fn scaled(samples: &[Sample]) -> Result<IsostaticLength, IsostaticError> {
+/// y = h_∥ r² over its plateau against x, from the geometric mean, and C at the last of the shares: for a figure. None where the box
+/// is too small for a plateau.
+pub fn scaled(samples: &[Sample], scale: Scale) -> Result<Option<IsostaticLength>, IsostaticError> {
     let (excess, outer_radius) = (samples[0].excess, samples[0].outer_radius);
     let all: Vec<&Sample> = samples.iter().collect();
-    let reading = Reading { field: Field::Stretching, average: Average::Logarithms, scale: Scale::Excess };
+    let reading = Reading { field: Field::Stretching, average: Average::Logarithms, scale };
     let (plateau, _) = read(&all, reading)?;
-    let drawn = mean(&all, reading.field, reading.average).into_iter().filter(|(r, _)| r * excess < DRAWN_TO);
-    let ring = |(radius, value): (f64, f64)| FluctuationRing {
+    if plateau.is_nan() {
+        return Ok(None);
+    }
+    let rings = mean(&all, reading.field, reading.average).into_iter().map(|(radius, value)| FluctuationRing {
         radius,
         count: samples.len(),
         mean: 0.0,
-        fluctuation: value / plateau / (radius * excess).powi(2),
+        fluctuation: value / plateau / (radius * scale.of(excess)).powi(2),
         standard_error: 0.0,
-    };
+    });
+    let rings = rings.filter(|ring| ring.radius * scale.of(excess) < DRAWN_TO);
     let settings = IsostaticSettings {
         normalisation: Normalisation::Length,
         tail: Tail::InverseSquare,
+        scale,
         rule: IsostaticRule::Threshold(SHARES[SHARES.len() - 1]),
         ..IsostaticSettings::default()
     };
-    IsostaticLength::of(&Fluctuations { rings: drawn.map(ring).collect() }, Some(excess), 1.0, outer_radius, &settings)
+    IsostaticLength::of(&Fluctuations { rings: rings.collect() }, Some(excess), 1.0, outer_radius, &settings).map(Some)
 }
 
 /// The power of ΔZ that ℓ follows at every share, with its standard error, from pressures that have one: weighted least squares

@@ -4,13 +4,14 @@
 //! cargo run --release --features measurements --example isostatic_collapse -- [OPTION …] [DISK_COUNT [PACKING_COUNT [CENTRE_COUNT [PRESSURE …]]]]
 //! ```
 //!
-//! Without more: 22184 Hertzian disks, 2 packings, 150 centres each, p = 30, 100, 300, 1000. The packing is periodic and the disk free, so
+//! Without more: 22184 Hertzian disks, 8 packings, 50 centres each, p = 30, 100, 300, 1000. The packing is periodic and the disk free, so
 //! that far away h_∥ falls as 1/r². Printed for every pressure: ΔZ, the plateau of h_∥ r² over d_0 and C at some shares of it, with errors from a
-//! bootstrap over centres; means over centres are those of h² and geometric ones. The same for h_r r. Then the power of ΔZ that the length follows.
+//! bootstrap over packings; means over centres are those of h² and geometric ones. The same for h_r r. Then the power of ΔZ that the length follows.
 //!
+//! - `seeds FIRST`: packings from this seed on, in place of 1.
 //! - `unstressed`: the linear response of springs at rest, contact forces left out.
 //! - `relaxed D_0`, `damped D_0`: the disk grows by D_0 and the packing relaxes, by FIRE and Newton or by damped dynamics; else the linear response.
-//! - `figure FILE`: h_∥ r² over its plateau against r ΔZ, geometric means, into an SVG file.
+//! - `figures DIR`: h_∥ r² over its plateau against r ΔZ and against r √ΔZ, geometric means, into two SVG files.
 //! - `held`: a circle with a held rim, its centre held or free; beside what is measured, what a point force makes of the difference.
 
 mod curve;
@@ -18,13 +19,15 @@ mod held;
 mod sample;
 
 use std::error::Error;
+use std::path::PathBuf;
 
 use jamscope::contact::{Hertzian, Prestress};
 use jamscope::linear::{ElasticModuli, LinearError};
 use jamscope::observe::IsostaticLength;
+use jamscope::observe::isostatic::Scale;
 use jamscope::report::figures::isostatic::isostatic_figure;
 
-use curve::{Average, Field, Lengths, Reading, SHARES, Scale, powers, scaled};
+use curve::{Average, Field, Lengths, Reading, SHARES, powers, scaled};
 use held::print_held;
 use sample::{Growth, Sample, prepared};
 
@@ -35,10 +38,10 @@ const PRESSURES: [f64; 4] = [30.0, 100.0, 300.0, 1000.0];
 const LOOKED_AT: [Reading; 8] = [
     reading(Field::Stretching, Average::Squares, Scale::Excess),
     reading(Field::Stretching, Average::Logarithms, Scale::Excess),
-    reading(Field::Stretching, Average::Logarithms, Scale::Root),
+    reading(Field::Stretching, Average::Logarithms, Scale::RootExcess),
     reading(Field::Force, Average::Squares, Scale::Excess),
     reading(Field::Force, Average::Logarithms, Scale::Excess),
-    reading(Field::Force, Average::Logarithms, Scale::Root),
+    reading(Field::Force, Average::Logarithms, Scale::RootExcess),
     reading(Field::Radial, Average::Squares, Scale::Excess),
     reading(Field::Radial, Average::Logarithms, Scale::Excess),
 ];
@@ -51,7 +54,8 @@ const fn reading(field: Field, average: Average, scale: Scale) -> Reading {
 struct Arguments {
     growth: Growth,
     held: bool,
-    figure: Option<String>,
+    figures: Option<PathBuf>,
+    first_seed: u64,
     disk_count: usize,
     packing_count: u64,
     centre_count: usize,
@@ -61,7 +65,8 @@ struct Arguments {
 impl Arguments {
     fn read() -> Result<Self, Box<dyn Error>> {
         let mut words = std::env::args().skip(1).peekable();
-        let (mut growth, mut held, mut figure) = (Growth::Linear(Prestress::Included), false, None);
+        let (mut growth, mut held, mut figures) = (Growth::Linear(Prestress::Included), false, None);
+        let mut first_seed = 1;
         while let Some(option) = words.next_if(|word| word.parse::<f64>().is_err()) {
             let mut increase = || {
                 words
@@ -72,11 +77,16 @@ impl Arguments {
             };
             match option.as_str() {
                 "held" => held = true,
+                "seeds" => first_seed = words.next().ok_or("seeds needs the first one")?.parse()?,
                 "unstressed" => growth = Growth::Linear(Prestress::LeftOut),
-                "figure" => figure = Some(words.next().ok_or("figure needs a file")?),
+                "figures" => figures = Some(words.next().ok_or("figures needs a folder")?.into()),
                 "relaxed" => growth = Growth::Relaxed { increase: increase()?, damped: false },
                 "damped" => growth = Growth::Relaxed { increase: increase()?, damped: true },
-                _ => return Err(format!("{option:?} is none of unstressed, relaxed, damped, figure, held").into()),
+                _ => {
+                    return Err(
+                        format!("{option:?} is none of seeds, unstressed, relaxed, damped, figures, held").into()
+                    );
+                }
             }
         }
         let numbers: Vec<f64> = words.map(|word| word.parse()).collect::<Result<_, _>>()?;
@@ -88,22 +98,24 @@ impl Arguments {
         Ok(Arguments {
             growth,
             held,
-            figure,
+            figures,
+            first_seed,
             disk_count: number(0, 22184.0) as usize,
-            packing_count: number(1, 2.0) as u64,
-            centre_count: number(2, 150.0) as usize,
+            packing_count: number(1, 8.0) as u64,
+            centre_count: number(2, 50.0) as usize,
             pressures,
         })
     }
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let Arguments { growth, held, figure, disk_count, packing_count, centre_count, pressures } = Arguments::read()?;
+    let Arguments { growth, held, figures, first_seed, disk_count, packing_count, centre_count, pressures } =
+        Arguments::read()?;
     println!("{disk_count} disks, {packing_count} packings, {centre_count} centres each, {growth}");
     let mut curves = Vec::new();
     let mut lengths: [Vec<(f64, Lengths)>; LOOKED_AT.len()] = Default::default();
     for &pressure in &pressures {
-        let packings = prepared(disk_count, packing_count, pressure)?;
+        let packings = prepared(disk_count, first_seed..first_seed + packing_count, pressure)?;
         if held {
             print_held(pressure, &packings, centre_count)?;
             continue;
@@ -132,12 +144,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         println!();
     }
-    if let Some(file) = figure {
-        let all =
-            pressures.iter().zip(&curves).map(|(pressure, samples)| Ok((format!("p = {pressure}"), scaled(samples)?)));
-        let all = all.collect::<Result<Vec<_>, Box<dyn Error>>>()?;
-        let curves: Vec<(&str, &IsostaticLength)> = all.iter().map(|(name, length)| (name.as_str(), length)).collect();
-        std::fs::write(&file, isostatic_figure(&format!("{disk_count} disks, free centre"), &curves)?.to_svg())?;
+    if let Some(folder) = figures {
+        for (scale, name) in [(Scale::Excess, "collapse"), (Scale::RootExcess, "collapse_root")] {
+            let all = pressures.iter().zip(&curves);
+            let all = all.map(|(pressure, samples)| Ok((format!("p = {pressure}"), scaled(samples, scale)?)));
+            let all = all.collect::<Result<Vec<_>, Box<dyn Error>>>()?;
+            let curves: Vec<(&str, &IsostaticLength)> =
+                all.iter().filter_map(|(name, length)| Some((name.as_str(), length.as_ref()?))).collect();
+            let figure = isostatic_figure(&format!("{disk_count} disks, free centre"), &curves)?;
+            std::fs::write(folder.join(format!("{name}_{disk_count}.svg")), figure.to_svg())?;
+        }
     }
     Ok(())
 }

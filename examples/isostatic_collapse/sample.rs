@@ -2,6 +2,7 @@
 
 use std::error::Error;
 use std::fmt;
+use std::ops::Range;
 
 use jamscope::contact::{Hertzian, Prestress};
 use jamscope::displacement::DisplacementField;
@@ -46,6 +47,8 @@ const FROM: f64 = 1.5;
 /// Around one disk: in each ring h of d_∥ r², of k d_∥ r² over the mean k, and of d_r r over d_0, by the number of the ring; all are
 /// level in an elastic medium.
 pub struct Sample {
+    /// The packing, by its number.
+    pub packing: usize,
     /// ΔZ and L/2, means over packings.
     pub excess: f64,
     pub outer_radius: f64,
@@ -60,14 +63,14 @@ pub fn radius_of(ring: usize) -> f64 {
 }
 
 /// Prepared by FIRE and Newton in turn.
-pub fn prepared(disk_count: usize, count: u64, pressure: f64) -> Result<Vec<Packing<2>>, Box<dyn Error>> {
+pub fn prepared(disk_count: usize, seeds: Range<u64>, pressure: f64) -> Result<Vec<Packing<2>>, Box<dyn Error>> {
     let one = |seed: u64| {
         let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
         let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed };
         let prepared = prepare::<2, _>(&preparation, &Hertzian::default(), &Staged::default(), &mut ());
         prepared.map(|prepared| prepared.packing.into_inner()).map_err(|error| error.to_string())
     };
-    Ok((1..=count).into_par_iter().map(one).collect::<Result<_, String>>()?)
+    Ok(seeds.into_par_iter().map(one).collect::<Result<_, String>>()?)
 }
 
 /// Small disks of the backbone, spread over the packing.
@@ -114,6 +117,7 @@ impl Sample {
         });
         let radial = field.counted().map(|disk| (disk.distance, disk.radial * disk.distance / increase));
         Sample {
+            packing: 0,
             excess,
             outer_radius,
             stretching: in_rings(stretching, outer_radius),
@@ -137,16 +141,14 @@ impl Sample {
             }
         };
         let all = states.par_iter().map(around).collect::<Result<Vec<_>, _>>()?;
-        Ok(all.into_iter().flatten().collect())
+        let numbered = all.into_iter().enumerate();
+        Ok(numbered
+            .flat_map(|(packing, samples)| samples.into_iter().map(move |sample| Sample { packing, ..sample }))
+            .collect())
     }
 }
 
-fn linear(
-    state: &State<'_, 2>,
-    shape: (f64, f64),
-    count: usize,
-    prestress: Prestress,
-) -> Result<Vec<Sample>, String> {
+fn linear(state: &State<'_, 2>, shape: (f64, f64), count: usize, prestress: Prestress) -> Result<Vec<Sample>, String> {
     let mut samples = Vec::new();
     let (packing, centres) = (state.packing, centres(state, count));
     LinearResponse::of_inflations(packing, &centres, &Hertzian::default(), prestress, |response| {

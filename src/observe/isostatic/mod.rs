@@ -1,13 +1,13 @@
 //! [`IsostaticLength`]: from where on the stretching of bonds varies around a ring as in a continuum, ℓ_iso.
 //!
 //! ```text
-//! x = r ΔZ        y = (h_∥(r)/h_0) xⁿ        ℓ_iso: the smallest r at which y rises to a threshold        C = ℓ_iso ΔZ
+//! x = r ΔZ, or r √ΔZ        y = (h_∥(r)/h_0) xⁿ        ℓ_iso: the smallest r at which y rises to a threshold        C: x at ℓ_iso
 //! ```
 //!
 //! n is that of the [`Tail`] which makes y level beyond ℓ_iso. In an elastic medium a disk that grows strains it as 1/r²; one
 //! that is held in its place as well, as in the study, is pushed by its neighbours with a force that strains it as 1/r
 //! ([`PointForce`](crate::reference::angular_modes::point_force::PointForce)), farther out than any ℓ_iso: the chapter has both. h_0 makes h_∥ a number,
-//! [`Normalisation`]; the threshold is one given or a share of the plateau, [`IsostaticRule`]. Between two rings y is taken as a straight line.
+//! [`Normalisation`]; the threshold is one given or a share of the plateau, [`IsostaticRule`]; which x, [`Scale`]. Between two rings y is taken as a straight line.
 //!
 //! # Source
 //! Ellenbroek, Somfai, van Hecke, van Saarloos (2006), Phys. Rev. Lett. 97, 258001; the study, threshold 1.3, C ≈ 6.
@@ -16,7 +16,7 @@ mod settings;
 
 use serde::{Deserialize, Serialize};
 
-pub use settings::{IsostaticError, IsostaticRule, IsostaticSettings, Normalisation, Tail};
+pub use settings::{IsostaticError, IsostaticRule, IsostaticSettings, Normalisation, Scale, Tail};
 
 use crate::contact::PairLaw;
 use crate::inflation::Inflated;
@@ -31,7 +31,7 @@ use crate::vector::larger;
 pub struct IsostaticPoint {
     /// r \[length\].
     pub radius: f64,
-    /// x = r ΔZ \[1\].
+    /// x = r ΔZ or r √ΔZ \[1\].
     pub scaled_radius: f64,
     /// y = (h_∥/h_0) xⁿ \[1\].
     pub scaled_fluctuation: f64,
@@ -47,7 +47,7 @@ pub enum IsostaticOutcome {
     Reached {
         /// ℓ_iso \[length\].
         length: f64,
-        /// C = ℓ_iso ΔZ \[1\].
+        /// C = ℓ_iso ΔZ or ℓ_iso √ΔZ \[1\].
         product: f64,
         /// Radii of the rings on either side \[length\].
         between: [f64; 2],
@@ -89,6 +89,9 @@ pub struct IsostaticLength {
     /// n: 1 or 2.
     #[serde(default)]
     pub tail: Tail,
+    /// What x is a distance times.
+    #[serde(default)]
+    pub scale: Scale,
     /// The threshold, given or from the plateau \[1\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub threshold: Option<f64>,
@@ -155,6 +158,7 @@ impl IsostaticLength {
             excess,
             unit: None,
             tail: settings.tail,
+            scale: settings.scale,
             threshold: None,
             curve: Vec::new(),
             outcome: IsostaticOutcome::NoBackbone,
@@ -175,18 +179,19 @@ impl IsostaticLength {
             return Ok(found);
         }
         found.unit = Some(unit);
-        found.curve = rings.iter().map(|ring| IsostaticPoint::of(ring, excess, unit, settings.tail)).collect();
+        let per_length = settings.scale.of(excess);
+        found.curve = rings.iter().map(|ring| IsostaticPoint::of(ring, per_length, unit, settings.tail)).collect();
         let Some(threshold) = settings.rule.threshold(&found.curve, outer_radius) else {
             found.outcome = IsostaticOutcome::NoPlateau;
             return Ok(found);
         };
         found.threshold = Some(threshold);
-        found.outcome = outcome(&found.curve, threshold, excess);
+        found.outcome = outcome(&found.curve, threshold, per_length);
         Ok(found)
     }
 }
 
-fn outcome(curve: &[IsostaticPoint], threshold: f64, excess: f64) -> IsostaticOutcome {
+fn outcome(curve: &[IsostaticPoint], threshold: f64, per_length: f64) -> IsostaticOutcome {
     match curve.iter().position(|point| point.scaled_fluctuation >= threshold) {
         None => {
             let largest =
@@ -198,14 +203,14 @@ fn outcome(curve: &[IsostaticPoint], threshold: f64, excess: f64) -> IsostaticOu
             let (below, above) = (&curve[first - 1], &curve[first]);
             let share = (threshold - below.scaled_fluctuation) / (above.scaled_fluctuation - below.scaled_fluctuation);
             let length = below.radius + share * (above.radius - below.radius);
-            IsostaticOutcome::Reached { length, product: length * excess, between: [below.radius, above.radius] }
+            IsostaticOutcome::Reached { length, product: length * per_length, between: [below.radius, above.radius] }
         }
     }
 }
 
 impl IsostaticPoint {
-    fn of(ring: &FluctuationRing, excess: f64, unit: f64, tail: Tail) -> Self {
-        let scaled_radius = ring.radius * excess;
+    fn of(ring: &FluctuationRing, per_length: f64, unit: f64, tail: Tail) -> Self {
+        let scaled_radius = ring.radius * per_length;
         let factor = scaled_radius.powi(tail.power());
         IsostaticPoint {
             radius: ring.radius,

@@ -43,6 +43,27 @@ impl Tail {
     }
 }
 
+/// What makes a distance from the centre a number, x.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Scale {
+    /// x = r ΔZ, as in the study.
+    #[default]
+    Excess,
+    /// x = r √ΔZ. Source of the power: Lerner, DeGiuli, Düring, Wyart (2014), Soft Matter 10, 5085, for responses to a force dipole.
+    RootExcess,
+}
+
+impl Scale {
+    /// x/r of a packing with this ΔZ \[1 / length\].
+    pub fn of(self, excess: f64) -> f64 {
+        match self {
+            Scale::Excess => excess,
+            Scale::RootExcess => excess.sqrt(),
+        }
+    }
+}
+
 /// The y that ends the disordered region.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -76,6 +97,8 @@ pub struct IsostaticSettings {
     pub normalisation: Normalisation,
     /// The tail that makes y level.
     pub tail: Tail,
+    /// What makes a distance a number.
+    pub scale: Scale,
     /// The threshold.
     pub rule: IsostaticRule,
 }
@@ -91,6 +114,7 @@ impl Default for IsostaticSettings {
             from: 1.0,
             normalisation: Normalisation::NearCentre { radius: 1.5 },
             tail: Tail::default(),
+            scale: Scale::default(),
             rule: IsostaticRule::Threshold(1.3),
         }
     }

@@ -1,9 +1,9 @@
-//! [`isostatic_figure`]: (h_∥/h_0) (r ΔZ)ⁿ against r ΔZ.
+//! [`isostatic_figure`]: (h_∥/h_0) xⁿ against x = r ΔZ or r √ΔZ.
 
 use plotters::prelude::*;
 
 use crate::observe::IsostaticLength;
-use crate::observe::isostatic::{IsostaticOutcome, Tail};
+use crate::observe::isostatic::{IsostaticOutcome, Scale, Tail};
 use crate::report::figures::chart::{Chart, Entry, LegendLine, SCALE, Sign};
 use crate::report::figures::palette::SEQUENCE;
 use crate::report::figures::radial::with_margin;
@@ -14,24 +14,37 @@ use crate::report::number::significant;
 const ENTRIES_A_LINE: usize = 2;
 
 /// Axis label.
-const ACROSS: &str = "r ΔZ";
+fn across(scale: Scale) -> &'static str {
+    match scale {
+        Scale::Excess => "r ΔZ",
+        Scale::RootExcess => "r √ΔZ",
+    }
+}
+
+/// h_∥/h_0 times something, as SVG text.
+macro_rules! fluctuation_times {
+    ($scaled:literal) => {
+        concat!(
+            "(h<tspan dy=\"3\" font-size=\"10\">∥</tspan><tspan dy=\"-3\"> / h</tspan>",
+            "<tspan dy=\"3\" font-size=\"10\">0</tspan><tspan dy=\"-3\">) ",
+            $scaled,
+            "</tspan>"
+        )
+    };
+}
 
 /// Axis label as SVG text.
-fn up(tail: Tail) -> &'static str {
-    match tail {
-        Tail::InverseDistance => {
-            "(h<tspan dy=\"3\" font-size=\"10\">∥</tspan><tspan dy=\"-3\"> / h</tspan><tspan dy=\"3\" \
-             font-size=\"10\">0</tspan><tspan dy=\"-3\">) r ΔZ</tspan>"
-        }
-        Tail::InverseSquare => {
-            "(h<tspan dy=\"3\" font-size=\"10\">∥</tspan><tspan dy=\"-3\"> / h</tspan><tspan dy=\"3\" \
-             font-size=\"10\">0</tspan><tspan dy=\"-3\">) (r ΔZ)²</tspan>"
-        }
+fn up(tail: Tail, scale: Scale) -> &'static str {
+    match (tail, scale) {
+        (Tail::InverseDistance, Scale::Excess) => fluctuation_times!("r ΔZ"),
+        (Tail::InverseDistance, Scale::RootExcess) => fluctuation_times!("r √ΔZ"),
+        (Tail::InverseSquare, Scale::Excess) => fluctuation_times!("(r ΔZ)²"),
+        (Tail::InverseSquare, Scale::RootExcess) => fluctuation_times!("r² ΔZ"),
     }
 }
 
 /// Curves of any number of samples or pressures, each with its name, rings joined, with standard errors; the thresholds
-/// dashed, and a ring around the place where a curve reaches its own. All have the tail of the first.
+/// dashed, and a ring around the place where a curve reaches its own. All have the tail and the scale of the first.
 ///
 /// # Errors
 /// Curves without a finite number.
@@ -48,6 +61,7 @@ pub fn isostatic_figure(name: &str, curves: &[(&str, &IsostaticLength)]) -> Resu
     let thresholds = || curves.iter().filter_map(|(_, length)| length.threshold);
     let widest = points().map(|point| point.scaled_radius).fold(0.0, f64::max);
     let heights = points().map(|point| point.scaled_fluctuation + point.standard_error);
+    let (tail, scale) = curves.first().map_or_else(Default::default, |(_, length)| (length.tail, length.scale));
     let chart = Chart {
         title: format!("{name}: fluctuation of the stretching of bonds"),
         description: format!(
@@ -55,9 +69,9 @@ pub fn isostatic_figure(name: &str, curves: &[(&str, &IsostaticLength)]) -> Resu
              defines the isostatic length",
             curves.len()
         ),
-        x_label: ACROSS,
+        x_label: across(scale),
         x_range: [0.0, 1.02 * widest],
-        y_label: up(curves.first().map_or(Tail::default(), |(_, length)| length.tail)),
+        y_label: up(tail, scale),
         y_unit: "1",
         y_range: with_margin(heights.chain(thresholds())),
         legend: legend.collect(),

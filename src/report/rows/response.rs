@@ -4,7 +4,7 @@ use crate::displacement::MeasuredOn;
 #[cfg(feature = "fit")]
 use crate::fit::angular::{CrossoverOutcome, SlopeOutcome};
 use crate::observe::angular::CrossingOutcome;
-use crate::observe::isostatic::IsostaticOutcome;
+use crate::observe::isostatic::{IsostaticLength, IsostaticOutcome, Scale};
 use crate::observe::multipoles::{ComponentModes, MultipoleFit};
 use crate::observe::penetration::Penetration;
 #[cfg(feature = "fit")]
@@ -228,6 +228,12 @@ fn contacts(responses: Vec<Option<&Response>>) -> Section {
 
 fn isostatic(responses: Vec<Option<&Response>>) -> Section {
     let length = |it: &Response| it.isostatic_length.as_ref()?.measured().cloned();
+    let product = |it: &Response, scale: Scale| match length(it)? {
+        IsostaticLength { scale: found, outcome: IsostaticOutcome::Reached { product, .. }, .. } if found == scale => {
+            Some(significant(product, 3))
+        }
+        _ => None,
+    };
     let mut rows = Rows::new(responses);
     rows.add("ΔZ before", |it| Some(significant(length(it)?.excess?, 3)))
         .add("ℓ_iso [length]", |it| {
@@ -242,10 +248,8 @@ fn isostatic(responses: Vec<Option<&Response>>) -> Section {
                 }
             })
         })
-        .add("ℓ_iso ΔZ", |it| match length(it)?.outcome {
-            IsostaticOutcome::Reached { product, .. } => Some(significant(product, 3)),
-            _ => None,
-        });
+        .add("ℓ_iso ΔZ", |it| product(it, Scale::Excess))
+        .add("ℓ_iso √ΔZ", |it| product(it, Scale::RootExcess));
     rows.section("Isostatic length")
 }
 

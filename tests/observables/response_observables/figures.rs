@@ -2,7 +2,7 @@ use jamscope::inflation::Boundary;
 use jamscope::observe::bond_changes::{BondChange, BondChanges, BondSet};
 use jamscope::observe::contact_changes::{ChangedContact, ContactChanges, RattlerContacts};
 use jamscope::observe::fluctuations::{FluctuationRing, Fluctuations};
-use jamscope::observe::isostatic::{IsostaticLength, IsostaticSettings};
+use jamscope::observe::isostatic::{IsostaticLength, IsostaticSettings, Scale, Tail};
 use jamscope::observe::multipoles::{MultipoleSettings, Multipoles};
 use jamscope::report::figures::bond_map::bond_map;
 use jamscope::report::figures::contact_map::contact_map;
@@ -121,6 +121,12 @@ fn charts_of_modes_and_fluctuations_are_well_formed() {
     let length = length.expect("sound settings");
     let svg = isostatic_figure("h", &[("p = 1 & 2", &length), ("other", &length)]).expect("finite").to_svg();
     well_formed(&svg);
-    assert!(svg.contains("p = 1 &amp; 2: not reached"));
+    assert!(svg.contains("p = 1 &amp; 2: not reached") && svg.contains(">r ΔZ"));
+    let settings =
+        IsostaticSettings { scale: Scale::RootExcess, tail: Tail::InverseSquare, ..IsostaticSettings::default() };
+    let length = IsostaticLength::of(&fluctuations, Some(0.5), 0.1, 40.0, &settings).expect("sound settings");
+    let svg = isostatic_figure("h", &[("one", &length)]).expect("finite").to_svg();
+    well_formed(&svg);
+    assert!(svg.contains(">r √ΔZ") && svg.contains(" r² ΔZ<"));
     assert!(isostatic_figure("h", &[]).is_err(), "no curve, no range");
 }

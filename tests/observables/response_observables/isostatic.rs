@@ -4,7 +4,7 @@ use jamscope::io::read_packing;
 use jamscope::observe::bond_changes::BondSet;
 use jamscope::observe::fluctuations::{FluctuationRing, Fluctuations};
 use jamscope::observe::isostatic::{
-    IsostaticError, IsostaticLength, IsostaticOutcome, IsostaticRule, IsostaticSettings, Normalisation, Tail,
+    IsostaticError, IsostaticLength, IsostaticOutcome, IsostaticRule, IsostaticSettings, Normalisation, Scale, Tail,
 };
 use jamscope::relax::Fire;
 
@@ -87,6 +87,36 @@ fn with_the_tail_of_a_free_disk_what_falls_as_the_inverse_square_is_level() {
     // With the other tail the same curve is never level: its median, 12/26, says nothing, and a quarter of it is less than y = r/12
     // in the first ring.
     assert_eq!(found(&rings, &settings).outcome, IsostaticOutcome::AboveFromTheStart { innermost: 1.5 });
+}
+
+#[test]
+fn by_the_root_of_the_excess_lengths_collapse_that_follow_it() {
+    // h = 1 up to ℓ = 6/√ΔZ and falls as (ℓ/r)² beyond: x = r √ΔZ and y = h x² is 36 beyond x = 6 whatever ΔZ, so that y = 36 share at
+    // x = 6 √share = 4.8. Before ℓ, y = x² is taken as a straight line between two rings √ΔZ apart: off by at most ΔZ/4, on a slope of at least
+    // 2 · 4.8 − √ΔZ.
+    let rule = IsostaticRule::Plateau { from: 0.7, to: 0.95, share: 0.64 };
+    let settings = IsostaticSettings {
+        normalisation: Normalisation::Length,
+        tail: Tail::InverseSquare,
+        scale: Scale::RootExcess,
+        rule,
+        ..IsostaticSettings::default()
+    };
+    for excess in [0.09, 0.16, 0.49, 1.0] {
+        let end = 6.0 / f64::sqrt(excess);
+        let rings = rings(|r| if r < end { 1.0 } else { (end / r).powi(2) });
+        let found = IsostaticLength::of(&rings, Some(excess), 0.1, 40.0, &settings).expect("sound settings");
+        assert_eq!((found.scale, found.excess), (Scale::RootExcess, Some(excess)));
+        assert!((found.threshold.expect("a plateau") - 36.0 * 0.64).abs() < 1e-12);
+        let IsostaticOutcome::Reached { length, product, .. } = found.outcome else { panic!("{found:?}") };
+        assert!((product - 4.8).abs() <= 0.25 * excess / (9.6 - excess.sqrt()), "{excess}: {product}");
+        assert!((product - length * excess.sqrt()).abs() < 1e-14);
+        // By the excess itself the same length is another number at every ΔZ.
+        let settings = IsostaticSettings { scale: Scale::Excess, ..settings };
+        let other = IsostaticLength::of(&rings, Some(excess), 0.1, 40.0, &settings).expect("sound settings");
+        let IsostaticOutcome::Reached { length: same, product, .. } = other.outcome else { panic!("{other:?}") };
+        assert!((same / length - 1.0).abs() < 1e-14 && (product - same * excess).abs() < 1e-14);
+    }
 }
 
 #[test]
