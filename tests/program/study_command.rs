@@ -145,6 +145,29 @@ fn a_dry_run_prints_the_plan_and_runs_nothing() {
 }
 
 #[test]
+fn the_study_of_seeds_has_the_plastic_sample_of_the_first_run() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/book/studies/plastic_seeds.toml");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let out = folder.path().join("out");
+    let study = |path: &std::path::Path, more: &[&str]| {
+        let output = program().arg("study").arg(path).arg("--out").arg(&out).args(more).output();
+        String::from_utf8(output.expect("the program starts").stdout).expect("Unicode")
+    };
+    let plan = study(file.as_ref(), &["--dry-run"]);
+    assert!(plan.contains("5548 disks, pressure 10: 420 packings, 1 inflations each, 0 done"), "{plan}");
+    // One of them alone: its seed in the built-in scene, where all evidence says plastic.
+    let one = folder.path().join("one.toml");
+    let text = std::fs::read_to_string(file).expect("a file of the book");
+    let all_seeds = "seeds = { first = 1, count = 420 }";
+    assert!(text.contains(all_seeds));
+    std::fs::write(&one, text.replace(all_seeds, "seeds = { first = 326, count = 1 }")).expect("written");
+    study(&one, &[]);
+    let summary = std::fs::read_to_string(out.join("summary.json")).expect("a summary");
+    let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
+    assert_eq!(summary["cells"][0]["phases"]["plastic"], 1, "{}", summary["cells"][0]["phases"]);
+}
+
+#[test]
 fn a_bad_study_is_refused_by_file_and_field() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("study.toml");
