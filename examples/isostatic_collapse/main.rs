@@ -6,7 +6,8 @@
 //!
 //! Without more: 22184 Hertzian disks, 8 packings, 50 centres each, p = 30, 100, 300, 1000. The packing is periodic and the disk free, so
 //! that far away h_∥ falls as 1/r². Printed for every pressure: ΔZ, the plateau of h_∥ r² over d_0 and C at some shares of it, with errors from a
-//! bootstrap over packings; means over centres are those of h² and geometric ones. The same for h_r r. Then the power of ΔZ that the length follows.
+//! bootstrap over packings; means over centres are those of h² and geometric ones. The same for changes of force, h_F r², and for h_r r, and for ℓ √ΔZ with
+//! the plateau at the same r √ΔZ. Then the power of ΔZ that the length follows.
 //!
 //! - `seeds FIRST`: packings from this seed on, in place of 1.
 //! - `unstressed`: the linear response of springs at rest, contact forces left out.
@@ -94,6 +95,10 @@ impl Arguments {
         if numbers.iter().any(|&value| value.is_nan() || value <= 0.0) {
             return Err("numbers of disks, packings and centres, and pressures, are positive".into());
         }
+        let packing_count = number(1, 8.0) as u64;
+        if !held && packing_count < 2 {
+            return Err("errors come from how packings differ: at least two of them".into());
+        }
         let pressures = if numbers.len() > 3 { numbers[3..].to_vec() } else { PRESSURES.to_vec() };
         Ok(Arguments {
             growth,
@@ -101,7 +106,7 @@ impl Arguments {
             figures,
             first_seed,
             disk_count: number(0, 22184.0) as usize,
-            packing_count: number(1, 8.0) as u64,
+            packing_count,
             centre_count: number(2, 50.0) as usize,
             pressures,
         })
