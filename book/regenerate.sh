@@ -34,7 +34,7 @@ excess_coordination  table  excess_coordination 1000 8
 scaling              table  scaling --out target/book/scaling
 angular_coverage     long   angular_coverage
 isostatic_held       table  isostatic_collapse held 5548 10 20 40 400 4000
-isostatic_collapse   long   isostatic_collapse figures book/src/images/isostatic seeds 101 22184 40 25 10 30 100 300 1000
+isostatic_collapse   long   isostatic_collapse figures DIR seeds 101 22184 40 25 10 30 100 300 1000
 isostatic_box        long   isostatic_collapse seeds 101 88776 8 60 10 30
 isostatic_unstressed table  isostatic_collapse unstressed seeds 101 22184 8 50 10 30 100 300 1000
 relaxers             long   relaxers
@@ -88,9 +88,10 @@ transition() {
 }
 
 isostatic_collapse() {
-    local command="isostatic_collapse figures $images/isostatic seeds 101 22184 40 25 10 30 100 300 1000"
-    table isostatic_collapse "$command"
-    record "isostatic/*.svg" "cargo run --release --features measurements --example ${command/ / -- }" "101 to 140"
+    local rest="seeds 101 22184 40 25 10 30 100 300 1000" name
+    table isostatic_collapse "isostatic_collapse figures $work/isostatic $rest"
+    for name in collapse_22184 collapse_root_22184; do take "$work/isostatic/$name.svg" "$images/isostatic/$name.svg"; done
+    record "isostatic/*.svg" "cargo run --release --features measurements --example isostatic_collapse -- figures DIR $rest" "101 to 140"
 }
 
 # The output behind a table, with what made it above it.

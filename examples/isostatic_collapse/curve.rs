@@ -123,17 +123,15 @@ pub struct Lengths {
 }
 
 impl Lengths {
-    /// Of all samples of a pressure.
-    pub fn of(samples: &[Sample], reading: Reading) -> Result<Self, IsostaticError> {
-        let all: Vec<&Sample> = samples.iter().collect();
+    /// Of all samples of a pressure, packing by packing.
+    pub fn of(packings: &[Vec<Sample>], reading: Reading) -> Result<Self, IsostaticError> {
+        let all: Vec<&Sample> = packings.iter().flatten().collect();
         let (plateau, products) = read(&all, reading)?;
-        let packings: Vec<Vec<&Sample>> =
-            all.chunk_by(|one, next| one.packing == next.packing).map(<[&Sample]>::to_vec).collect();
         let mut generator = Pcg64::seed_from_u64(1);
         let mut drawn: [Vec<f64>; SHARES.len()] = Default::default();
         for _ in 0..DRAWN {
             let some: Vec<&Sample> =
-                packings.iter().flat_map(|_| &packings[generator.random_range(0..packings.len())]).copied().collect();
+                packings.iter().flat_map(|_| &packings[generator.random_range(0..packings.len())]).collect();
             for (all, product) in drawn.iter_mut().zip(read(&some, reading)?.1) {
                 all.extend(product);
             }
@@ -207,9 +205,9 @@ fn read(samples: &[&Sample], reading: Reading) -> Result<(f64, [Option<f64>; SHA
 
 /// y = h_∥ r² over its plateau against x, from the geometric mean, and C at the last of the shares: for a figure. None where the box
 /// is too small for a plateau.
-pub fn scaled(samples: &[Sample], scale: Scale) -> Result<Option<IsostaticLength>, IsostaticError> {
-    let (excess, outer_radius) = (samples[0].excess, samples[0].outer_radius);
-    let all: Vec<&Sample> = samples.iter().collect();
+pub fn scaled(packings: &[Vec<Sample>], scale: Scale) -> Result<Option<IsostaticLength>, IsostaticError> {
+    let all: Vec<&Sample> = packings.iter().flatten().collect();
+    let (excess, outer_radius) = (all[0].excess, all[0].outer_radius);
     let reading = Reading { field: Field::Stretching, average: Average::Logarithms, scale };
     let (plateau, _) = read(&all, reading)?;
     if plateau.is_nan() {
@@ -217,7 +215,7 @@ pub fn scaled(samples: &[Sample], scale: Scale) -> Result<Option<IsostaticLength
     }
     let rings = mean(&all, reading.field, reading.average).into_iter().map(|(radius, value)| FluctuationRing {
         radius,
-        count: samples.len(),
+        count: all.len(),
         mean: 0.0,
         fluctuation: value / plateau / (radius * scale.of(excess)).powi(2),
         standard_error: 0.0,

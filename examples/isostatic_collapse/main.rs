@@ -116,6 +116,8 @@ impl Arguments {
 fn main() -> Result<(), Box<dyn Error>> {
     let Arguments { growth, held, figures, first_seed, disk_count, packing_count, centre_count, pressures } =
         Arguments::read()?;
+    // Before minutes of work, not after them.
+    figures.as_deref().map_or(Ok(()), std::fs::create_dir_all)?;
     println!("{disk_count} disks, {packing_count} packings, {centre_count} centres each, {growth}");
     let mut curves = Vec::new();
     let mut lengths: [Vec<(f64, Lengths)>; LOOKED_AT.len()] = Default::default();
@@ -126,11 +128,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             continue;
         }
         let samples = Sample::of_all(&packings, centre_count, growth)?;
-        let (excess, radius) = (samples[0].excess, samples[0].outer_radius);
+        let (excess, radius) = (samples[0][0].excess, samples[0][0].outer_radius);
         let (bulk, shear) = moduli(&packings)?;
         println!(
             "p = {pressure}: ΔZ = {excess:.4}, L/2 = {radius:.1}, K = {bulk:.0}, G = {shear:.0}, {} centres; C at shares {SHARES:?}",
-            samples.len()
+            samples.iter().map(Vec::len).sum::<usize>()
         );
         for (looked_at, all) in LOOKED_AT.into_iter().zip(&mut lengths) {
             let found = Lengths::of(&samples, looked_at)?;

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fmt;
 use std::ops::Range;
 
-use jamscope::contact::{Hertzian, Prestress};
+use jamscope::contact::{Hertzian, PairLaw, Prestress};
 use jamscope::displacement::DisplacementField;
 use jamscope::inflation::{Boundary, Centre, Inflation, inflate};
 use jamscope::linear::LinearResponse;
@@ -47,8 +47,6 @@ const FROM: f64 = 1.5;
 /// Around one disk: in each ring h of d_∥ r², of k d_∥ r² over the mean k, and of d_r r over d_0, by the number of the ring; all are
 /// level in an elastic medium.
 pub struct Sample {
-    /// The packing, by its number.
-    pub packing: usize,
     /// ΔZ and L/2, means over packings.
     pub excess: f64,
     pub outer_radius: f64,
@@ -105,10 +103,11 @@ impl Sample {
     ) -> Self {
         let stretching =
             bonds.bonds.iter().map(|bond| (bond.distance, bond.parallel * bond.distance.powi(2) / increase));
+        let law = Hertzian::default();
         let stiffness = |bond: &BondChange<2>| {
             let [first, second] = [bond.first, bond.second].map(|disk| before.radii()[disk as usize]);
             let overlap = first + second - norm(bond.separation);
-            (overlap * first * second / (first + second)).max(0.0).sqrt()
+            law.stiffness(law.force(law.coefficient(first, second), overlap), overlap)
         };
         let mean_stiffness = bonds.bonds.iter().map(stiffness).sum::<f64>() / bonds.bonds.len() as f64;
         let force = bonds.bonds.iter().map(|bond| {
@@ -117,7 +116,6 @@ impl Sample {
         });
         let radial = field.counted().map(|disk| (disk.distance, disk.radial * disk.distance / increase));
         Sample {
-            packing: 0,
             excess,
             outer_radius,
             stretching: in_rings(stretching, outer_radius),
@@ -126,8 +124,8 @@ impl Sample {
         }
     }
 
-    /// Around so many disks of every packing.
-    pub fn of_all(packings: &[Packing<2>], count: usize, growth: Growth) -> Result<Vec<Sample>, Box<dyn Error>> {
+    /// Around so many disks of every packing, packing by packing.
+    pub fn of_all(packings: &[Packing<2>], count: usize, growth: Growth) -> Result<Vec<Vec<Sample>>, Box<dyn Error>> {
         let law = Hertzian::default();
         let states = packings.iter().map(|packing| State::new(packing, &law)).collect::<Result<Vec<_>, _>>()?;
         let of = |state: &State<'_, 2>| ExcessCoordination::of(&state.network).map_or(f64::NAN, |excess| excess.value);
@@ -140,11 +138,7 @@ impl Sample {
                 Growth::Relaxed { increase, damped } => relaxed(state, shape, count, (increase, damped)),
             }
         };
-        let all = states.par_iter().map(around).collect::<Result<Vec<_>, _>>()?;
-        let numbered = all.into_iter().enumerate();
-        Ok(numbered
-            .flat_map(|(packing, samples)| samples.into_iter().map(move |sample| Sample { packing, ..sample }))
-            .collect())
+        Ok(states.par_iter().map(around).collect::<Result<Vec<_>, _>>()?)
     }
 }
 
