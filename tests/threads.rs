@@ -7,6 +7,7 @@ mod tiled;
 
 use std::sync::Once;
 
+use jamscope::contact::advance::Advanced;
 use jamscope::contact::damped_forces::{add_damping, damped_forces};
 use jamscope::contact::damping::{ConstantDamping, DampingLaw};
 use jamscope::contact::{Assembly, Hertzian, PairLaw};
@@ -164,13 +165,13 @@ fn velocities(assembly: &Assembly<2, Hertzian>) -> Vec<[f64; 2]> {
     (0..assembly.mobile_count()).map(|disk| [1e-3 * (disk as f64).sin(), 1e-3 * (2.0 * disk as f64).cos()]).collect()
 }
 
-/// v ← v + 10⁻⁶ F, u ← u + 10⁻² v.
-fn kick(forces: &[[f64; 2]], velocities: &mut [[f64; 2]], displacements: &mut [[f64; 2]]) -> usize {
+/// v ← v + 10⁻⁶ F, u ← u + 10⁻² v. A bound on how far any has moved: forces are below 10⁴, velocities below 10⁻² then.
+fn kick(forces: &[[f64; 2]], velocities: &mut [[f64; 2]], displacements: &mut [[f64; 2]]) -> f64 {
     for ((force, velocity), displacement) in forces.iter().zip(velocities.iter_mut()).zip(displacements) {
         *velocity = sum(*velocity, scaled(1e-6, *force));
         *displacement = sum(*displacement, scaled(1e-2, *velocity));
     }
-    velocities.len()
+    1e-3
 }
 
 /// How many disks there are, and Σ F·v.
@@ -205,24 +206,38 @@ fn check_a_step(packing: Packing<2>) {
     apart.0.evaluate();
     let mut step = (assembly.clone(), velocities(&assembly));
     let mut alone = step.clone();
-    let (kicked, looked) = step.0.advance(&mut step.1, 1e-3, kick, look).expect("the list holds");
+    let looked = evaluated(step.0.advance(&mut step.1, kick, look));
     assert_eq!(apart.1, step.1, "velocities");
     assert_eq!(apart.0.displacements, step.0.displacements);
     assert_eq!(apart.0.forces, step.0.forces);
-    assert_eq!(kicked.iter().sum::<usize>(), mobile, "every disk moves once");
     assert_eq!(looked.iter().map(|&(count, _)| count).sum::<usize>(), mobile, "every disk is looked at once");
     let expected = look(&apart.0.forces[..mobile], &apart.1).1;
     let found: f64 = looked.iter().map(|&(_, power)| power).sum();
     // Sums of 10⁵ terms in another order, of size at most Σ|F||v| ~ 5·10⁴ · 10² · 10⁻³.
     assert!((found - expected).abs() < 1e-9, "{found} for {expected}");
     let (of_one, looked_by_one) = on_one_thread(move || {
-        let looked = alone.0.advance(&mut alone.1, 1e-3, kick, look).expect("the list holds").1;
+        let looked = evaluated(alone.0.advance(&mut alone.1, kick, look));
         (alone, looked)
     });
     assert_eq!(of_one.0.forces, step.0.forces, "one thread");
     assert_eq!(looked_by_one, looked, "one thread");
-    assert!(
-        assembly.advance(&mut velocities(&assembly.clone()), 1.0, kick, look).is_none(),
-        "farther than the list allows"
-    );
+    // A radius and a half in one step is farther than the list allows, and moves the disks all the same.
+    let before = assembly.displacements.clone();
+    let mut far = vec![[0.0, 0.0]; mobile];
+    far[mobile / 2] = [0.75, 0.0];
+    let go = |_: &[_], velocities: &mut [_], displacements: &mut [[f64; 2]]| {
+        kick(&vec![[0.0; 2]; velocities.len()], velocities, displacements) + 0.75
+    };
+    far.iter_mut().for_each(|velocity| velocity[0] *= 100.0);
+    assert_eq!(assembly.advance(&mut far, go, look), Advanced::Moved);
+    let moved = |disk: usize| assembly.displacements[disk][0] - before[disk][0];
+    assert!((moved(mobile / 2) - 0.75).abs() < 1e-12);
+    assert!((0..mobile).filter(|&disk| disk != mobile / 2).all(|disk| moved(disk) == 0.0));
+}
+
+fn evaluated<P: std::fmt::Debug>(advanced: Advanced<P>) -> Vec<P> {
+    match advanced {
+        Advanced::Evaluated(parts) => parts,
+        other => panic!("the list holds: {other:?}"),
+    }
 }

@@ -1,17 +1,22 @@
 //! A step and the forces after it, tile by tile: what a tile moves is still in the near cache when its forces are summed, and its
 //! forces are when the relaxer looks at them. On one thread the pairs across a border follow as soon as both sides have moved.
 //!
+//! Whether the list holds where the disks come to is known when they are there, so that no step need be short for it. Where it does not, all
+//! disks are moved, and nothing else is done.
+//!
 //! The bits of positions, velocities and forces are those of the same work done array by array.
 
 use std::iter::repeat_with;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::contact::forces::{Across, Kernel, Task, add_incoming, sweep_border, sweep_inner};
 use crate::contact::pair_list::PairList;
 use crate::contact::turns::Stage;
+use crate::contact::ways::{PORTION, Ways, is_within};
 use crate::side_by_side;
 
 /// What moves, and what acts on it.
-pub struct Movers<'a, T, const D: usize> {
+pub(super) struct Movers<'a, T, const D: usize> {
     /// Velocities of the mobile disks \[length / time\].
     pub velocities: &'a mut [[T; D]],
     /// Displacements of all disks \[length\].
@@ -20,31 +25,76 @@ pub struct Movers<'a, T, const D: usize> {
     pub forces: &'a mut [[T; D]],
 }
 
-/// Moves all mobile disks by `kick` (forces, velocities, displacements of some of them) and evaluates the forces where they then
-/// are; the list must hold there. What `kick` returned for each tile, and what `look` (forces, velocities) returned for each part of
-/// the mobile disks, in a fixed order.
+/// What became of a step tile by tile.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Advanced<P> {
+    /// Nothing: the law has sites, or the list is to be looked at after this step.
+    Not,
+    /// The disks are moved, and the list does not hold where they are.
+    Moved,
+    /// The disks are moved and their forces evaluated. What was seen of each part of them.
+    Evaluated(Vec<P>),
+}
+
+impl<P> Advanced<P> {
+    pub(super) fn of(looked: Option<Vec<P>>) -> Self {
+        looked.map_or(Advanced::Moved, Advanced::Evaluated)
+    }
+}
+
+/// How far the list holds.
+pub(super) struct Range<'a, F> {
+    /// The way it holds for \[length\].
+    pub limit: f64,
+    /// What disks have gone of it.
+    pub ways: &'a mut Ways,
+    /// The longest way of disks from this one on since they were listed, from their displacements \[length\].
+    pub longest: F,
+}
+
+/// Moves all mobile disks and evaluates the forces where they then are. `kick` gets (forces, velocities, displacements) of some mobile disks
+/// and returns a bound on how far it moved them. What `look` (forces, velocities) returned for each part of the mobile disks, in a fixed
+/// order; none where the list does not hold for all: then forces are anything.
 ///
 /// # Accuracy
 /// The bits of `kick` on whole arrays and the forces of the kernel after it.
-pub(super) fn advance<const D: usize, K: Kernel<D>, M: Send, P: Send>(
+pub(super) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     kernel: &K,
     pairs: &PairList<D>,
-    movers: Movers<'_, K::Number, D>,
-    across: &mut Across<K::Number, D>,
-    kick: impl Fn(&[[K::Number; D]], &mut [[K::Number; D]], &mut [[K::Number; D]]) -> M + Send + Sync,
+    (movers, across): (Movers<'_, K::Number, D>, &mut Across<K::Number, D>),
+    range: Range<'_, impl Fn(usize, &[[K::Number; D]]) -> f64 + Sync>,
+    kick: impl Fn(&[[K::Number; D]], &mut [[K::Number; D]], &mut [[K::Number; D]]) -> f64 + Sync,
     look: impl Fn(&[[K::Number; D]], &[[K::Number; D]]) -> P + Send + Sync,
-) -> (Vec<M>, Vec<P>) {
+) -> Option<Vec<P>> {
     let Movers { velocities, displacements, forces } = movers;
+    let Range { limit, ways, longest } = range;
     let (tiles, size) = (pairs.tiles.as_slice(), pairs.tile_size);
-    let inside = |place: usize, displacements: &mut [[_; D]], forces: &mut [[_; D]], velocities: &mut [[_; D]]| {
-        let (tile, mobile) = (&tiles[place], velocities.len());
-        let kicked = kick(&forces[..mobile], velocities, &mut displacements[..mobile]);
-        let offset = (place * size) as u32;
-        let task = Task { kernel, pairs, displacements: (displacements, offset), tile, offset };
-        sweep_inner(&task, forces);
-        let (begin, end) = (tile.interior.start.min(mobile), tile.interior.end.min(mobile));
-        (kicked, look(&forces[begin..end], &velocities[begin..end]))
-    };
+    let spent = AtomicBool::new(false);
+    let is_spent = || spent.load(Ordering::Relaxed);
+    let inside =
+        |place: usize, displacements: &mut [[_; D]], forces: &mut [[_; D]], movers: (&mut [[_; D]], &mut [f64])| {
+            let (velocities, ways) = movers;
+            let (tile, mobile) = (&tiles[place], velocities.len());
+            let portions = forces[..mobile].chunks(PORTION).zip(velocities.chunks_mut(PORTION));
+            let portions = portions.zip(displacements[..mobile].chunks_mut(PORTION)).zip(ways).enumerate();
+            for (portion, (((forces, velocities), displacements), way)) in portions {
+                *way += kick(forces, velocities, displacements);
+                if !is_within(*way, limit) {
+                    *way = longest(place * size + portion * PORTION, displacements);
+                    if !is_within(*way, limit) {
+                        spent.store(true, Ordering::Relaxed);
+                    }
+                }
+            }
+            if is_spent() {
+                return None;
+            }
+            let offset = (place * size) as u32;
+            let task = Task { kernel, pairs, displacements: (displacements, offset), tile, offset };
+            sweep_inner(&task, forces);
+            let (begin, end) = (tile.interior.start.min(mobile), tile.interior.end.min(mobile));
+            Some(look(&forces[begin..end], &velocities[begin..end]))
+        };
     let border = |place: usize, displacements: &[[_; D]], forces: &mut [[_; D]], across: &mut [[_; D]]| {
         let (tile, offset) = (&tiles[place], (place * size) as u32);
         let task = Task { kernel, pairs, displacements: (displacements, 0), tile, offset };
@@ -57,12 +107,17 @@ pub(super) fn advance<const D: usize, K: Kernel<D>, M: Send, P: Send>(
         [look(&forces[..begin], &velocities[..begin]), look(&forces[end..mobile], &velocities[end..])]
     };
     across.fit(pairs);
+    let of_tile = ways.of_tile;
     let (mut insides, mut marginals) = (Vec::with_capacity(tiles.len()), Vec::new());
     if side_by_side::is_shared(tiles.len()) {
         // Tiles of held disks have no velocities.
-        let arrays = displacements.chunks_mut(size).zip(forces.chunks_mut(size));
-        let arrays = arrays.zip(velocities.chunks_mut(size).chain(repeat_with(Default::default)));
-        insides = side_by_side::each(arrays.enumerate(), |(place, ((u, f), v))| inside(place, u, f, v));
+        let moving =
+            velocities.chunks_mut(size).zip(ways.bounds.chunks_mut(of_tile)).chain(repeat_with(Default::default));
+        let arrays = displacements.chunks_mut(size).zip(forces.chunks_mut(size)).zip(moving);
+        insides = side_by_side::each(arrays.enumerate(), |(place, ((u, f), moving))| inside(place, u, f, moving));
+        if is_spent() {
+            return None;
+        }
         let displacements = &*displacements;
         let arrays = forces.chunks_mut(size).zip(&mut across.0);
         side_by_side::each(arrays.enumerate(), |(place, (f, across))| border(place, displacements, f, across));
@@ -75,17 +130,23 @@ pub(super) fn advance<const D: usize, K: Kernel<D>, M: Send, P: Send>(
         for (stage, place) in pairs.turns.iter() {
             let (begin, end) = (place * size, disk_count.min((place + 1) * size));
             let moving = begin.min(mobile_count)..end.min(mobile_count);
-            let of_tile = &mut forces[begin..end];
+            let forces = &mut forces[begin..end];
             match stage {
                 Stage::Inside => {
-                    insides.push(inside(place, &mut displacements[begin..end], of_tile, &mut velocities[moving]));
+                    let portions = ways.bounds.len().min(place * of_tile)..ways.bounds.len().min((place + 1) * of_tile);
+                    let moving = (&mut velocities[moving], &mut ways.bounds[portions]);
+                    insides.push(inside(place, &mut displacements[begin..end], forces, moving));
                 }
-                Stage::Border => border(place, displacements, of_tile, &mut across.0[place]),
-                Stage::Margins => marginals[place] = Some(margins(place, across, of_tile, &velocities[moving])),
+                _ if is_spent() => {}
+                Stage::Border => border(place, displacements, forces, &mut across.0[place]),
+                Stage::Margins => marginals[place] = Some(margins(place, across, forces, &velocities[moving])),
             }
         }
     }
-    let (kicked, mut looked): (Vec<M>, Vec<P>) = insides.into_iter().unzip();
+    if is_spent() {
+        return None;
+    }
+    let mut looked: Vec<P> = insides.into_iter().flatten().collect();
     looked.extend(marginals.into_iter().flatten().flatten());
-    (kicked, looked)
+    Some(looked)
 }

@@ -11,16 +11,18 @@ mod upkeep;
 
 use std::iter::repeat_with;
 
-use crate::contact::advance::{Movers, advance};
+use crate::contact::advance::{Advanced, Movers, Range, advance};
+use crate::contact::assembly::upkeep::LISTED;
 use crate::contact::forces::{self, Across, Plain};
 use crate::contact::law::PairLaw;
 use crate::contact::neighbours::{Disks, ListRoom, build_pairs, spatial_order};
 use crate::contact::pair_list::PairList;
 use crate::contact::stiffness::stiffness_rows;
 use crate::contact::totals::Totals;
+use crate::contact::ways::Ways;
 use crate::packing::{Domain, Packing, PackingError};
 use crate::side_by_side::{self, PIECE};
-use crate::vector::{Vector, dot, extended_sum, sum, two_sum};
+use crate::vector::{Vector, dot, extended_sum, longest_difference_squared, sum, two_sum};
 
 /// Width of the skin over the smallest radius \[1\]. Changes speed only: a wider one makes lists last longer and adds pairs
 /// that do not touch. From 0.25 to 0.5 these are 7 in 100 pairs and 4 in 100 of the time of the loop, for half the lists and less.
@@ -65,9 +67,8 @@ pub struct Assembly<const D: usize, L> {
     roaming: Vec<u32>,
     /// Displacements to come back to, if the relaxer set a checkpoint.
     checkpoint: Vec<Vector<D>>,
-    /// A bound on how far any disk has moved since `listed`, and whether it is the longest way itself.
-    moved: f64,
-    moved_exactly: bool,
+    /// How far disks may have moved since they were listed in the list in use.
+    ways: Ways,
     rebuild_count: usize,
     /// Centre minus anchor of each disk; a relaxer moves the first [`Assembly::mobile_count`] of them \[length\].
     pub displacements: Vec<Vector<D>>,
@@ -120,8 +121,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             near_listed: Vec::new(),
             roaming: Vec::new(),
             checkpoint: Vec::new(),
-            moved: 0.0,
-            moved_exactly: false,
+            ways: Ways::default(),
             rebuild_count: 0,
             from_sites: Vec::new(),
             pairs: PairList::default(),
@@ -224,26 +224,32 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
     }
 
-    /// Moves the mobile disks, evaluates the forces where they then are and looks at them, tile by tile. None, and
-    /// nothing done, for a law with sites, and where the list might not hold if a disk moves by `bound` \[length\]. The caller tells
-    /// [`Assembly::keep_listed`] afterwards how far they went.
+    /// Moves the mobile disks, evaluates the forces where they then are and looks at them, tile by tile; [`Assembly::keep`] is to be called
+    /// afterwards. Where the list does not hold for where the disks come to they are moved all the same, and that is all.
     ///
     /// # Shape
-    /// `velocities` has one entry a mobile disk. `kick` gets (forces, velocities, displacements) of some mobile disks, `look` (forces,
-    /// velocities); every mobile disk comes once.
-    pub fn advance<K: Send, P: Send>(
+    /// `velocities` has one entry a mobile disk. `kick` gets (forces, velocities, displacements) of some mobile disks and returns a bound on how
+    /// far it moved any \[length\], `look` gets (forces, velocities); every mobile disk comes once.
+    pub fn advance<P: Send>(
         &mut self,
         velocities: &mut [Vector<D>],
-        bound: f64,
-        kick: impl Fn(&[Vector<D>], &mut [Vector<D>], &mut [Vector<D>]) -> K + Send + Sync,
+        kick: impl Fn(&[Vector<D>], &mut [Vector<D>], &mut [Vector<D>]) -> f64 + Sync,
         look: impl Fn(&[Vector<D>], &[Vector<D>]) -> P + Send + Sync,
-    ) -> Option<(Vec<K>, Vec<P>)> {
-        if L::ON_SITE || !self.holds_beyond(bound) {
-            return None;
+    ) -> Advanced<P> {
+        if !self.may_advance() {
+            return Advanced::Not;
         }
-        let pairs = in_use(self.near_skin, &self.near_pairs, &self.pairs);
+        let limit = LISTED * self.skin();
+        let (pairs, listed) = match self.near_skin {
+            Some(_) => (&self.near_pairs, &self.near_listed),
+            None => (&self.pairs, &self.listed),
+        };
         let movers = Movers { velocities, displacements: &mut self.displacements, forces: &mut self.forces };
-        Some(advance(&Plain { law: &self.law, pairs }, pairs, movers, &mut self.across, kick, look))
+        let longest = |first: usize, displacements: &[Vector<D>]| {
+            longest_difference_squared(displacements, &listed[first..first + displacements.len()]).sqrt()
+        };
+        let range = Range { limit, ways: &mut self.ways, longest };
+        Advanced::of(advance(&Plain { law: &self.law, pairs }, pairs, (movers, &mut self.across), range, kick, look))
     }
 
     /// Forces as by [`Assembly::evaluate`], with energy, virial and contact count.

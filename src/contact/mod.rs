@@ -28,6 +28,7 @@ mod tiles;
 pub mod totals;
 mod turns;
 pub mod walk;
+mod ways;
 
 pub use assembly::Assembly;
 #[cfg(feature = "linear")]

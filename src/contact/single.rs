@@ -14,7 +14,7 @@
 
 use pulp::Simd;
 
-use crate::contact::advance::{Movers, advance};
+use crate::contact::advance::{Advanced, Movers, Range, advance};
 use crate::contact::assembly::Assembly;
 use crate::contact::forces::{Across, Kernel, all_tiles};
 use crate::contact::law::PairLaw;
@@ -24,7 +24,7 @@ use crate::side_by_side::{self, PIECE};
 use crate::simd::ahead::Cache;
 use crate::simd::components;
 use crate::simd::roots::positive_part_in_single;
-use crate::vector::Vector;
+use crate::vector::{Vector, larger, longest_difference_squared};
 
 /// Blocks of pairs rounded by one thread at a time.
 const PORTION: usize = 64;
@@ -183,24 +183,29 @@ impl<const D: usize> Single<D> {
         });
     }
 
-    /// Moves all mobile disks by `kick` (forces, velocities, ways of some of them) and evaluates the forces where they then are, as
-    /// [`Assembly::advance`] does. None, and nothing done, where that does nothing either.
-    pub fn advance<L: PairLaw, K: Send, P: Send>(
+    /// Moves all mobile disks and evaluates the forces where they then are, as [`Assembly::advance`] does; `kick` gets (forces, velocities,
+    /// ways) of some of them and returns a bound on how far it moved any \[length\].
+    pub fn advance<L: PairLaw, P: Send>(
         &mut self,
-        assembly: &Assembly<D, L>,
+        assembly: &mut Assembly<D, L>,
         velocities: &mut [[f32; D]],
-        bound: f64,
-        kick: impl Fn(&[[f32; D]], &mut [[f32; D]], &mut [[f32; D]]) -> K + Send + Sync,
+        kick: impl Fn(&[[f32; D]], &mut [[f32; D]], &mut [[f32; D]]) -> f64 + Sync,
         look: impl Fn(&[[f32; D]], &[[f32; D]]) -> P + Send + Sync,
-    ) -> Option<(Vec<K>, Vec<P>)> {
-        if !assembly.holds_beyond(bound) {
-            return None;
+    ) -> Advanced<P> {
+        if !assembly.may_advance() {
+            return Advanced::Not;
         }
         self.prepare(assembly);
-        let pairs = assembly.pairs();
-        let kernel = Pressed { law: assembly.law(), pairs, blocks: &self.blocks };
+        let (law, unit, base) = (*assembly.law(), self.units.length, self.base.as_slice());
+        let (pairs, listed, limit, ways) = assembly.listing();
+        let longest = |first: usize, ways: &[[f32; D]]| {
+            let disks = first..first + ways.len();
+            longest_way(unit, (&base[disks.clone()], ways), &listed[disks])
+        };
+        let kernel = Pressed { law: &law, pairs, blocks: &self.blocks };
         let movers = Movers { velocities, displacements: &mut self.ways, forces: &mut self.forces };
-        Some(advance(&kernel, pairs, movers, &mut self.across, kick, look))
+        let range = Range { limit, ways, longest };
+        Advanced::of(advance(&kernel, pairs, (movers, &mut self.across), range, kick, look))
     }
 
     /// Forces where the disks are.
@@ -222,6 +227,20 @@ impl<const D: usize> Single<D> {
         let mobile = assembly.mobile_count();
         kick(&self.forces[..mobile], velocities, &mut self.ways[..mobile])
     }
+}
+
+/// The longest way from where disks were listed, of those at base + way, as they are settled.
+fn longest_way<const D: usize>(unit: f64, (base, ways): (&[Vector<D>], &[[f32; D]]), listed: &[Vector<D>]) -> f64 {
+    let mut places = [[0.0; D]; 64];
+    let pieces = base.chunks(64).zip(ways.chunks(64)).zip(listed.chunks(64));
+    let squares = pieces.map(|((base, ways), listed)| {
+        let places = &mut places[..base.len()];
+        for ((place, base), way) in places.iter_mut().zip(base).zip(ways) {
+            *place = std::array::from_fn(|d| base[d] + unit * f64::from(way[d]));
+        }
+        longest_difference_squared(places, listed)
+    });
+    squares.fold(0.0, larger).sqrt()
 }
 
 /// Pairs of a block where the disks are, by the formula of [`geometry`](super::forces::geometry), rounded.

@@ -27,6 +27,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::PairLaw;
+use crate::contact::advance::Advanced;
 use crate::contact::assembly::Assembly;
 use crate::packing::{Packing, PackingError};
 use crate::relax::fire::motion::{Motion, Step};
@@ -216,7 +217,6 @@ impl Run<'_> {
     ) -> Result<Stop, PackingError> {
         let settings = self.settings;
         let mobile = assembly.mobile_count();
-        let mut fastest = 0.0;
         // The products where the disks are, if the step to there has taken them.
         let mut taken: Option<Products> = None;
         let mut row = Vec::new();
@@ -328,7 +328,6 @@ impl Run<'_> {
                     trace.look(&look);
                 }
                 motion.rest();
-                fastest = 0.0;
                 sums = motion.products(assembly);
                 let kept =
                     matches!(settings.uphill, Uphill::StepBack(back) if self.step_count < back.start_delay && !higher);
@@ -354,16 +353,18 @@ impl Run<'_> {
             let reach = time_step * (D as f64).sqrt();
             self.step_count += 1;
             due = monitor.is_due(self.step_count, sums.largest_force);
-            let bound = reach * (keep * fastest + push * sums.largest_force) * motion.bound_rounding();
             // A look takes totals, which take a pass of their own.
-            match if due { None } else { motion.advance(assembly, step, bound) } {
-                Some((speed, products)) => {
-                    fastest = speed;
-                    taken = Some(products);
-                }
-                None => fastest = motion.kick(assembly, step),
+            let advanced = if due { Advanced::Not } else { motion.advance(assembly, step, reach) };
+            let listed_anew = if advanced == Advanced::Not {
+                let fastest = motion.kick(assembly, step);
+                assembly.keep_listed(reach * fastest)?
+            } else {
+                assembly.keep()?
+            };
+            if let Advanced::Evaluated(parts) = advanced {
+                taken = Some(motion.sum(&parts));
             }
-            if assembly.keep_listed(reach * fastest)? {
+            if listed_anew {
                 motion.forget();
                 if monitor.ran_away(assembly) {
                     return Ok(Stop::NoMinimum);

@@ -5,7 +5,7 @@ use crate::contact::assembly::upkeep::LISTED;
 use crate::contact::law::PairLaw;
 use crate::contact::neighbours::amend_pairs;
 use crate::side_by_side::{self, PIECE};
-use crate::vector::{Vector, difference, dot, larger, longest_difference_squared};
+use crate::vector::{Vector, difference, dot, longest_difference_squared};
 
 /// A disk has gone far if it went this share of the way for which its list holds \[1\].
 const FAR: f64 = 0.5;
@@ -35,7 +35,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             if amended {
                 self.begin_list();
             }
-            self.moved = self.longest_way(&self.listed);
+            self.take_ways();
             return amended;
         };
         let mut moved = self.longest_way(&self.listed);
@@ -50,18 +50,18 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         if 2.0 * moved + 1.5 * skin > self.skin {
             return false;
         }
-        let Some((far, moved)) = self.far_from(&self.near_listed, skin) else { return false };
+        let Some(far) = self.far_from(&self.near_listed, skin) else { return false };
         for &disk in &far {
             self.near_listed[disk as usize] = self.displacements[disk as usize];
         }
         let marked = self.marked(&far);
-        self.moved = moved;
+        self.take_ways();
         self.near_pairs.amend_from(&self.pairs, &marked, (&self.near_listed, skin))
     }
 
     /// The same for the list of all pairs.
     fn amend_all(&mut self) -> bool {
-        let Some((far, _)) = self.far_from(&self.listed, self.skin) else { return false };
+        let Some(far) = self.far_from(&self.listed, self.skin) else { return false };
         let (mut listed, mut roaming) = (self.listed.clone(), self.roaming.clone());
         for &disk in &far {
             listed[disk as usize] = self.displacements[disk as usize];
@@ -85,8 +85,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         amended
     }
 
-    /// The mobile disks that went far from where they were, if they are few and the list may be amended, and the longest way of the others.
-    fn far_from(&self, listed: &[Vector<D>], skin: f64) -> Option<(Vec<u32>, f64)> {
+    /// The mobile disks that went far from where they were, if they are few and the list may be amended.
+    fn far_from(&self, listed: &[Vector<D>], skin: f64) -> Option<Vec<u32>> {
         if !self.pairs.keeps_places {
             return None;
         }
@@ -94,25 +94,20 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         let mobile = &self.displacements[..self.mobile_count];
         let pieces = mobile.chunks(PIECE).zip(listed[..self.mobile_count].chunks(PIECE)).enumerate();
         let found = side_by_side::each(pieces, |(piece, (now, before))| {
-            let longest = longest_difference_squared(now, before);
-            if longest <= limit * limit {
-                return (Vec::new(), longest);
+            let mut far = Vec::new();
+            if longest_difference_squared(now, before) <= limit * limit {
+                return far;
             }
-            let (mut far, mut longest) = (Vec::new(), 0.0);
             for (place, (&now, &before)) in now.iter().zip(before).enumerate() {
                 let way = difference(now, before);
-                let squared = dot(way, way);
-                if squared > limit * limit {
+                if dot(way, way) > limit * limit {
                     far.push((piece * PIECE + place) as u32);
-                } else {
-                    longest = larger(longest, squared);
                 }
             }
-            (far, longest)
+            far
         });
-        let longest = found.iter().fold(0.0, |longest, &(_, squared)| larger(longest, squared)).sqrt();
-        let far: Vec<u32> = found.into_iter().flat_map(|(far, _)| far).collect();
-        (far.len() <= self.len() / ONE_OF).then_some((far, longest))
+        let far: Vec<u32> = found.into_iter().flatten().collect();
+        (far.len() <= self.len() / ONE_OF).then_some(far)
     }
 
     fn marked(&self, disks: &[u32]) -> Vec<bool> {

@@ -2,9 +2,9 @@
 
 use crate::contact::assembly::Assembly;
 use crate::contact::law::PairLaw;
-#[cfg(test)]
 use crate::contact::pair_list::PairList;
 use crate::contact::pruned::best_skin;
+use crate::contact::ways::{PORTION, Ways, is_within};
 use crate::packing::PackingError;
 use crate::side_by_side::{self, PIECE};
 use crate::vector::{Vector, larger, longest_difference_squared};
@@ -40,23 +40,30 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         (self.age, self.seen_at, self.look_at) = (0, 0, FIRST_LOOK);
     }
 
-    /// Whether the list will neither be changed nor looked at when no disk has moved by more than `bound` at the next call of
-    /// [`Assembly::keep_listed`].
-    pub(in crate::contact) fn holds_beyond(&self, bound: f64) -> bool {
-        // Written so that NaN does not hold.
-        !self.looks_next() && self.moved + bound <= LISTED * self.skin()
+    /// Whether [`Assembly::advance`] does anything.
+    pub(in crate::contact) fn may_advance(&self) -> bool {
+        !L::ON_SITE && !self.looks_next()
     }
 
-    /// Whether [`Assembly::take_way`] might show that the list holds beyond `bound` where the bounds added up so far deny it, and is
-    /// worth its time: going through a long list array by array takes half as long again.
-    pub fn may_hold_beyond(&self, bound: f64) -> bool {
-        self.pairs().is_long() && !self.moved_exactly && !self.looks_next() && !self.holds_beyond(bound)
+    /// The list in use, where it has the disks, the way it holds for, and what they have gone of it.
+    pub(in crate::contact) fn listing(&mut self) -> (&PairList<D>, &[Vector<D>], f64, &mut Ways) {
+        let limit = LISTED * self.skin();
+        let (pairs, listed) = match self.near_skin {
+            Some(_) => (&self.near_pairs, &self.near_listed),
+            None => (&self.pairs, &self.listed),
+        };
+        (pairs, listed, limit, &mut self.ways)
     }
 
-    /// Takes the longest way of a disk since it was listed, in place of a bound on it; a relaxer that keeps displacements elsewhere has
-    /// put the disks where they are.
-    pub fn take_way(&mut self) {
-        (self.moved, self.moved_exactly) = (self.longest_way(self.listed_in_use()), true);
+    /// Takes how far disks have moved since they were listed, in place of bounds on it.
+    pub(super) fn take_ways(&mut self) {
+        let (size, listed) = (self.pairs().tile_size, self.listed_in_use());
+        let tiles = self.displacements[..self.mobile_count].chunks(size).zip(listed[..self.mobile_count].chunks(size));
+        let longest = |(now, before): (&[_], &[_])| longest_difference_squared(now, before).sqrt();
+        let ways = side_by_side::each(tiles, |(now, before)| {
+            now.chunks(PORTION).zip(before.chunks(PORTION)).map(longest).collect::<Vec<_>>()
+        });
+        self.ways.bounds = ways.concat();
     }
 
     /// Whether the way of the disks is looked at in the next call of [`Assembly::keep_listed`], however short it is.
@@ -70,21 +77,28 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// # Errors
     /// Two disks with the same centre.
     pub fn keep_listed(&mut self, bound: f64) -> Result<bool, PackingError> {
-        self.moved += bound;
-        self.moved_exactly = false;
+        self.ways.add(bound);
+        self.keep()
+    }
+
+    /// Changes the list if it must be after a step of which [`Assembly::advance`] knows how far it went. True if it is another one.
+    ///
+    /// # Errors
+    /// Two disks with the same centre.
+    pub fn keep(&mut self) -> Result<bool, PackingError> {
         self.age += 1;
         let looks = self.prunes && self.age == self.look_at;
-        // Written so that NaN asks for the exact look.
         let limit = LISTED * self.skin();
-        if self.moved <= limit && !looks {
+        if is_within(self.ways.longest(), limit) && !looks {
             return Ok(false);
         }
-        self.take_way();
-        if self.moved.is_nan() {
+        self.take_ways();
+        let longest = self.ways.longest();
+        if longest.is_nan() {
             // Not a position any more: the forces are NaN too, and the relaxer stops on them.
             return Ok(false);
         }
-        let spent = self.moved > limit;
+        let spent = longest > limit;
         if !spent && !looks {
             return Ok(false);
         }
@@ -117,7 +131,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             if best < WIDEST_NEAR * self.skin && best < 2.0 * longest {
                 self.prune(best.min(longest));
             } else {
-                (self.near_skin, self.moved) = (None, moved);
+                self.near_skin = None;
+                self.take_ways();
             }
         }
         Ok(true)
@@ -149,7 +164,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// The list in use is new.
     pub(super) fn begin_list(&mut self) {
-        self.moved = 0.0;
+        self.ways.begin(self.mobile_count, self.pairs().tile_size);
         self.prune_lists(self.prunes);
     }
 
@@ -165,6 +180,6 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// How far every disk may go before the list must be made anew, at least \[length\].
     pub fn listed_way(&self) -> f64 {
-        LISTED * self.skin() - self.moved
+        LISTED * self.skin() - self.ways.longest()
     }
 }

@@ -1,12 +1,13 @@
 //! Velocities and steps of FIRE, in double precision or, while disks are far from rest, in single.
 
 use crate::contact::PairLaw;
+use crate::contact::advance::Advanced;
 use crate::contact::assembly::Assembly;
 use crate::contact::single::{Single, Units};
 use crate::relax::flat::{Products, combine, kick_and_drift, products};
 use crate::simd::lanes::Summed;
 use crate::simd::real::Real;
-use crate::vector::{Vector, larger};
+use crate::vector::Vector;
 
 /// A step: `v ← keep·v + push·F`, then `u ← u + dt·v`.
 #[derive(Debug, Clone, Copy)]
@@ -51,11 +52,6 @@ impl<const D: usize> Motion<D> {
     /// Whether this is single precision.
     pub fn is_single(&self) -> bool {
         matches!(self, Motion::Single(..))
-    }
-
-    /// A bound on the largest component of a velocity before it is rounded, over that of the rounded one, and more \[1\].
-    pub fn bound_rounding(&self) -> f64 {
-        if self.is_single() { 1.0 + 1e-6 } else { 1.0 + 1e-12 }
     }
 
     /// Goes on in double precision. The disks are settled.
@@ -113,29 +109,31 @@ impl<const D: usize> Motion<D> {
         }
     }
 
-    /// Moves the disks, evaluates their forces and takes the products, tile by tile ([`Assembly::advance`]): how fast the fastest is along
-    /// an axis \[length / time\]. None, and nothing done, where the list might not hold if a disk moves by `bound` \[length\].
-    pub fn advance<L: PairLaw>(
-        &mut self,
-        assembly: &mut Assembly<D, L>,
-        step: Step,
-        bound: f64,
-    ) -> Option<(f64, Products)> {
-        if assembly.may_hold_beyond(bound) {
-            self.settle(assembly);
-            assembly.take_way();
-        }
+    /// Moves the disks, evaluates their forces and takes the products, tile by tile ([`Assembly::advance`]). No disk goes farther than `reach`
+    /// times the fastest one along an axis \[time\].
+    pub fn advance<L: PairLaw>(&mut self, assembly: &mut Assembly<D, L>, step: Step, reach: f64) -> Advanced<Products> {
         match self {
             Motion::Double(velocities) => {
-                let (speeds, parts) = assembly.advance(velocities, bound, |f, v, u| step.kick(f, v, u), products_of)?;
-                Some((fastest_of(speeds), sum_of(&parts)))
+                assembly.advance(velocities, |f, v, u| reach * step.kick(f, v, u), products_of)
             }
             Motion::Single(disks, velocities) => {
-                let step = step.in_units(disks.units());
-                let kick = |forces: &[_], velocities: &mut [_], ways: &mut [_]| step.kick(forces, velocities, ways);
-                let (speeds, parts) = disks.advance(assembly, velocities, bound, kick, products_of)?;
-                Some((disks.units().speed() * fastest_of(speeds), in_units(disks, &sum_of(&parts))))
+                let (step, reach) = (step.in_units(disks.units()), reach * disks.units().speed());
+                let kick =
+                    |forces: &[_], velocities: &mut [_], ways: &mut [_]| reach * step.kick(forces, velocities, ways);
+                let advanced = disks.advance(assembly, velocities, kick, products_of);
+                if advanced == Advanced::Moved {
+                    disks.settle(assembly);
+                }
+                advanced
             }
+        }
+    }
+
+    /// The sum of what was seen of each part of the disks.
+    pub fn sum(&self, parts: &[Products]) -> Products {
+        match self {
+            Motion::Double(_) => sum_of(parts),
+            Motion::Single(disks, _) => in_units(disks, &sum_of(parts)),
         }
     }
 
@@ -185,10 +183,6 @@ fn in_units<const D: usize>(disks: &Single<D>, products: &Products) -> Products 
         speed_squared: speed * speed * products.speed_squared,
         largest_force: force * products.largest_force,
     }
-}
-
-fn fastest_of(speeds: Vec<f64>) -> f64 {
-    speeds.into_iter().fold(0.0, larger)
 }
 
 fn sum_of(parts: &[Products]) -> Products {

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::scenes::tiled::tiled;
+use jamscope::contact::advance::Advanced;
 use jamscope::io::read_packing;
 
 /// A packing a few disks of which, side by side, go through each other and the rest, straight on, each in a direction of its own.
@@ -132,34 +133,80 @@ fn so_do_those_of_balls() {
     Crossing::new(&balls(0.1), (8, [0.0; 3]), (1e-4, 1e-6)).go_slowly();
 }
 
-/// A bound of ten times the way is told at every step: added up, it ends the list after a tenth of what that holds for.
-#[test]
-fn a_way_that_is_taken_stands_for_the_bounds_of_a_long_list() {
-    let (packing, middle) = three_tiles();
-    let mut crossing = Crossing::new(&packing, (1, middle), (0.0, 0.0));
-    let assembly = &mut crossing.assembly;
-    // No looks: without near pairs the list in use is that of all, with a skin of half a radius, and holds for ways of an eighth of a diameter.
-    assembly.prune_lists(false);
-    let (way, bound) = (1e-3, 1e-2);
-    let mut taken = 0;
-    for step in 0..120 {
-        if assembly.may_hold_beyond(bound) {
-            assembly.take_way();
-            taken += 1;
-            let holds = assembly.advance(&mut vec![[0.0; 2]; assembly.mobile_count()], bound, |_, _, _| (), |_, _| ());
-            // Whatever it shows, it is not worth being taken again.
-            assert!(!assembly.may_hold_beyond(bound), "step {step}");
-            assert_eq!(holds.is_some(), f64::from(step) * way + bound < 0.12497, "step {step}");
-        }
-        assembly.displacements[0][0] += way;
-        assert_eq!(assembly.keep_listed(bound), Ok(false), "step {step}");
+/// Velocities with which a few disks go far, and a step that moves by them and tells a bound of ten times the way.
+const WAY: f64 = 1e-3;
+
+fn go<const D: usize>(velocities: &[Vector<D>], displacements: &mut [Vector<D>]) -> f64 {
+    for (displacement, &velocity) in displacements.iter_mut().zip(velocities) {
+        *displacement = sum(*displacement, velocity);
     }
-    assert!((10..60).contains(&taken), "taken {taken} times");
+    10.0 * WAY
 }
 
 #[test]
-fn a_short_list_is_gone_through_array_by_array_at_once() {
-    let mut crossing = Crossing::new(&balls(0.0), (1, [0.0; 3]), (0.0, 0.0));
-    assert!(!crossing.assembly.may_hold_beyond(f64::INFINITY));
-    crossing.step();
+fn a_way_that_is_taken_stands_for_the_bounds_that_were_told() {
+    let (packing, middle) = three_tiles();
+    let mut assembly = Crossing::new(&packing, (1, middle), (0.0, 0.0)).assembly;
+    // No looks: without near pairs the list in use is that of all, with a skin of half a radius, and holds for ways of an eighth of a diameter.
+    assembly.prune_lists(false);
+    let mut velocities = vec![[0.0; 2]; assembly.mobile_count()];
+    velocities[0] = [WAY, 0.0];
+    for step in 1..=125 {
+        let advanced = assembly.advance(&mut velocities, |_, v, u| go(v, u), |_, _| ());
+        let holds = f64::from(step) * WAY < 0.12497;
+        assert_eq!(matches!(advanced, Advanced::Evaluated(_)), holds, "step {step}");
+        assert_eq!(matches!(advanced, Advanced::Moved), !holds, "step {step}");
+        // The first disk is moved either way.
+        assert!((assembly.displacements[0][0] - f64::from(step) * WAY).abs() < 1e-12, "step {step}");
+        assert_eq!(assembly.keep(), Ok(!holds), "step {step}");
+    }
+    // NaN is no bound: the ways themselves are taken.
+    let advanced = assembly.advance(&mut velocities, |_, _, _| f64::NAN, |_, _| ());
+    assert!(matches!(advanced, Advanced::Evaluated(_)));
+    assert_eq!(assembly.keep(), Ok(false));
+    // Nor is it a place; that is left to the relaxer.
+    velocities[0] = [f64::NAN, 0.0];
+    let advanced = assembly.advance(&mut velocities, |_, v, u| f64::NAN * go(v, u), |_, _| ());
+    assert_eq!(advanced, Advanced::Moved);
+    assert_eq!(assembly.keep(), Ok(false));
+}
+
+#[test]
+fn steps_tile_by_tile_miss_no_contact_of_disks_that_go_far() {
+    let (packing, middle) = three_tiles();
+    let mut crossing = Crossing::new(&packing, (60, middle), (0.0, 0.0));
+    let mut velocities = vec![[0.0; 2]; crossing.assembly.mobile_count()];
+    for &disk in &crossing.roaming {
+        velocities[disk] = [3.0 * WAY * (1.7 * disk as f64).cos(), 3.0 * WAY * (1.7 * disk as f64 + 2.0).cos()];
+    }
+    let (mut advanced, mut spent) = (0, 0);
+    for step in 1..=280 {
+        match crossing.assembly.advance(&mut velocities, |_, v, u| go(v, u), |_, _| ()) {
+            Advanced::Evaluated(_) => {
+                advanced += 1;
+                crossing.steps = step;
+                let mut anew = crossing.assembly.clone();
+                if step % 7 == 0 {
+                    anew.reanchor().expect("no coincidence");
+                }
+                anew.evaluate();
+                let largest = anew.forces.iter().map(|&force| norm(force)).fold(0.0, f64::max);
+                for (one, two) in crossing.assembly.forces.iter().zip(&anew.forces) {
+                    // As in `check`.
+                    assert!(norm(difference(*one, *two)) < 1e-13 * largest, "step {step}: {one:?} {two:?}");
+                }
+                crossing.assembly.keep().expect("no coincidence");
+            }
+            Advanced::Moved => {
+                spent += 1;
+                assert_eq!(crossing.assembly.keep(), Ok(true), "step {step}");
+            }
+            Advanced::Not => {
+                let _ = go(&velocities, &mut crossing.assembly.displacements);
+                crossing.assembly.keep_listed(10.0 * WAY).expect("no coincidence");
+            }
+        }
+    }
+    assert!(advanced > 200 && spent > 3, "{advanced} steps, {spent} lists spent");
+    assert!(crossing.assembly.rebuild_count() <= 4, "{} lists", crossing.assembly.rebuild_count());
 }
