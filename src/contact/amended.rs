@@ -131,6 +131,11 @@ impl<const D: usize> PairList<D> {
         self.measured[place / BLOCK].copy(place % BLOCK, measured);
     }
 
+    /// Blocks that amending may have filled.
+    pub(super) fn amended_blocks(&self) -> impl Iterator<Item = usize> {
+        self.tiles.iter().flat_map(|tile| places_of(&tile.inner, INNER).chain(places_of(&tile.border, BORDER)))
+    }
+
     /// Finds what comes to each tile from others.
     pub(super) fn connect(&mut self) {
         connect(&mut self.tiles, self.tile_size, &self.blocks, (&self.first, &self.second));

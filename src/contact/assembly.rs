@@ -69,6 +69,7 @@ pub struct Assembly<const D: usize, L> {
     checkpoint: Vec<Vector<D>>,
     /// How far disks may have moved since they were listed in the list in use.
     ways: Ways,
+    listing_number: (usize, usize),
     rebuild_count: usize,
     /// Centre minus anchor of each disk; a relaxer moves the first [`Assembly::mobile_count`] of them \[length\].
     pub displacements: Vec<Vector<D>>,
@@ -122,6 +123,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             roaming: Vec::new(),
             checkpoint: Vec::new(),
             ways: Ways::default(),
+            listing_number: (0, 0),
             rebuild_count: 0,
             from_sites: Vec::new(),
             pairs: PairList::default(),

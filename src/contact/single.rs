@@ -86,8 +86,8 @@ struct Rounded<const D: usize> {
     coefficient: [f32; BLOCK],
 }
 
-/// Disks in single precision, beside an [`Assembly`] that keeps their base. Holds as long as neither its list nor its displacements are
-/// changed by others; who does that calls [`Single::forget`].
+/// Disks in single precision, beside an [`Assembly`] that keeps their base. Holds as long as its displacements are
+/// not changed by others; who does that calls [`Single::forget`].
 #[derive(Debug, Clone)]
 pub struct Single<const D: usize> {
     units: Units,
@@ -97,7 +97,8 @@ pub struct Single<const D: usize> {
     /// Forces of the last evaluation, all disks \[`Units::force`\].
     pub forces: Vec<[f32; D]>,
     across: Across<f32, D>,
-    stale: bool,
+    /// The list whose pairs are in `blocks`, as [`Assembly::listing_number`] has it; none if the base is not good any more.
+    listing: Option<(usize, usize)>,
 }
 
 impl<const D: usize> Single<D> {
@@ -114,7 +115,7 @@ impl<const D: usize> Single<D> {
             ways: vec![[0.0; D]; assembly.len()],
             forces: vec![[0.0; D]; assembly.len()],
             across: Across::default(),
-            stale: true,
+            listing: None,
         })
     }
 
@@ -123,9 +124,9 @@ impl<const D: usize> Single<D> {
         self.units
     }
 
-    /// The assembly has other displacements or another list: they are the base of the next step.
+    /// The displacements of the assembly are to be the base of the next step: they are settled, or were changed by others.
     pub fn forget(&mut self) {
-        self.stale = true;
+        self.listing = None;
     }
 
     /// Takes the forces of the assembly's last evaluation.
@@ -141,7 +142,8 @@ impl<const D: usize> Single<D> {
 
     /// Puts the disks of the assembly where these are.
     pub fn settle<L: PairLaw>(&self, assembly: &mut Assembly<D, L>) {
-        if self.stale {
+        if self.listing.is_none_or(|(list, _)| list != assembly.listing_number().0) {
+            // Where another list was made the disks were settled, and may have other anchors since.
             return;
         }
         let unit = self.units.length;
@@ -154,33 +156,44 @@ impl<const D: usize> Single<D> {
         });
     }
 
-    /// Makes the displacements of the assembly the base, if they are not.
+    /// Makes the displacements of the assembly the base, if they are not and have to be, and rounds what its list has. Pairs that a long list
+    /// was amended by are rounded from the base there is.
     fn prepare<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
-        if !self.stale {
-            return;
-        }
-        self.stale = false;
-        self.base.clone_from(&assembly.displacements);
-        self.ways.fill([0.0; D]);
-        let empty = Rounded {
-            separation: [[1.0; BLOCK]; D],
-            distance: [1.0; BLOCK],
-            overlap: [0.0; BLOCK],
-            coefficient: [0.0; BLOCK],
-        };
+        let (known, (list, amendments)) = (self.listing, assembly.listing_number());
+        self.listing = Some((list, amendments));
         let pairs = assembly.pairs();
-        self.blocks.resize(pairs.blocks.len(), empty);
         let law = assembly.law();
         let coefficient = libm::pow(self.units.length, law.exponent() - 1.0) / self.units.force;
         let units = (1.0 / self.units.length, coefficient);
-        let portions = self.blocks.chunks_mut(PORTION).zip(pairs.blocks.chunks(PORTION));
-        side_by_side::each(portions, |(rounded, blocks)| {
-            let mut moved = [[0.0; D]; BLOCK];
-            for (rounded, block) in rounded.iter_mut().zip(blocks) {
-                gather(&mut moved, pairs, block, (&assembly.displacements, 0));
-                pulp::Arch::new().dispatch(Round { pairs, block, moved: &moved, units, rounded });
+        let round = |block: usize, base: &[Vector<D>], rounded: &mut Rounded<D>| {
+            let (block, mut moved) = (&pairs.blocks[block], [[0.0; D]; BLOCK]);
+            gather(&mut moved, pairs, block, (base, 0));
+            pulp::Arch::new().dispatch(Round { pairs, block, moved: &moved, units, rounded });
+        };
+        match known {
+            Some((same, before)) if same == list && (before == amendments || pairs.is_long()) => {
+                if before != amendments {
+                    pairs.amended_blocks().for_each(|block| round(block, &self.base, &mut self.blocks[block]));
+                }
             }
-        });
+            _ => {
+                self.base.clone_from(&assembly.displacements);
+                self.ways.fill([0.0; D]);
+                let empty = Rounded {
+                    separation: [[1.0; BLOCK]; D],
+                    distance: [1.0; BLOCK],
+                    overlap: [0.0; BLOCK],
+                    coefficient: [0.0; BLOCK],
+                };
+                self.blocks.resize(pairs.blocks.len(), empty);
+                let (base, portions) = (self.base.as_slice(), self.blocks.chunks_mut(PORTION).enumerate());
+                side_by_side::each(portions, |(portion, rounded)| {
+                    for (place, rounded) in rounded.iter_mut().enumerate() {
+                        round(portion * PORTION + place, base, rounded);
+                    }
+                });
+            }
+        }
     }
 
     /// Moves all mobile disks and evaluates the forces where they then are, as [`Assembly::advance`] does; `kick` gets (forces, velocities,
@@ -205,7 +218,12 @@ impl<const D: usize> Single<D> {
         let kernel = Pressed { law: &law, pairs, blocks: &self.blocks };
         let movers = Movers { velocities, displacements: &mut self.ways, forces: &mut self.forces };
         let range = Range { limit, ways, longest };
-        Advanced::of(advance(&kernel, pairs, (movers, &mut self.across), range, kick, look))
+        let advanced = Advanced::of(advance(&kernel, pairs, (movers, &mut self.across), range, kick, look));
+        if matches!(advanced, Advanced::Moved) || assembly.looks_next() {
+            // The assembly looks at its disks.
+            self.settle(assembly);
+        }
+        advanced
     }
 
     /// Forces where the disks are.

@@ -3,7 +3,7 @@
 use crate::contact::columns::{Anchors, Columns};
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, Block, PairList};
-use crate::contact::rows::{gather, scatter_with};
+use crate::contact::rows::{ask_for_later_rows, gather, scatter_with};
 use crate::contact::tiles::Tile;
 use crate::side_by_side;
 use crate::vector::{Vector, sum};
@@ -55,6 +55,7 @@ impl<const D: usize, L: PairLaw, W: Fn(usize, f64, f64) -> f64> Task<'_, D, L, W
         let values = &mut [[0.0]; BLOCK];
         for place in tile.inner.start..tile.border.end {
             let block = &pairs.blocks[place];
+            ask_for_later_rows(pairs, block);
             gather(&mut columns.pull, pairs, block, (self.displacements, 0));
             let (columns, anchors) = (&mut columns, Anchors::of(pairs, block));
             pulp::Arch::new().dispatch(Arithmetic { task: self, block, columns, anchors, values });

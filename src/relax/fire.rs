@@ -364,11 +364,8 @@ impl Run<'_> {
             if let Advanced::Evaluated(parts) = advanced {
                 taken = Some(motion.sum(&parts));
             }
-            if listed_anew {
-                motion.forget();
-                if monitor.ran_away(assembly) {
-                    return Ok(Stop::NoMinimum);
-                }
+            if listed_anew && monitor.ran_away(assembly) {
+                return Ok(Stop::NoMinimum);
             }
         }
     }

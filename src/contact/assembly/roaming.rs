@@ -4,8 +4,8 @@ use crate::contact::assembly::Assembly;
 use crate::contact::assembly::upkeep::LISTED;
 use crate::contact::law::PairLaw;
 use crate::contact::neighbours::amend_pairs;
-use crate::side_by_side::{self, PIECE};
-use crate::vector::{Vector, difference, dot, longest_difference_squared};
+use crate::contact::ways::{Ways, is_within};
+use crate::vector::{Vector, difference, dot};
 
 /// A disk has gone far if it went this share of the way for which its list holds \[1\].
 const FAR: f64 = 0.5;
@@ -31,16 +31,18 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// pairs are not good any more then, and the list of all pairs is as it was.
     pub(super) fn amend(&mut self) -> bool {
         let Some(skin) = self.near_skin else {
-            let amended = self.amend_all();
+            let ways = self.ways.clone();
+            let amended = self.amend_all(&ways);
             if amended {
                 self.begin_list();
             }
             self.take_ways();
             return amended;
         };
-        let mut moved = self.longest_way(&self.listed);
+        let ways = self.ways_from(&self.listed);
+        let mut moved = ways.longest();
         if moved > FAR * LISTED * self.skin {
-            if !self.amend_all() {
+            if !self.amend_all(&ways) {
                 return false;
             }
             moved = self.longest_way(&self.listed);
@@ -50,7 +52,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         if 2.0 * moved + 1.5 * skin > self.skin {
             return false;
         }
-        let Some(far) = self.far_from(&self.near_listed, skin) else { return false };
+        let Some(far) = self.far_from((&self.near_listed, &self.ways), skin) else { return false };
         for &disk in &far {
             self.near_listed[disk as usize] = self.displacements[disk as usize];
         }
@@ -59,9 +61,9 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.near_pairs.amend_from(&self.pairs, &marked, (&self.near_listed, skin))
     }
 
-    /// The same for the list of all pairs.
-    fn amend_all(&mut self) -> bool {
-        let Some(far) = self.far_from(&self.listed, self.skin) else { return false };
+    /// The same for the list of all pairs, from which portions of disks have gone so far.
+    fn amend_all(&mut self, ways: &Ways) -> bool {
+        let Some(far) = self.far_from((&self.listed, ways), self.skin) else { return false };
         let (mut listed, mut roaming) = (self.listed.clone(), self.roaming.clone());
         for &disk in &far {
             listed[disk as usize] = self.displacements[disk as usize];
@@ -85,28 +87,26 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         amended
     }
 
-    /// The mobile disks that went far from where they were, if they are few and the list may be amended.
-    fn far_from(&self, listed: &[Vector<D>], skin: f64) -> Option<Vec<u32>> {
+    /// The mobile disks that went far from where they were, if they are few and the list may be amended. `ways` are bounds on how far
+    /// portions of them went.
+    fn far_from(&self, (listed, ways): (&[Vector<D>], &Ways), skin: f64) -> Option<Vec<u32>> {
         if !self.pairs.keeps_places {
             return None;
         }
         let limit = FAR * LISTED * skin;
-        let mobile = &self.displacements[..self.mobile_count];
-        let pieces = mobile.chunks(PIECE).zip(listed[..self.mobile_count].chunks(PIECE)).enumerate();
-        let found = side_by_side::each(pieces, |(piece, (now, before))| {
-            let mut far = Vec::new();
-            if longest_difference_squared(now, before) <= limit * limit {
-                return far;
-            }
-            for (place, (&now, &before)) in now.iter().zip(before).enumerate() {
+        let mut far = Vec::new();
+        for portion in ways.portions(self.mobile_count, self.pairs.tile_size).filter(|(_, way)| !is_within(*way, limit))
+        {
+            let first = portion.0.start;
+            for (place, (&now, &before)) in
+                self.displacements[portion.0.clone()].iter().zip(&listed[portion.0]).enumerate()
+            {
                 let way = difference(now, before);
                 if dot(way, way) > limit * limit {
-                    far.push((piece * PIECE + place) as u32);
+                    far.push((first + place) as u32);
                 }
             }
-            far
-        });
-        let far: Vec<u32> = found.into_iter().flatten().collect();
+        }
         (far.len() <= self.len() / ONE_OF).then_some(far)
     }
 

@@ -6,8 +6,8 @@ use crate::contact::pair_list::PairList;
 use crate::contact::pruned::best_skin;
 use crate::contact::ways::{PORTION, Ways, is_within};
 use crate::packing::PackingError;
-use crate::side_by_side::{self, PIECE};
-use crate::vector::{Vector, larger, longest_difference_squared};
+use crate::side_by_side;
+use crate::vector::{Vector, longest_difference_squared};
 
 /// How far a disk may go from where it was listed over the width of the skin: half of it, less the rounding of the comparison.
 pub(super) const LISTED: f64 = 0.4999;
@@ -40,9 +40,15 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         (self.age, self.seen_at, self.look_at) = (0, 0, FIRST_LOOK);
     }
 
-    /// Whether [`Assembly::advance`] does anything.
+    /// Whether [`Assembly::advance`] does anything. Before a look at a short list it does not: should near pairs be picked then, forces are
+    /// summed in their order.
     pub(in crate::contact) fn may_advance(&self) -> bool {
-        !L::ON_SITE && !self.looks_next()
+        !L::ON_SITE && (self.pairs().is_long() || !self.looks_next())
+    }
+
+    /// Tells lists apart: the number of the one in use, and how often it was amended.
+    pub(in crate::contact) fn listing_number(&self) -> (usize, usize) {
+        self.listing_number
     }
 
     /// The list in use, where it has the disks, the way it holds for, and what they have gone of it.
@@ -57,17 +63,23 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// Takes how far disks have moved since they were listed, in place of bounds on it.
     pub(super) fn take_ways(&mut self) {
-        let (size, listed) = (self.pairs().tile_size, self.listed_in_use());
-        let tiles = self.displacements[..self.mobile_count].chunks(size).zip(listed[..self.mobile_count].chunks(size));
+        self.ways = self.ways_from(self.listed_in_use());
+    }
+
+    /// How far disks have moved from where they were.
+    pub(super) fn ways_from(&self, before: &[Vector<D>]) -> Ways {
+        let mobile = self.mobile_count;
+        let tiles = self.displacements[..mobile].chunks(self.pairs.tile_size);
+        let tiles = tiles.zip(before[..mobile].chunks(self.pairs.tile_size));
         let longest = |(now, before): (&[_], &[_])| longest_difference_squared(now, before).sqrt();
-        let ways = side_by_side::each(tiles, |(now, before)| {
+        let bounds = side_by_side::each(tiles, |(now, before)| {
             now.chunks(PORTION).zip(before.chunks(PORTION)).map(longest).collect::<Vec<_>>()
         });
-        self.ways.bounds = ways.concat();
+        Ways { bounds: bounds.concat(), ..self.ways }
     }
 
     /// Whether the way of the disks is looked at in the next call of [`Assembly::keep_listed`], however short it is.
-    fn looks_next(&self) -> bool {
+    pub(in crate::contact) fn looks_next(&self) -> bool {
         self.prunes && self.age + 1 == self.look_at
     }
 
@@ -115,6 +127,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
 
         if self.prunes && self.amend() {
+            self.listing_number.1 += 1;
             return Ok(true);
         }
         let way = if self.prunes { self.felt_way(self.listed_in_use()) / self.age as f64 } else { f64::INFINITY };
@@ -132,6 +145,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
                 self.prune(best.min(longest));
             } else {
                 self.near_skin = None;
+                self.listing_number = (self.listing_number.0 + 1, 0);
                 self.take_ways();
             }
         }
@@ -140,10 +154,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// The longest way of a mobile disk from where it was \[length\]; NaN if one is.
     pub(super) fn longest_way(&self, from: &[Vector<D>]) -> f64 {
-        let mobile = &self.displacements[..self.mobile_count];
-        let pieces = mobile.chunks(PIECE).zip(from[..self.mobile_count].chunks(PIECE));
-        let squares = side_by_side::each(pieces, |(now, before)| longest_difference_squared(now, before));
-        squares.into_iter().fold(0.0, larger).sqrt()
+        self.ways_from(from).longest()
     }
 
     /// Picks the pairs nearer than this skin from the list of all pairs, which lasts until a disk has moved by half of it.
@@ -151,6 +162,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.near_pairs.prune(&self.pairs, &self.displacements, skin);
         self.near_skin = Some(skin);
         self.near_listed.clone_from(&self.displacements);
+        self.listing_number = (self.listing_number.0 + 1, 0);
         self.begin_list();
     }
 
@@ -159,6 +171,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.near_skin = None;
         self.listed.clone_from(&self.displacements);
         self.roaming.clear();
+        self.listing_number = (self.listing_number.0 + 1, 0);
         self.begin_list();
     }
 

@@ -120,11 +120,7 @@ impl<const D: usize> Motion<D> {
                 let (step, reach) = (step.in_units(disks.units()), reach * disks.units().speed());
                 let kick =
                     |forces: &[_], velocities: &mut [_], ways: &mut [_]| reach * step.kick(forces, velocities, ways);
-                let advanced = disks.advance(assembly, velocities, kick, products_of);
-                if advanced == Advanced::Moved {
-                    disks.settle(assembly);
-                }
-                advanced
+                disks.advance(assembly, velocities, kick, products_of)
             }
         }
     }

@@ -3,6 +3,7 @@
 use super::*;
 use crate::scenes::tiled::tiled;
 use jamscope::contact::advance::Advanced;
+use jamscope::contact::single::Single;
 use jamscope::io::read_packing;
 
 /// A packing a few disks of which, side by side, go through each other and the rest, straight on, each in a direction of its own.
@@ -209,4 +210,50 @@ fn steps_tile_by_tile_miss_no_contact_of_disks_that_go_far() {
     }
     assert!(advanced > 200 && spent > 3, "{advanced} steps, {spent} lists spent");
     assert!(crossing.assembly.rebuild_count() <= 4, "{} lists", crossing.assembly.rebuild_count());
+}
+
+#[test]
+fn pairs_that_a_list_is_amended_by_have_their_forces_in_single_precision_too() {
+    let (packing, middle) = three_tiles();
+    let mut crossing = Crossing::new(&packing, (60, middle), (0.0, 0.0));
+    let assembly = &mut crossing.assembly;
+    let mut disks = Single::new(assembly).expect("numbers of ordinary size");
+    let mut velocities = vec![[0.0f32; 2]; assembly.mobile_count()];
+    for &disk in &crossing.roaming {
+        velocities[disk] = [1.7 * disk as f64, 1.7 * disk as f64 + 2.0].map(|angle| angle.cos() as f32);
+    }
+    // A radius is of the unit of lengths and below two of them.
+    let step = (3.0 * WAY / disks.units().length) as f32;
+    let (mut advanced, mut amended) = (0, 0);
+    for at in 1..=280 {
+        let kick = |_: &[_], velocities: &mut [[f32; 2]], ways: &mut [[f32; 2]]| {
+            for (way, velocity) in ways.iter_mut().zip(velocities) {
+                *way = std::array::from_fn(|d| way[d] + step * velocity[d]);
+            }
+            5.0 * WAY
+        };
+        match disks.advance(assembly, &mut velocities, kick, |_, _| ()) {
+            Advanced::Evaluated(_) => advanced += 1,
+            Advanced::Moved => amended += 1,
+            Advanced::Not => panic!("a long list is advanced whatever comes"),
+        }
+        let made = assembly.rebuild_count();
+        let changed = assembly.keep().expect("no coincidence");
+        assert_eq!(assembly.rebuild_count(), made, "step {at}: amended, not made anew");
+        if !changed && at % 7 != 0 {
+            continue;
+        }
+        disks.evaluate(assembly);
+        let mut exact = assembly.clone();
+        disks.settle(&mut exact);
+        exact.reanchor().expect("no coincidence");
+        exact.evaluate();
+        let largest = exact.forces.iter().map(|&force| norm(force)).fold(0.0, f64::max);
+        for (rounded, &force) in disks.forces.iter().zip(&exact.forces) {
+            let found = rounded.map(|component| disks.units().force * f64::from(component));
+            // Overlaps known to 4 · 2⁻²⁴ of ways up to a diameter, in some eight contacts of a disk, over one of a tenth of that at least, Hertzian.
+            assert!(norm(difference(found, force)) < 3e-5 * largest, "step {at}: {found:?} {force:?}");
+        }
+    }
+    assert!(advanced > 250 && amended > 3, "{advanced} steps, amended {amended} times");
 }
