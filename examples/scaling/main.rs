@@ -175,7 +175,7 @@ fn measured(packing: &Packing<2>, one: &rayon::ThreadPool) -> Result<Row, Failur
     };
     let steps = |precision| -> Result<_, Failure> {
         let (mut least, mut lists, mut last) = ([f64::INFINITY; 2], 0, None);
-        for _ in 0..(400_000 / disks).clamp(2, 40) {
+        for _ in 0..(400_000 / disks).clamp(5, 40) {
             let ((early, before, _), (late, after, state)) =
                 (relax(precision, FIRST_STEPS)?, relax(precision, FIRST_STEPS + STEPS)?);
             least = [least[0].min(early), least[1].min(late)];

@@ -13,6 +13,7 @@ use std::ops::Range;
 use crate::contact::measured::Measured;
 use crate::contact::pair_list::{BLOCK, Block, PairList, Source};
 use crate::contact::tiles::connect;
+use crate::side_by_side;
 use crate::vector::{Vector, dot};
 
 /// Fewest disks of a list that keeps places: a list of fewer is made quickly, and has few disks that go far.
@@ -55,18 +56,17 @@ impl<const D: usize> PairList<D> {
     }
 
     /// Pairs that have a marked disk.
-    pub(super) fn pairs_of(&self, marked: &[bool], found: &mut Vec<Lacking>) {
-        found.clear();
-        for (tile, disks) in self.tiles.iter().zip(marked.chunks(self.tile_size)) {
+    pub(super) fn pairs_of(&self, marked: &[bool]) -> Vec<Lacking> {
+        let tiles = self.tiles.iter().zip(marked.chunks(self.tile_size));
+        let of_tiles = side_by_side::each(tiles, |(tile, disks)| {
             // A pair is in the tile of its first disk; only those across a border have another disk elsewhere.
             let begin = if disks.contains(&true) { tile.inner.start } else { tile.border.start };
-            for pair in self.blocks[begin..tile.border.end].iter().flat_map(Block::pairs) {
-                let (first, second) = (self.first[pair], self.second[pair]);
-                if marked[first as usize] | marked[second as usize] {
-                    found.push(Lacking { first, second, name: pair as u32 });
-                }
-            }
-        }
+            let pairs = self.blocks[begin..tile.border.end].iter().flat_map(Block::pairs);
+            let named =
+                pairs.map(|pair| Lacking { first: self.first[pair], second: self.second[pair], name: pair as u32 });
+            named.filter(|pair| marked[pair.first as usize] | marked[pair.second as usize]).collect::<Vec<_>>()
+        });
+        of_tiles.concat()
     }
 
     /// Of the pairs of a wider list that have a marked disk, those that this one lacks and that are nearer than reach + `skin` where their
@@ -77,8 +77,7 @@ impl<const D: usize> PairList<D> {
         marked: &[bool],
         (listed, skin): (&[Vector<D>], f64),
     ) -> Vec<Lacking> {
-        let (mut lacking, mut had) = (Vec::new(), Vec::new());
-        whole.pairs_of(marked, &mut lacking);
+        let mut lacking = whole.pairs_of(marked);
         lacking.retain(|&Lacking { first, second, name }| {
             let (pair, a, b) = (name as usize, listed[first as usize], listed[second as usize]);
             let anchored = whole.separation(pair);
@@ -86,8 +85,7 @@ impl<const D: usize> PairList<D> {
             let range = whole.distance(pair) + whole.overlap(pair) + skin;
             dot(apart, apart) < range * range
         });
-        self.pairs_of(marked, &mut had);
-        without(&mut lacking, &mut had);
+        without(&mut lacking, &mut self.pairs_of(marked));
         lacking
     }
 

@@ -252,7 +252,7 @@ pub(super) fn amend_pairs<const D: usize>(
 ) -> bool {
     let lengths = disks.domain.lengths();
     let at = |disk: u32| sum(disks.anchors[disk as usize], listed[disk as usize]);
-    let (mut lacking, mut had, mut runs) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut lacking, mut runs) = (Vec::new(), Vec::new());
     for &disk in roaming.iter().filter(|&&disk| marked[disk as usize]) {
         let point = at(disk);
         let reach = disks.radii[disk as usize] + skin;
@@ -281,8 +281,7 @@ pub(super) fn amend_pairs<const D: usize>(
         }
         roaming.iter().for_each(|&other| offer(other));
     }
-    pairs.pairs_of(marked, &mut had);
-    without(&mut lacking, &mut had);
+    without(&mut lacking, &mut pairs.pairs_of(marked));
     pairs.amend(&lacking, &mut Anchored::new(disks, &coefficient))
 }
 

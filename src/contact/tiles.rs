@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::contact::pair_list::Block;
+use crate::side_by_side;
 
 /// A tile: its blocks, and what comes to its disks from others.
 #[derive(Debug, Clone, Default)]
@@ -32,7 +33,7 @@ pub(super) fn connect(tiles: &mut [Tile], tile_size: usize, blocks: &[Block], (f
             tiles[second as usize / tile_size].incoming.push((second, tile as u32, (pair - begin) as u32));
         }
     }
-    for (place, tile) in tiles.iter_mut().enumerate() {
+    side_by_side::each(tiles.iter_mut().enumerate(), |(place, tile)| {
         let own = blocks[tile.border.clone()].iter().flat_map(Block::pairs).map(|pair| &first[pair]);
         let touched = own.chain(tile.incoming.iter().map(|(disk, ..)| disk));
         let mut touched: Vec<usize> = touched.map(|&disk| disk as usize - place * tile_size).collect();
@@ -46,5 +47,5 @@ pub(super) fn connect(tiles: &mut [Tile], tile_size: usize, blocks: &[Block], (f
             }
             begin = end + 1;
         }
-    }
+    });
 }

@@ -26,6 +26,9 @@ const PICKING: f64 = 3.5;
 /// Disks of which one may go farther than the way that is common to the others.
 const COMMON_BUT_ONE_OF: usize = 512;
 
+/// Disks that are asked for that way at least, if there are so many: some 250 of them go farther.
+const ASKED: usize = 1 << 17;
+
 impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Lists the disks that went far anew, if they are few, and adds the pairs that the list in use lacks then. False if that cannot be: near
     /// pairs are not good any more then, and the list of all pairs is as it was.
@@ -130,6 +133,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
         let mobile = self.displacements[..self.mobile_count].iter().zip(from);
         let mut squares: Vec<f64> = mobile
+            .step_by((self.mobile_count / ASKED).max(1))
             .map(|(&now, &before)| {
                 let way = difference(now, before);
                 dot(way, way)
