@@ -69,6 +69,7 @@ pub struct Assembly<const D: usize, L> {
     checkpoint: Vec<Vector<D>>,
     /// How far disks may have moved since they were listed in the list in use.
     ways: Ways,
+    /// Lists that were in use so far, and how often this one was amended.
     listing_number: (usize, usize),
     rebuild_count: usize,
     /// Centre minus anchor of each disk; a relaxer moves the first [`Assembly::mobile_count`] of them \[length\].

@@ -159,8 +159,11 @@ impl<const D: usize> Single<D> {
     /// Makes the displacements of the assembly the base, if they are not and have to be, and rounds what its list has. Pairs that a long list
     /// was amended by are rounded from the base there is.
     fn prepare<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
-        let (known, (list, amendments)) = (self.listing, assembly.listing_number());
-        self.listing = Some((list, amendments));
+        let (list, amendments) = assembly.listing_number();
+        let known = self.listing.replace((list, amendments));
+        if known == self.listing {
+            return;
+        }
         let pairs = assembly.pairs();
         let law = assembly.law();
         let coefficient = libm::pow(self.units.length, law.exponent() - 1.0) / self.units.force;
@@ -170,30 +173,25 @@ impl<const D: usize> Single<D> {
             gather(&mut moved, pairs, block, (base, 0));
             pulp::Arch::new().dispatch(Round { pairs, block, moved: &moved, units, rounded });
         };
-        match known {
-            Some((same, before)) if same == list && (before == amendments || pairs.is_long()) => {
-                if before != amendments {
-                    pairs.amended_blocks().for_each(|block| round(block, &self.base, &mut self.blocks[block]));
-                }
-            }
-            _ => {
-                self.base.clone_from(&assembly.displacements);
-                self.ways.fill([0.0; D]);
-                let empty = Rounded {
-                    separation: [[1.0; BLOCK]; D],
-                    distance: [1.0; BLOCK],
-                    overlap: [0.0; BLOCK],
-                    coefficient: [0.0; BLOCK],
-                };
-                self.blocks.resize(pairs.blocks.len(), empty);
-                let (base, portions) = (self.base.as_slice(), self.blocks.chunks_mut(PORTION).enumerate());
-                side_by_side::each(portions, |(portion, rounded)| {
-                    for (place, rounded) in rounded.iter_mut().enumerate() {
-                        round(portion * PORTION + place, base, rounded);
-                    }
-                });
-            }
+        if pairs.is_long() && known.is_some_and(|(same, _)| same == list) {
+            pairs.amended_blocks().for_each(|block| round(block, &self.base, &mut self.blocks[block]));
+            return;
         }
+        self.base.clone_from(&assembly.displacements);
+        self.ways.fill([0.0; D]);
+        let empty = Rounded {
+            separation: [[1.0; BLOCK]; D],
+            distance: [1.0; BLOCK],
+            overlap: [0.0; BLOCK],
+            coefficient: [0.0; BLOCK],
+        };
+        self.blocks.resize(pairs.blocks.len(), empty);
+        let (base, portions) = (self.base.as_slice(), self.blocks.chunks_mut(PORTION).enumerate());
+        side_by_side::each(portions, |(portion, rounded)| {
+            for (place, rounded) in rounded.iter_mut().enumerate() {
+                round(portion * PORTION + place, base, rounded);
+            }
+        });
     }
 
     /// Moves all mobile disks and evaluates the forces where they then are, as [`Assembly::advance`] does; `kick` gets (forces, velocities,
