@@ -47,6 +47,17 @@ pub enum SceneFileError {
     },
 }
 
+/// Refuses a text whose last line has no line break: what is left of a file that was cut may be another scene, a pressure of 1 for 1000.
+pub fn refuse_cut(text: &str) -> Result<(), String> {
+    if text.is_empty() || text.ends_with('\n') {
+        return Ok(());
+    }
+    let line = text.lines().count();
+    Err(format!(
+        "line {line}: the last line has no line break, so the file may have been cut; add one if it is complete"
+    ))
+}
+
 /// Reads and checks a scene.
 pub fn read_scene(path: &Path) -> Result<Scene, SceneFileError> {
     let name = path.display().to_string();
@@ -59,7 +70,8 @@ pub fn read_scene(path: &Path) -> Result<Scene, SceneFileError> {
     }
     let scene: Scene = toml::from_str(&text)
         .map_err(|error| SceneFileError::Toml { path: name.clone(), message: error.to_string() })?;
-    scene.check().map_err(|source| SceneFileError::Scene { path: name, source })?;
+    scene.check().map_err(|source| SceneFileError::Scene { path: name.clone(), source })?;
+    refuse_cut(&text).map_err(|message| SceneFileError::Toml { path: name, message })?;
     Ok(scene)
 }
 
@@ -71,6 +83,14 @@ mod tests {
     fn the_commented_scene_is_the_built_in_one() {
         let scene: Scene = toml::from_str(&commented_scene()).expect("the printed scene parses");
         assert_eq!(scene, Scene::default());
+    }
+
+    #[test]
+    fn a_text_is_cut_where_its_last_line_has_no_break() {
+        let cut = refuse_cut("seed = 1\npressure = 1").expect_err("of 1000, perhaps");
+        assert!(cut.contains("line 2") && cut.contains("may have been cut"), "{cut}");
+        assert_eq!(refuse_cut("seed = 1\n"), Ok(()));
+        assert_eq!(refuse_cut(&commented_scene()), Ok(()));
     }
 
     #[test]

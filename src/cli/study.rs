@@ -13,6 +13,7 @@ use jamscope::study::{
     self, FailureKind, Merged, Plan, Problem, Recipe, Record, RecordOutcome, Scale, Shard, Study, StudyProgress, Task,
 };
 
+use crate::scene_file::refuse_cut;
 use crate::{Failure, print, set_threads};
 
 /// What `study` is asked for.
@@ -103,6 +104,7 @@ fn read_study(path: &Path) -> Result<Study, Failure> {
     }
     let study: Study = table.try_into().map_err(|error| format!("{}: {error}", path.display()))?;
     study.check().map_err(|error| format!("{}: {error}", path.display()))?;
+    refuse_cut(&text).map_err(|message| format!("{}: {message}", path.display()))?;
     Ok(study)
 }
 

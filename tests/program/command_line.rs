@@ -21,7 +21,8 @@ fn text(path: &Path) -> &str {
 fn scene(content: &str) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("scene.toml");
-    std::fs::write(&path, content).expect("a temporary file");
+    let end = if content.is_empty() || content.ends_with('\n') { "" } else { "\n" };
+    std::fs::write(&path, format!("{content}{end}")).expect("a temporary file");
     (folder, path)
 }
 
@@ -121,6 +122,21 @@ fn bad_scenes_are_refused_by_file_field_and_value() {
             assert!(said.contains(part), "{content:?}: no {part:?} in {said}");
         }
     }
+}
+
+#[test]
+fn a_scene_that_may_have_been_cut_is_refused_and_nothing_is_written() {
+    let (folder, path) = scene("[[sample]]\nname = \"x\"\nsource = { pressure = 10.0 }\n[inflation]\nincrease = 0.1");
+    let whole = std::fs::read_to_string(&path).expect("written");
+    let out = folder.path().join("out");
+    std::fs::write(&path, whole.trim_end()).expect("a temporary file");
+    let said = complaint(&["run", text(&path), "--out", text(&out)]);
+    assert!(said.contains("scene.toml: line 5") && said.contains("may have been cut"), "{said}");
+    let study = "disk_counts = [300]\nseeds = { first = 1, count = 1 }";
+    std::fs::write(&path, study).expect("a temporary file");
+    let said = complaint(&["study", text(&path), "--out", text(&out)]);
+    assert!(said.contains("scene.toml: line 2") && said.contains("may have been cut"), "{said}");
+    assert!(!out.exists());
 }
 
 #[test]
