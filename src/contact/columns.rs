@@ -13,9 +13,14 @@ use crate::simd::components;
 use crate::simd::roots::{Unit, positive_part, reciprocal, square_roots};
 use crate::vector::Vector;
 
-/// How far ahead the list is asked for: its memory is two blocks of arithmetic away \[numbers\].
-const fn ahead<const D: usize>() -> usize {
-    2 * size_of::<Measured<D>>() / size_of::<f64>()
+/// How far ahead the list is asked for: its memory is so many blocks of arithmetic away; the first cache has no room for more than one
+/// \[numbers\].
+fn ahead<const D: usize>(cache: Cache) -> usize {
+    let blocks = match cache {
+        Cache::Second => 2,
+        Cache::First => 1,
+    };
+    blocks * size_of::<Measured<D>>() / size_of::<f64>()
 }
 
 /// One block of pairs, column by column.
@@ -67,7 +72,8 @@ impl<const D: usize> Columns<D> {
     #[inline(always)]
     pub fn measure<S: Simd>(&mut self, simd: S, anchors: &Anchors<'_, D>) {
         let count = anchors.turns::<S>();
-        let (listed, ahead) = (anchors.listed, ahead::<D>());
+        let (listed, cache) = (anchors.listed, Cache::here());
+        let ahead = ahead::<D>(cache);
         let read = |column| &S::as_simd_f64s(column).0[..count];
         let anchor_separation = listed.separation.each_ref().map(|column| read(&column[..]));
         let (anchor_distance, anchor_overlap) = (read(&listed.distance), read(&listed.overlap));
@@ -75,7 +81,7 @@ impl<const D: usize> Columns<D> {
         let apart = self.apart.each_mut().map(|column| &mut S::as_mut_simd_f64s(column).0[..count]);
         let overlap = &mut S::as_mut_simd_f64s(&mut self.overlap).0[..count];
         let inverse = &mut S::as_mut_simd_f64s(&mut self.inverse).0[..count];
-        let (zero, unit, cache) = (simd.splat_f64s(0.0), Unit::here(), Cache::here());
+        let (zero, unit) = (simd.splat_f64s(0.0), Unit::here());
         for k in (0..count).step_by(2) {
             let mut squares = [zero; 2];
             for (half, square) in squares.iter_mut().enumerate() {
@@ -116,9 +122,10 @@ impl<const D: usize> Columns<D> {
     #[inline(always)]
     pub fn press<S: Simd, L: PairLaw, const RESOLVE: bool>(&mut self, simd: S, law: &L, anchors: &Anchors<'_, D>) {
         let count = anchors.turns::<S>();
-        let (listed, ahead) = (anchors.listed, ahead::<D>());
+        let (listed, cache) = (anchors.listed, Cache::here());
+        let ahead = ahead::<D>(cache);
         let coefficient = &S::as_simd_f64s(&listed.coefficient).0[..count];
-        let (one, cache) = (simd.splat_f64s(listed.coefficient[0]), Cache::here());
+        let one = simd.splat_f64s(listed.coefficient[0]);
         let overlap = &S::as_simd_f64s(&self.overlap).0[..count];
         let inverse = &S::as_simd_f64s(&self.inverse).0[..count];
         let apart = self.apart.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);

@@ -29,12 +29,12 @@ use crate::vector::{Vector, larger, longest_difference_squared};
 /// Blocks of pairs rounded by one thread at a time.
 const PORTION: usize = 64;
 
-/// How far ahead the list is asked for: its memory is so many blocks of arithmetic away, and the first cache has not room for more than
-/// two \[blocks\].
+/// How far ahead the list is asked for: its memory is so many blocks of arithmetic away, and the first cache has no room for more than
+/// one, beside what else it holds \[blocks\].
 fn blocks_ahead(cache: Cache) -> usize {
     match cache {
         Cache::Second => 4,
-        Cache::First => 2,
+        Cache::First => 1,
     }
 }
 
