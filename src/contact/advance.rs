@@ -1,5 +1,5 @@
-//! A step and the forces after it, tile by tile: what a tile moves is still in the near cache when its forces are summed, and its
-//! forces are when the relaxer looks at them. On one thread the pairs across a border follow as soon as both sides have moved.
+//! A step and the forces after it, tile by tile and in a tile group by group of its pairs: what is moved is still in a cache when its forces are
+//! summed, and these are when the relaxer looks at them. On one thread the pairs across a border follow as soon as both sides have moved.
 //!
 //! Whether the list holds where the disks come to is known when they are there, so that no step need be short for it. Where it does not, all
 //! disks are moved, and nothing else is done.
@@ -9,7 +9,7 @@
 use std::iter::repeat_with;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::contact::forces::{Across, Kernel, Task, add_incoming, sweep_border, sweep_inner};
+use crate::contact::forces::{Across, Kernel, Task, add_incoming, sweep, sweep_border};
 use crate::contact::pair_list::PairList;
 use crate::contact::turns::Stage;
 use crate::contact::ways::{PORTION, Ways, is_within};
@@ -24,6 +24,9 @@ pub(super) struct Movers<'a, T, const D: usize> {
     /// Forces on all disks, before the step and then after it \[force\].
     pub forces: &'a mut [[T; D]],
 }
+
+/// Forces, velocities and displacements of the same disks; the first and the last of disks that do not move, too.
+type Columns<'a, T, const D: usize> = (&'a mut [[T; D]], &'a mut [[T; D]], &'a mut [[T; D]]);
 
 /// What became of a step tile by tile.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,7 +46,7 @@ impl<P> Advanced<P> {
 }
 
 /// How far the list holds.
-pub(super) struct Range<'a, F> {
+pub(super) struct Reach<'a, F> {
     /// The way it holds for \[length\].
     pub limit: f64,
     /// What disks have gone of it.
@@ -62,39 +65,56 @@ pub(super) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     kernel: &K,
     pairs: &PairList<D>,
     (movers, across): (Movers<'_, K::Number, D>, &mut Across<K::Number, D>),
-    range: Range<'_, impl Fn(usize, &[[K::Number; D]]) -> f64 + Sync>,
+    reach: Reach<'_, impl Fn(usize, &[[K::Number; D]]) -> f64 + Sync>,
     kick: impl Fn(&[[K::Number; D]], &mut [[K::Number; D]], &mut [[K::Number; D]]) -> f64 + Sync,
     look: impl Fn(&[[K::Number; D]], &[[K::Number; D]]) -> P + Send + Sync,
 ) -> Option<Vec<P>> {
     let Movers { velocities, displacements, forces } = movers;
-    let Range { limit, ways, longest } = range;
+    let Reach { limit, ways, longest } = reach;
     let (tiles, size) = (pairs.tiles.as_slice(), pairs.tile_size);
     let spent = AtomicBool::new(false);
     let is_spent = || spent.load(Ordering::Relaxed);
-    let inside =
-        |place: usize, displacements: &mut [[_; D]], forces: &mut [[_; D]], movers: (&mut [[_; D]], &mut [f64])| {
-            let (velocities, ways) = movers;
-            let (tile, mobile) = (&tiles[place], velocities.len());
-            let portions = forces[..mobile].chunks(PORTION).zip(velocities.chunks_mut(PORTION));
-            let portions = portions.zip(displacements[..mobile].chunks_mut(PORTION)).zip(ways).enumerate();
-            for (portion, (((forces, velocities), displacements), way)) in portions {
-                *way += kick(forces, velocities, displacements);
-                if !is_within(*way, limit) {
-                    *way = longest(place * size + portion * PORTION, displacements);
-                    if !is_within(*way, limit) {
-                        spent.store(true, Ordering::Relaxed);
-                    }
-                }
+    let nothing = [K::Number::default(); D];
+    // Moves disks from this one on, whose bound is `way`.
+    let moves = |disk: usize, (forces, velocities, displacements): Columns<'_, _, D>, way: &mut f64| {
+        *way += kick(forces, velocities, displacements);
+        if !is_within(*way, limit) {
+            *way = longest(disk, displacements);
+            if !is_within(*way, limit) {
+                spent.store(true, Ordering::Relaxed);
+            }
+        }
+        forces.fill(nothing);
+    };
+    let inside = |place: usize, (forces, velocities, displacements): Columns<'_, _, D>, ways: &mut [f64]| {
+        let (tile, mobile, first) = (&tiles[place], velocities.len(), place * size);
+        let interior = tile.interior.start.min(mobile)..tile.interior.end.min(mobile);
+        let (mut moved, mut swept, mut seen) = (0, tile.inner.start, interior.start);
+        let (mut room, mut looked) = (kernel.begin(), Vec::new());
+        forces[mobile..].fill(nothing);
+        for pass in tile.all_passes() {
+            while moved < pass.begun.min(mobile) {
+                let disks = moved..mobile.min(moved + PORTION);
+                moved = disks.end;
+                let way = &mut ways[disks.start / PORTION];
+                let begin = first + disks.start;
+                let of_disks = (&mut forces[disks.clone()], &mut velocities[disks.clone()], &mut displacements[disks]);
+                moves(begin, of_disks, way);
             }
             if is_spent() {
-                return None;
+                continue;
             }
-            let offset = (place * size) as u32;
-            let task = Task { kernel, pairs, displacements: (displacements, offset), tile, offset };
-            sweep_inner(&task, forces);
-            let (begin, end) = (tile.interior.start.min(mobile), tile.interior.end.min(mobile));
-            Some(look(&forces[begin..end], &velocities[begin..end]))
-        };
+            let task = Task { kernel, pairs, displacements: (displacements, first as u32), tile, offset: first as u32 };
+            let end = tile.inner.start + pass.end;
+            sweep(&task, swept..end, forces, &mut room);
+            swept = end;
+            let done = pass.done.clamp(seen, interior.end);
+            looked.extend(tile.runs(seen..done).map(|run| look(&forces[run.clone()], &velocities[run])));
+            seen = done;
+        }
+        looked.extend(tile.amended_of(interior).map(|disk| look(&forces[disk..=disk], &velocities[disk..=disk])));
+        looked
+    };
     let border = |place: usize, displacements: &[[_; D]], forces: &mut [[_; D]], across: &mut [[_; D]]| {
         let (tile, offset) = (&tiles[place], (place * size) as u32);
         let task = Task { kernel, pairs, displacements: (displacements, 0), tile, offset };
@@ -114,7 +134,7 @@ pub(super) fn advance<const D: usize, K: Kernel<D>, P: Send>(
         let moving =
             velocities.chunks_mut(size).zip(ways.bounds.chunks_mut(of_tile)).chain(repeat_with(Default::default));
         let arrays = displacements.chunks_mut(size).zip(forces.chunks_mut(size)).zip(moving);
-        insides = side_by_side::each(arrays.enumerate(), |(place, ((u, f), moving))| inside(place, u, f, moving));
+        insides = side_by_side::each(arrays.enumerate(), |(place, ((u, f), (v, ways)))| inside(place, (f, v, u), ways));
         if is_spent() {
             return None;
         }
@@ -134,8 +154,8 @@ pub(super) fn advance<const D: usize, K: Kernel<D>, P: Send>(
             match stage {
                 Stage::Inside => {
                     let portions = ways.bounds.len().min(place * of_tile)..ways.bounds.len().min((place + 1) * of_tile);
-                    let moving = (&mut velocities[moving], &mut ways.bounds[portions]);
-                    insides.push(inside(place, &mut displacements[begin..end], forces, moving));
+                    let disks = (forces, &mut velocities[moving], &mut displacements[begin..end]);
+                    insides.push(inside(place, disks, &mut ways.bounds[portions]));
                 }
                 _ if is_spent() => {}
                 Stage::Border => border(place, displacements, forces, &mut across.0[place]),

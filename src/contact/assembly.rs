@@ -11,7 +11,7 @@ mod upkeep;
 
 use std::iter::repeat_with;
 
-use crate::contact::advance::{Advanced, Movers, Range, advance};
+use crate::contact::advance::{Advanced, Movers, Reach, advance};
 use crate::contact::assembly::upkeep::LISTED;
 use crate::contact::forces::{self, Across, Plain};
 use crate::contact::law::PairLaw;
@@ -251,8 +251,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         let longest = |first: usize, displacements: &[Vector<D>]| {
             longest_difference_squared(displacements, &listed[first..first + displacements.len()]).sqrt()
         };
-        let range = Range { limit, ways: &mut self.ways, longest };
-        Advanced::of(advance(&Plain { law: &self.law, pairs }, pairs, (movers, &mut self.across), range, kick, look))
+        let reach = Reach { limit, ways: &mut self.ways, longest };
+        Advanced::of(advance(&Plain { law: &self.law, pairs }, pairs, (movers, &mut self.across), reach, kick, look))
     }
 
     /// Forces as by [`Assembly::evaluate`], with energy, virial and contact count.

@@ -200,11 +200,21 @@ pub(super) fn sweep_inner<const D: usize, K: Kernel<D>>(
 ) -> (K::Columns, K::Sums) {
     forces.fill([K::Number::default(); D]);
     let mut room = task.kernel.begin();
-    for block in filled(task.pairs, &task.tile.inner) {
-        let pull = task.kernel.pull(block, task.displacements, &mut room);
+    sweep(task, task.tile.inner.clone(), forces, &mut room);
+    room
+}
+
+/// Adds the forces of the pairs of blocks within a tile to its disks.
+pub(super) fn sweep<const D: usize, K: Kernel<D>>(
+    task: &Task<'_, D, K>,
+    blocks: Range<usize>,
+    forces: &mut [[K::Number; D]],
+    room: &mut (K::Columns, K::Sums),
+) {
+    for block in filled(task.pairs, &blocks) {
+        let pull = task.kernel.pull(block, task.displacements, room);
         scatter(pull, task.pairs, &task.pairs.blocks[block], (forces, task.offset));
     }
-    room
 }
 
 /// Adds the forces of the pairs across the border of a tile to its disks; those on the first disks are kept for the others.

@@ -18,6 +18,7 @@ pub mod neighbours;
 pub mod network;
 pub mod on_site;
 pub mod pair_list;
+mod passes;
 mod pruned;
 mod rows;
 #[cfg(feature = "linear")]

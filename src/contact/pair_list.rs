@@ -14,6 +14,7 @@
 use std::ops::Range;
 
 use crate::contact::measured::Measured;
+use crate::contact::passes::find_passes;
 use crate::contact::tiles::Tile;
 use crate::contact::turns::Turns;
 use crate::packing::PackingError;
@@ -74,6 +75,8 @@ pub(super) struct Block {
     pub row_count: usize,
     pub row_length: usize,
     pub origin: u32,
+    /// Whether it is the last one of its group.
+    pub ends_group: bool,
 }
 
 impl Block {
@@ -242,6 +245,7 @@ impl<const D: usize> PairList<D> {
                 self.reserve(tile_count - place - 1, place + 1);
             }
         }
+        find_passes(&mut tiles, &self.blocks, (&self.first, &self.second), tile_size);
         self.tiles = tiles;
         self.connect();
     }
@@ -343,6 +347,9 @@ impl<const D: usize> PairList<D> {
             let (block, later) = rest.split_at(rest.iter().take(BLOCK / length).take_while(fits).count());
             self.add_block((block, *origin), pairs, measured, source);
             rest = later;
+        }
+        if let Some(last) = self.blocks.last_mut() {
+            last.ends_group = true;
         }
         rows.clear();
         pairs.drain(..begin + length);

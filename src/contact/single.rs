@@ -14,7 +14,7 @@
 
 use pulp::Simd;
 
-use crate::contact::advance::{Advanced, Movers, Range, advance};
+use crate::contact::advance::{Advanced, Movers, Reach, advance};
 use crate::contact::assembly::Assembly;
 use crate::contact::forces::{Across, Kernel, all_tiles};
 use crate::contact::law::PairLaw;
@@ -215,8 +215,8 @@ impl<const D: usize> Single<D> {
         };
         let kernel = Pressed { law: &law, pairs, blocks: &self.blocks };
         let movers = Movers { velocities, displacements: &mut self.ways, forces: &mut self.forces };
-        let range = Range { limit, ways, longest };
-        let advanced = Advanced::of(advance(&kernel, pairs, (movers, &mut self.across), range, kick, look));
+        let reach = Reach { limit, ways, longest };
+        let advanced = Advanced::of(advance(&kernel, pairs, (movers, &mut self.across), reach, kick, look));
         if matches!(advanced, Advanced::Moved) || assembly.looks_next() {
             // The assembly looks at its disks.
             self.settle(assembly);

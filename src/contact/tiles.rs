@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::contact::pair_list::Block;
+use crate::contact::passes::Pass;
 use crate::side_by_side;
 
 /// A tile: its blocks, and what comes to its disks from others.
@@ -10,6 +11,10 @@ use crate::side_by_side;
 pub(super) struct Tile {
     /// Blocks of pairs within the tile.
     pub inner: Range<usize>,
+    /// The groups of these, but not the pairs that were added since; none in a list of one tile.
+    pub passes: Vec<Pass>,
+    /// Disks of added pairs within the tile, counted from its first one, in order; none where there are no passes.
+    pub amended: Vec<u32>,
     /// Blocks of pairs whose second disk is in another tile.
     pub border: Range<usize>,
     /// Pairs of `border`.
@@ -47,5 +52,9 @@ pub(super) fn connect(tiles: &mut [Tile], tile_size: usize, blocks: &[Block], (f
             }
             begin = end + 1;
         }
+        let amended = blocks[tile.added()].iter().flat_map(Block::pairs).flat_map(|pair| [first[pair], second[pair]]);
+        tile.amended = amended.map(|disk| disk - (place * tile_size) as u32).collect();
+        tile.amended.sort_unstable();
+        tile.amended.dedup();
     });
 }
