@@ -180,6 +180,12 @@ fn a_way_that_is_taken_stands_for_the_bounds_that_were_told() {
     assert_eq!(assembly.keep(), Ok(false));
 }
 
+/// The same forces, whatever the order of the disks.
+fn sorted(mut forces: Vec<Vector<2>>) -> Vec<Vector<2>> {
+    forces.sort_unstable_by(|one, two| one[0].total_cmp(&two[0]).then(one[1].total_cmp(&two[1])));
+    forces
+}
+
 #[test]
 fn steps_tile_by_tile_miss_no_contact_of_disks_that_go_far() {
     let (packing, middle) = three_tiles();
@@ -190,9 +196,14 @@ fn steps_tile_by_tile_miss_no_contact_of_disks_that_go_far() {
     }
     let (mut advanced, mut spent) = (0, 0);
     for step in 1..=280 {
-        match crossing.assembly.advance(&mut velocities, |_, v, u| go(v, u), |_, _| ()) {
-            Advanced::Evaluated(_) => {
+        match crossing.assembly.advance(&mut velocities, |_, v, u| go(v, u), |forces, _| forces.to_vec()) {
+            Advanced::Evaluated(looked) => {
                 advanced += 1;
+                assert_eq!(
+                    sorted(looked.concat()),
+                    sorted(crossing.assembly.forces.clone()),
+                    "step {step}: seen too early"
+                );
                 let mut anew = crossing.assembly.clone();
                 if step % 7 == 0 {
                     anew.reanchor().expect("no coincidence");
