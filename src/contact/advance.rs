@@ -25,8 +25,8 @@ pub(super) struct Movers<'a, T, const D: usize> {
     pub forces: &'a mut [[T; D]],
 }
 
-/// Forces, velocities and displacements of the same disks; the first and the last of disks that do not move, too.
-type Columns<'a, T, const D: usize> = (&'a mut [[T; D]], &'a mut [[T; D]], &'a mut [[T; D]]);
+/// Forces, velocities and displacements of the same disks; of disks that do not move there are no velocities.
+type Moving<'a, T, const D: usize> = (&'a mut [[T; D]], &'a mut [[T; D]], &'a mut [[T; D]]);
 
 /// What became of a step tile by tile.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,7 +76,7 @@ pub(super) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     let is_spent = || spent.load(Ordering::Relaxed);
     let nothing = [K::Number::default(); D];
     // Moves disks from this one on, whose bound is `way`.
-    let moves = |disk: usize, (forces, velocities, displacements): Columns<'_, _, D>, way: &mut f64| {
+    let moves = |disk: usize, (forces, velocities, displacements): Moving<'_, _, D>, way: &mut f64| {
         *way += kick(forces, velocities, displacements);
         if !is_within(*way, limit) {
             *way = longest(disk, displacements);
@@ -86,7 +86,7 @@ pub(super) fn advance<const D: usize, K: Kernel<D>, P: Send>(
         }
         forces.fill(nothing);
     };
-    let inside = |place: usize, (forces, velocities, displacements): Columns<'_, _, D>, ways: &mut [f64]| {
+    let inside = |place: usize, (forces, velocities, displacements): Moving<'_, _, D>, ways: &mut [f64]| {
         let (tile, mobile, first) = (&tiles[place], velocities.len(), place * size);
         let interior = tile.interior.start.min(mobile)..tile.interior.end.min(mobile);
         let (mut moved, mut swept, mut seen) = (0, tile.inner.start, interior.start);
