@@ -50,6 +50,8 @@ const MOST_FACTORISED: usize = 500_000;
 struct Row {
     disks: usize,
     pairs: usize,
+    /// What the loop reads of a pair \[bytes\].
+    pair_size: usize,
     contacts: usize,
     // ns a disk on one thread, then on all.
     list: f64,
@@ -161,7 +163,8 @@ fn measured(packing: &Packing<2>, one: &rayon::ThreadPool) -> Result<Row, Failur
         assert!(assembly.forces == of_all, "the bits depend on the number of threads");
         Ok((forces / turns as f64, least(5, || repeat(turns, || _ = assembly.evaluate_totals()))? / turns as f64))
     })?;
-    let (pairs, contacts) = (assembly.pairs().len(), assembly.evaluate_totals().contact_count);
+    let (pairs, pair_size) = (assembly.pairs().len(), assembly.pairs().pair_size());
+    let contacts = assembly.evaluate_totals().contact_count;
     drop((assembly, of_all));
 
     let radius = packing.radii()[chosen];
@@ -198,6 +201,7 @@ fn measured(packing: &Packing<2>, one: &rayon::ThreadPool) -> Result<Row, Failur
     Ok(Row {
         disks,
         pairs,
+        pair_size,
         contacts,
         list: list * per_disk,
         forces: forces * per_disk,

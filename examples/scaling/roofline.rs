@@ -10,12 +10,10 @@ use crate::{Failure, Row};
 const BYTES: (f64, f64) = (0.003, 0.06);
 const PAIRS: (f64, f64) = (2e7, 2e9);
 
-/// Bytes the loop moves: indices, separation, distance, overlap and coefficient of a pair; displacement read, force cleared, read
-/// and written of a disk.
+/// Bytes the loop moves: what the list has of a pair; displacement read, force cleared, read and written of a disk.
 fn bytes(row: &Row) -> f64 {
-    const PAIR: f64 = 4.0 + 16.0 + 3.0 * 8.0;
     const DISK: f64 = 4.0 * 16.0;
-    PAIR * row.pairs as f64 + DISK * row.disks as f64
+    (row.pair_size * row.pairs) as f64 + DISK * row.disks as f64
 }
 
 /// Draws the loop at each size under the bandwidths and the roots.
@@ -57,7 +55,7 @@ pub fn draw(path: &Path, rows: &[Row], bandwidths: &[(&str, f64)], roots: f64) -
             .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], BLACK.stroke_width(2)));
         let point =
             |row: &Row| (row.pairs as f64 / bytes(row), row.pairs as f64 / (row.forces * 1e-9 * row.disks as f64));
-        // The same bytes a pair at every size: side by side they can be told apart.
+        // The same bytes a pair at many sizes: side by side they can be told apart.
         let spread = |index: usize| 1.04f64.powf(index as f64 - 0.5 * rows.len() as f64);
         let points = rows.iter().enumerate().map(|(index, row)| {
             let (x, y) = point(row);

@@ -51,7 +51,7 @@ impl<const D: usize> PairList<D> {
         for _ in 0..count {
             self.begin_block(Block { row_length: 1, origin, ..Block::default() });
             self.rows.resize(self.rows.len() + BLOCK, 0);
-            self.measured.push(Measured::default());
+            self.listed.push(&Measured::default(), &[0; BLOCK]);
         }
     }
 
@@ -110,7 +110,7 @@ impl<const D: usize> PairList<D> {
             let names: Vec<u32> = lacking.iter().map(|pair| pair.name).collect();
             source.measure(&first, &names, &mut measured);
             for (k, (pair, &place)) in lacking.iter().zip(places).enumerate() {
-                self.put(*pair, place, (&measured, k));
+                self.put(*pair, place, (&measured, k), source.kind(pair.first, pair.name));
             }
         }
         self.connect();
@@ -118,7 +118,7 @@ impl<const D: usize> PairList<D> {
     }
 
     /// Puts a pair in a block that has a place for it.
-    fn put(&mut self, pair: Lacking, block: usize, measured: (&Measured<D>, usize)) {
+    fn put(&mut self, pair: Lacking, block: usize, measured: (&Measured<D>, usize), kind: u8) {
         let block = &mut self.blocks[block];
         let (place, row) = (block.pairs + block.pair_count, block.rows + block.row_count);
         block.pair_count += 1;
@@ -126,7 +126,7 @@ impl<const D: usize> PairList<D> {
         let origin = block.origin;
         (self.first[place], self.second[place]) = (pair.first, pair.second);
         (self.rows[row], self.ends[place]) = (pair.first - origin, pair.second - origin);
-        self.measured[place / BLOCK].copy(place % BLOCK, measured);
+        self.listed.put(place, measured, kind);
     }
 
     /// Blocks that amending may have filled.

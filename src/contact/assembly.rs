@@ -14,6 +14,7 @@ use std::iter::repeat_with;
 use crate::contact::advance::{Advanced, Movers, Reach, advance};
 use crate::contact::assembly::upkeep::LISTED;
 use crate::contact::forces::{self, Across, Plain};
+use crate::contact::kinds::Classes;
 use crate::contact::law::PairLaw;
 use crate::contact::neighbours::{Disks, ListRoom, build_pairs, spatial_order};
 use crate::contact::pair_list::PairList;
@@ -43,6 +44,8 @@ pub struct Assembly<const D: usize, L> {
     /// Anchor minus site of each mobile disk, as unevaluated sums; empty for a law without sites.
     from_sites: Vec<[(f64, f64); D]>,
     radii: Vec<f64>,
+    /// Of a packing whose list is packed.
+    classes: Option<Classes>,
     pairs: PairList<D>,
     /// Near pairs, in place of `pairs` while there is a skin of theirs.
     near_pairs: PairList<D>,
@@ -137,6 +140,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             seen_at: 0,
             across: Across::default(),
             list_room: ListRoom::default(),
+            classes: PairList::<D>::packs(radii.len()).then(|| Classes::of(&radii, &law)).flatten(),
             radii,
             smallest_radius,
             skin,
@@ -325,6 +329,15 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.rebuild()
     }
 
+    /// Packs lists, or not, from now on, whatever the machine.
+    #[cfg(test)]
+    pub(super) fn pack(&mut self, packs: bool) {
+        if let Some(classes) = &mut self.classes {
+            classes.kinds.packs = packs;
+        }
+        self.rebuild().expect("as before");
+    }
+
     fn rebuild(&mut self) -> Result<(), PackingError> {
         let anchors = self.anchors[..self.mobile_count].chunks_mut(PIECE);
         let displacements = self.displacements[..self.mobile_count].chunks_mut(PIECE);
@@ -371,6 +384,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             displacements: &self.displacements,
             radii: &self.radii,
             mobile_count: self.mobile_count,
+            classes: self.classes.as_ref(),
         }
     }
 

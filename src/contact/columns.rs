@@ -6,7 +6,7 @@
 use pulp::Simd;
 
 use crate::contact::law::PairLaw;
-use crate::contact::measured::Measured;
+use crate::contact::listed::{AtAnchors, OfBlock};
 use crate::contact::pair_list::{BLOCK, Block, PairList};
 use crate::simd::ahead::Cache;
 use crate::simd::components;
@@ -14,13 +14,12 @@ use crate::simd::roots::{Unit, positive_part, reciprocal, square_roots};
 use crate::vector::Vector;
 
 /// How far ahead the list is asked for: its memory is so many blocks of arithmetic away; the first cache has no room for more than one
-/// \[numbers\].
-fn ahead<const D: usize>(cache: Cache) -> usize {
-    let blocks = match cache {
+/// \[blocks\].
+fn blocks_ahead(cache: Cache) -> usize {
+    match cache {
         Cache::Second => 2,
         Cache::First => 1,
-    };
-    blocks * size_of::<Measured<D>>() / size_of::<f64>()
+    }
 }
 
 /// One block of pairs, column by column.
@@ -40,13 +39,13 @@ pub(super) struct Columns<const D: usize> {
 /// What the list has of a block, and how many pairs that are.
 pub(super) struct Anchors<'a, const D: usize> {
     pair_count: usize,
-    listed: &'a Measured<D>,
+    listed: OfBlock<'a, D>,
 }
 
 impl<'a, const D: usize> Anchors<'a, D> {
     #[inline(always)]
     pub fn of(pairs: &'a PairList<D>, block: &Block) -> Self {
-        Anchors { pair_count: block.pair_count, listed: pairs.of_pair(block.pairs).0 }
+        Anchors { pair_count: block.pair_count, listed: pairs.listed.of_block(block.pairs / BLOCK) }
     }
 
     /// Vectors of pairs, an even number of them.
@@ -72,11 +71,20 @@ impl<const D: usize> Columns<D> {
     #[inline(always)]
     pub fn measure<S: Simd>(&mut self, simd: S, anchors: &Anchors<'_, D>) {
         let count = anchors.turns::<S>();
-        let (listed, cache) = (anchors.listed, Cache::here());
-        let ahead = ahead::<D>(cache);
+        match anchors.listed {
+            OfBlock::Each(block) => self.measure_from(simd, count, block),
+            OfBlock::Packed(block, kinds) => self.measure_from(simd, count, (block, kinds)),
+        }
+    }
+
+    #[inline(always)]
+    fn measure_from<S: Simd, A: AtAnchors<D>>(&mut self, simd: S, count: usize, listed: A) {
+        let cache = Cache::here();
+        let blocks = blocks_ahead(cache);
+        let ahead = blocks * A::SIZE / size_of::<f64>();
         let read = |column| &S::as_simd_f64s(column).0[..count];
-        let anchor_separation = listed.separation.each_ref().map(|column| read(&column[..]));
-        let (anchor_distance, anchor_overlap) = (read(&listed.distance), read(&listed.overlap));
+        let anchor_separation = listed.separation().each_ref().map(|column| read(&column[..]));
+        let anchor_overlap = read(listed.overlap());
         let moved = &S::as_simd_f64s(self.pull.as_flattened()).0[..D * count];
         let apart = self.apart.each_mut().map(|column| &mut S::as_mut_simd_f64s(column).0[..count]);
         let overlap = &mut S::as_mut_simd_f64s(&mut self.overlap).0[..count];
@@ -99,7 +107,7 @@ impl<const D: usize> Columns<D> {
                         _ => (simd.add_f64s(*square, squared), simd.add_f64s(change, changed)),
                     };
                     apart[d][k] = along;
-                    cache.ask(&listed.separation[d], ahead + k * S::F64_LANES);
+                    cache.ask(&listed.separation()[d], ahead + k * S::F64_LANES);
                 }
                 overlap[k] = change;
             }
@@ -107,14 +115,14 @@ impl<const D: usize> Columns<D> {
         }
         for k in 0..count {
             let distance = inverse[k];
-            let both = simd.add_f64s(distance, anchor_distance[k]);
+            let both = simd.add_f64s(distance, listed.distance(simd, k, anchor_overlap[k]));
             // One reciprocal for change / both and 1 / distance: divisions and roots are what the loop waits for.
             let of_both = reciprocal(simd, unit, simd.mul_f64s(distance, both));
             let change = simd.mul_f64s(overlap[k], simd.mul_f64s(distance, of_both));
             overlap[k] = positive_part(simd, simd.sub_f64s(anchor_overlap[k], change));
             inverse[k] = simd.mul_f64s(both, of_both);
-            cache.ask(&listed.distance, ahead + k * S::F64_LANES);
-            cache.ask(&listed.overlap, ahead + k * S::F64_LANES);
+            listed.ask_for_distance(cache, blocks, k * S::F64_LANES);
+            cache.ask(listed.overlap(), ahead + k * S::F64_LANES);
         }
     }
 
@@ -122,17 +130,33 @@ impl<const D: usize> Columns<D> {
     #[inline(always)]
     pub fn press<S: Simd, L: PairLaw, const RESOLVE: bool>(&mut self, simd: S, law: &L, anchors: &Anchors<'_, D>) {
         let count = anchors.turns::<S>();
-        let (listed, cache) = (anchors.listed, Cache::here());
-        let ahead = ahead::<D>(cache);
-        let coefficient = &S::as_simd_f64s(&listed.coefficient).0[..count];
-        let one = simd.splat_f64s(listed.coefficient[0]);
+        match anchors.listed {
+            OfBlock::Each(block) => self.press_from::<S, L, _, RESOLVE>(simd, law, count, block),
+            OfBlock::Packed(block, kinds) => self.press_from::<S, L, _, RESOLVE>(simd, law, count, (block, kinds)),
+        }
+    }
+
+    #[inline(always)]
+    fn press_from<S: Simd, L: PairLaw, A: AtAnchors<D>, const RESOLVE: bool>(
+        &mut self,
+        simd: S,
+        law: &L,
+        count: usize,
+        listed: A,
+    ) {
+        let cache = Cache::here();
+        let blocks = blocks_ahead(cache);
+        let one = simd.splat_f64s(listed.one_coefficient());
         let overlap = &S::as_simd_f64s(&self.overlap).0[..count];
         let inverse = &S::as_simd_f64s(&self.inverse).0[..count];
         let apart = self.apart.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
         let pull = &mut S::as_mut_simd_f64s(self.pull.as_flattened_mut()).0[..D * count];
         let force = &mut S::as_mut_simd_f64s(&mut self.force).0[..count];
         for k in (0..count).step_by(2) {
-            let coefficients = if L::ONE_COEFFICIENT { [one; 2] } else { [coefficient[k], coefficient[k + 1]] };
+            let coefficients = match L::ONE_COEFFICIENT {
+                true => [one; 2],
+                false => [listed.coefficient(simd, k), listed.coefficient(simd, k + 1)],
+            };
             let forces = law.forces(simd, coefficients, [overlap[k], overlap[k + 1]]);
             [force[k], force[k + 1]] = forces;
             if RESOLVE {
@@ -141,8 +165,8 @@ impl<const D: usize> Columns<D> {
                 }
             }
             if !L::ONE_COEFFICIENT {
-                cache.ask(&listed.coefficient, ahead + k * S::F64_LANES);
-                cache.ask(&listed.coefficient, ahead + (k + 1) * S::F64_LANES);
+                listed.ask_for_coefficient(cache, blocks, k * S::F64_LANES);
+                listed.ask_for_coefficient(cache, blocks, (k + 1) * S::F64_LANES);
             }
         }
     }

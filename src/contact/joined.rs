@@ -17,7 +17,7 @@ impl<const D: usize> PairList<D> {
         }
         self.rows.reserve(rows);
         self.blocks.reserve(blocks);
-        self.measured.reserve(blocks);
+        self.listed.reserve(blocks);
     }
 
     /// Overwrites the list by lists of one tile each, one after the other.
@@ -43,9 +43,9 @@ impl<const D: usize> PairList<D> {
             Some(*blocks - part.blocks.len())
         });
         let begins: Vec<usize> = begins.collect();
-        side_by_side::fill(&mut self.measured, self.blocks.len(), |block| {
+        self.listed.join(self.blocks.len(), |block| {
             let part = begins.partition_point(|&begin| begin <= block) - 1;
-            parts[part].measured[block - begins[part]].clone()
+            (&parts[part].listed, block - begins[part])
         });
     }
 }

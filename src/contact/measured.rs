@@ -1,7 +1,6 @@
 //! What a list has of the pairs of a block: one piece of memory, column by column, so that the loop reads the list as one stream.
 
-use crate::contact::pair_list::{BLOCK, PairList};
-use crate::vector::Vector;
+use crate::contact::pair_list::BLOCK;
 
 /// Separation of no pair: a gap that no way closes, and whose square is a number.
 const NOWHERE: f64 = 1e100;
@@ -52,68 +51,5 @@ impl<const D: usize> Measured<D> {
         self.distance[first..].fill(NOWHERE * (D as f64).sqrt());
         self.overlap[first..].fill(-NOWHERE * (D as f64).sqrt());
         self.coefficient[first..].fill(1.0);
-    }
-}
-
-impl<const D: usize> PairList<D> {
-    /// The block a pair is in, and its place there.
-    #[inline(always)]
-    pub(super) fn of_pair(&self, pair: usize) -> (&Measured<D>, usize) {
-        (&self.measured[pair / BLOCK], pair % BLOCK)
-    }
-
-    /// From the anchor of the second disk to that of the first along the nearest image, D \[length\].
-    #[inline(always)]
-    pub fn separation(&self, pair: usize) -> Vector<D> {
-        let (block, place) = self.of_pair(pair);
-        block.separation.each_ref().map(|column| column[place])
-    }
-
-    /// Distance of the anchors, |D| \[length\].
-    #[inline(always)]
-    pub fn distance(&self, pair: usize) -> f64 {
-        let (block, place) = self.of_pair(pair);
-        block.distance[place]
-    }
-
-    /// Overlap at the anchors, R_i + R_j − |D|, rounded once only; negative for a pair apart \[length\].
-    #[inline(always)]
-    pub fn overlap(&self, pair: usize) -> f64 {
-        let (block, place) = self.of_pair(pair);
-        block.overlap[place]
-    }
-
-    /// Coefficient of the contact law for a pair \[force / length^(α−1)\].
-    #[inline(always)]
-    pub fn coefficient(&self, pair: usize) -> f64 {
-        let (block, place) = self.of_pair(pair);
-        block.coefficient[place]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::contact::Hertzian;
-    use crate::contact::assembly::Assembly;
-    use crate::contact::forces::geometry;
-    use crate::io::read_packing;
-
-    #[test]
-    fn places_without_a_pair_are_gaps_that_nothing_closes() {
-        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N5548_p100.xyz");
-        let packing = read_packing::<2>(file).expect("a stored packing");
-        let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("no coincidence");
-        assembly.displacements[0] = [1e6; 2];
-        let pairs = assembly.pairs();
-        let mut has_pair = vec![false; pairs.place_count()];
-        pairs.numbers().for_each(|pair| has_pair[pair] = true);
-        assert_eq!(has_pair.iter().filter(|&&has| has).count(), pairs.len());
-        // Its blocks are not all full, and it has places for pairs to come.
-        assert!(pairs.len() + 6 * BLOCK < pairs.place_count());
-        for place in (0..has_pair.len()).filter(|&place| !has_pair[place]) {
-            let (_, distance, overlap) = geometry(pairs, place, &assembly.displacements);
-            assert!(distance > 1e99 && overlap < -1e99, "place {place}: {distance} {overlap}");
-        }
     }
 }

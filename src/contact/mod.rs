@@ -12,7 +12,9 @@ pub mod forces;
 #[cfg(feature = "linear")]
 pub mod hessian;
 mod joined;
+mod kinds;
 pub mod law;
+mod listed;
 mod measured;
 pub mod neighbours;
 pub mod network;
@@ -20,6 +22,7 @@ pub mod on_site;
 pub mod pair_list;
 mod passes;
 mod pruned;
+mod rounded;
 mod rows;
 #[cfg(feature = "linear")]
 mod selected;

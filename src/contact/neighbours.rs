@@ -5,6 +5,7 @@
 //! looked at only while the list is built.
 
 use crate::contact::amended::{Lacking, without};
+use crate::contact::kinds::Classes;
 use crate::contact::measured::Measured;
 use crate::contact::pair_list::{BLOCK, PairList, Search, Source};
 use crate::packing::{Domain, PackingError};
@@ -23,6 +24,8 @@ pub struct Disks<'a, const D: usize> {
     pub radii: &'a [f64],
     /// How many of them, from the front, are mobile.
     pub mobile_count: usize,
+    /// Their classes, if pairs are to be packed.
+    pub(super) classes: Option<&'a Classes>,
 }
 
 /// Cells no smaller than the range, and the disks in each, in ascending order.
@@ -228,7 +231,7 @@ pub fn build_pairs<const D: usize>(
     let (grid, points, sorted) = (&*grid, &*points, &*sorted);
     let nearby = Nearby { disks, skin, lengths, grid, points, sorted };
     let (counts, keeps_places) = ((points.len(), disks.mobile_count), PairList::<D>::keeps_places(points.len()));
-    pairs.fill(counts, keeps_places, || TileSearch {
+    pairs.fill(counts, keeps_places, disks.classes.map(|classes| classes.kinds), || TileSearch {
         nearby,
         cell: usize::MAX,
         runs: Vec::new(),
@@ -356,6 +359,10 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for TileSearch<'_, D, C> 
         self.anchored.second(pair)
     }
 
+    fn kind(&self, first: u32, pair: u32) -> u8 {
+        self.anchored.kind(first, pair)
+    }
+
     fn measure(&mut self, first: &[u32], second: &[u32], measured: &mut Measured<D>) {
         self.anchored.measure(first, second, measured);
     }
@@ -367,6 +374,10 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for Anchored<'_, D, C> {
         pair
     }
 
+    fn kind(&self, first: u32, pair: u32) -> u8 {
+        self.disks.classes.map_or(0, |classes| classes.kind(first as usize, pair as usize))
+    }
+
     fn measure(&mut self, first: &[u32], second: &[u32], measured: &mut Measured<D>) {
         let Anchored { disks, coefficient, ends } = self;
         let lengths = disks.domain.lengths();
@@ -376,6 +387,13 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for Anchored<'_, D, C> {
             ends.radii[place] = (disks.radii[first], disks.radii[second]);
         }
         pulp::Arch::new().dispatch(Measure { ends, lengths, coefficient, measured });
+        if let Some(classes) = disks.classes {
+            // The numbers of a packed list, whether it is packed or not.
+            for (place, (&first, &second)) in first.iter().zip(second).enumerate() {
+                let kind = classes.kind(first as usize, second as usize);
+                measured.distance[place] = classes.kinds.distance(kind, measured.overlap[place]);
+            }
+        }
     }
 }
 

@@ -13,6 +13,8 @@
 
 use std::ops::Range;
 
+use crate::contact::kinds::Kinds;
+use crate::contact::listed::Listed;
 use crate::contact::measured::Measured;
 use crate::contact::passes::find_passes;
 use crate::contact::tiles::Tile;
@@ -46,7 +48,7 @@ pub struct PairList<const D: usize> {
     /// Second disk of each pair; the first of all in a vacant place.
     pub second: Vec<u32>,
     /// What the pairs of each block have at the anchors.
-    pub(super) measured: Vec<Measured<D>>,
+    pub(super) listed: Listed<D>,
     /// First disk of each row and second disk of each pair, counted from the origin of the block.
     pub(super) rows: Vec<u32>,
     pub(super) ends: Vec<u32>,
@@ -90,6 +92,9 @@ impl Block {
 pub(super) trait Source<const D: usize> {
     /// Second disk of a pair.
     fn second(&self, pair: u32) -> u32;
+
+    /// Kind of the pair of a disk, if there are kinds.
+    fn kind(&self, first: u32, pair: u32) -> u8;
 
     /// Measures the pairs of a block; columns beyond them are not used.
     fn measure(&mut self, first: &[u32], pairs: &[u32], measured: &mut Measured<D>);
@@ -191,7 +196,7 @@ impl<const D: usize> PairList<D> {
     }
 
     /// Empties the list and fills it with what `search`, made anew for each tile, finds: each pair is named by one of its disks only.
-    /// Disks from `first_count` on are never first. A list that `keeps_places` may be amended.
+    /// Disks from `first_count` on are never first. A list that `keeps_places` may be amended; pairs of `kinds` are packed if it is long.
     ///
     /// # Errors
     /// Two disks with the same centre.
@@ -199,23 +204,33 @@ impl<const D: usize> PairList<D> {
         &mut self,
         (disk_count, first_count): (usize, usize),
         keeps_places: bool,
+        kinds: Option<Kinds>,
         search: impl Fn() -> S + Sync,
     ) -> Result<(), PackingError> {
         self.first_count = first_count;
         self.keeps_places = keeps_places;
-        let layer = (disk_count as f64).powf(1.0 - 1.0 / D as f64);
-        let tile_size = LEAST_TILE.max(layers(D) * layer as usize);
+        let tile_size = Self::tile_size(disk_count);
+        self.listed.kinds = kinds.filter(|_| Self::packs(disk_count));
         let disks = |place: usize| place * tile_size..disk_count.min((place + 1) * tile_size);
         self.fill_tiles(disk_count.div_ceil(tile_size), tile_size, |list, place, tile| {
             list.add_tile(disks(place), first_count, search(), tile);
         });
-        let distances = self.measured.iter().flat_map(|block| &block.distance);
-        let together = distances.enumerate().filter(|&(_, &distance)| distance == 0.0);
         // The first two in the order of the disks, wherever they lie in the list.
-        if let Some((first, second)) = together.map(|(pair, _)| (self.first[pair], self.second[pair])).min() {
+        if let Some((first, second)) = self.listed.together().map(|pair| (self.first[pair], self.second[pair])).min() {
             return Err(PackingError::CoincidentCentres { first: first as usize, second: second as usize });
         }
         Ok(())
+    }
+
+    /// Whether a list of so many disks is long, and packed if their pairs have kinds.
+    pub(super) fn packs(disk_count: usize) -> bool {
+        disk_count > Self::tile_size(disk_count)
+    }
+
+    /// Disks of a tile of a list of so many.
+    fn tile_size(disk_count: usize) -> usize {
+        let layer = (disk_count as f64).powf(1.0 - 1.0 / D as f64);
+        LEAST_TILE.max(layers(D) * layer as usize)
     }
 
     /// Empties the list and fills it tile by tile, perhaps side by side: `add` adds the blocks of one to a list.
@@ -232,6 +247,7 @@ impl<const D: usize> PairList<D> {
             let mut parts = std::mem::take(&mut self.parts);
             parts.resize(tiles.len(), PairList::default());
             side_by_side::each(tiles.iter_mut().zip(&mut parts).enumerate(), |(place, (tile, part))| {
+                part.listed.kinds = self.listed.kinds;
                 part.clear();
                 part.keeps_places = self.keeps_places;
                 add(part, place, tile);
@@ -307,7 +323,7 @@ impl<const D: usize> PairList<D> {
     fn clear(&mut self) {
         self.first.clear();
         self.second.clear();
-        self.measured.clear();
+        self.listed.clear();
         self.rows.clear();
         self.ends.clear();
         self.blocks.clear();
@@ -381,12 +397,18 @@ impl<const D: usize> PairList<D> {
             pair += length;
         }
         source.measure(first, second, measured);
+        measured.vacate(count);
+        let mut kind = [0; BLOCK];
+        if self.listed.kinds.is_some() {
+            for (kind, (&first, &pair)) in kind.iter_mut().zip(first.iter().zip(&*second)) {
+                *kind = source.kind(first, pair);
+            }
+        }
         for (pair, end) in second.iter_mut().zip(&mut self.ends[begin..]) {
             *pair = source.second(*pair);
             *end = *pair - origin;
         }
-        measured.vacate(count);
-        self.measured.push(measured.clone());
+        self.listed.push(measured, &kind);
     }
 
     /// Begins a block, all of whose places are vacant; what they have at the anchors is still to be added.

@@ -49,6 +49,7 @@ impl<const D: usize> PairList<D> {
     pub(super) fn prune(&mut self, whole: &PairList<D>, displacements: &[Vector<D>], skin: f64) {
         self.first_count = whole.first_count;
         self.keeps_places = whole.keeps_places;
+        self.listed.kinds = whole.listed.kinds;
         self.fill_tiles(whole.tiles.len(), whole.tile_size, |list, place, tile| {
             let blocks = &whole.tiles[place];
             list.add_blocks(
@@ -73,11 +74,13 @@ impl<const D: usize> Pruned<'_, D> {
     fn line_up(&mut self, blocks: &[Block], list: &mut PairList<D>, arranger: &mut Arranger<D>) {
         let mut moved = [[0.0; D]; BLOCK];
         let mut excess = [0.0; BLOCK];
+        let mut room = Measured::default();
         for block in blocks {
             let first_pair = block.pairs;
             gather(&mut moved, self.whole, block, (self.displacements, 0));
             let excess = &mut excess[..block.pair_count];
-            pulp::Arch::new().dispatch(Excess { near: self, first: first_pair, moved: &moved, excess });
+            let listed = self.whole.listed.unpacked(first_pair / BLOCK, &mut room);
+            pulp::Arch::new().dispatch(Excess { listed, skin: self.skin, moved: &moved, excess });
             let mut pair = first_pair as u32;
             for (&row, excess) in rows_of(self.whole, block).iter().zip(excess.chunks_exact(block.row_length)) {
                 // Which are near cannot be guessed: they are picked without a branch. NaN counts as near.
@@ -101,17 +104,21 @@ impl<const D: usize> Source<D> for Pruned<'_, D> {
         self.whole.second[pair as usize]
     }
 
+    fn kind(&self, _first: u32, pair: u32) -> u8 {
+        self.whole.listed.kind(pair as usize)
+    }
+
     fn measure(&mut self, _first: &[u32], pairs: &[u32], measured: &mut Measured<D>) {
         for (place, &pair) in pairs.iter().enumerate() {
-            measured.copy(place, self.whole.of_pair(pair as usize));
+            self.whole.listed.take(pair as usize, (measured, place));
         }
     }
 }
 
 /// |r_ij|² − (R_i + R_j + s)² of the pairs of a block \[length²\].
 struct Excess<'a, const D: usize> {
-    near: &'a Pruned<'a, D>,
-    first: usize,
+    listed: &'a Measured<D>,
+    skin: f64,
     moved: &'a [Vector<D>; BLOCK],
     excess: &'a mut [f64],
 }
@@ -122,8 +129,7 @@ impl<const D: usize> pulp::WithSimd for Excess<'_, D> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
         let count = self.excess.len();
-        let Pruned { whole, skin, .. } = *self.near;
-        let (listed, _) = whole.of_pair(self.first);
+        let Excess { listed, skin, .. } = self;
         let separation = listed.separation.each_ref().map(|column| &column[..count]);
         let (distance, overlap) = (&listed.distance[..count], &listed.overlap[..count]);
         let moved = &self.moved[..count];

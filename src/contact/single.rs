@@ -18,16 +18,14 @@ use crate::contact::advance::{Advanced, Movers, Reach, advance};
 use crate::contact::assembly::Assembly;
 use crate::contact::forces::{Across, Kernel, all_tiles};
 use crate::contact::law::PairLaw;
-use crate::contact::pair_list::{BLOCK, Block, PairList};
+use crate::contact::pair_list::{BLOCK, PairList};
+use crate::contact::rounded::{Factors, InSingle, OfBlockInSingle, Rounded};
 use crate::contact::rows::{ask_for_later_rows, gather};
 use crate::side_by_side::{self, PIECE};
 use crate::simd::ahead::Cache;
 use crate::simd::components;
 use crate::simd::roots::positive_part_in_single;
 use crate::vector::{Vector, larger, longest_difference_squared};
-
-/// Blocks of pairs rounded by one thread at a time.
-const PORTION: usize = 64;
 
 /// How far ahead the list is asked for: its memory is so many blocks of arithmetic away, and the first cache has no room for more than
 /// one, beside what else it holds \[blocks\].
@@ -76,22 +74,12 @@ fn power_of_two(exponent: i32) -> f64 {
     2f64.powi(exponent)
 }
 
-/// What a list has of the pairs of a block.
-#[derive(Debug, Clone)]
-#[repr(align(64))]
-struct Rounded<const D: usize> {
-    separation: [[f32; BLOCK]; D],
-    distance: [f32; BLOCK],
-    overlap: [f32; BLOCK],
-    coefficient: [f32; BLOCK],
-}
-
 /// Disks in single precision, beside an [`Assembly`] that keeps their base. Holds as long as its displacements are
 /// not changed by others; who does that calls [`Single::forget`].
 #[derive(Debug, Clone)]
 pub struct Single<const D: usize> {
     units: Units,
-    blocks: Vec<Rounded<D>>,
+    blocks: Rounded<D>,
     base: Vec<Vector<D>>,
     ways: Vec<[f32; D]>,
     /// Forces of the last evaluation, all disks \[`Units::force`\].
@@ -110,7 +98,7 @@ impl<const D: usize> Single<D> {
         let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
         Some(Single {
             units: Units::of(radius, assembly.law().force_scale(radius))?,
-            blocks: Vec::new(),
+            blocks: Rounded::default(),
             base: Vec::new(),
             ways: vec![[0.0; D]; assembly.len()],
             forces: vec![[0.0; D]; assembly.len()],
@@ -167,31 +155,14 @@ impl<const D: usize> Single<D> {
         let pairs = assembly.pairs();
         let law = assembly.law();
         let coefficient = libm::pow(self.units.length, law.exponent() - 1.0) / self.units.force;
-        let units = (1.0 / self.units.length, coefficient);
-        let round = |block: usize, base: &[Vector<D>], rounded: &mut Rounded<D>| {
-            let (block, mut moved) = (&pairs.blocks[block], [[0.0; D]; BLOCK]);
-            gather(&mut moved, pairs, block, (base, 0));
-            pulp::Arch::new().dispatch(Round { pairs, block, moved: &moved, units, rounded });
-        };
+        let factors = Factors { length: 1.0 / self.units.length, coefficient };
         if pairs.is_long() && known.is_some_and(|(same, _)| same == list) {
-            pairs.amended_blocks().for_each(|block| round(block, &self.base, &mut self.blocks[block]));
+            self.blocks.round_again(pairs.amended_blocks(), pairs, &self.base, factors);
             return;
         }
         self.base.clone_from(&assembly.displacements);
         self.ways.fill([0.0; D]);
-        let empty = Rounded {
-            separation: [[1.0; BLOCK]; D],
-            distance: [1.0; BLOCK],
-            overlap: [0.0; BLOCK],
-            coefficient: [0.0; BLOCK],
-        };
-        self.blocks.resize(pairs.blocks.len(), empty);
-        let (base, portions) = (self.base.as_slice(), self.blocks.chunks_mut(PORTION).enumerate());
-        side_by_side::each(portions, |(portion, rounded)| {
-            for (place, rounded) in rounded.iter_mut().enumerate() {
-                round(portion * PORTION + place, base, rounded);
-            }
-        });
+        self.blocks.round_all(pairs, &self.base, factors);
     }
 
     /// Moves all mobile disks and evaluates the forces where they then are, as [`Assembly::advance`] does; `kick` gets (forces, velocities,
@@ -259,52 +230,11 @@ fn longest_way<const D: usize>(unit: f64, (base, ways): (&[Vector<D>], &[[f32; D
     squares.fold(0.0, larger).sqrt()
 }
 
-/// Pairs of a block where the disks are, by the formula of [`geometry`](super::forces::geometry), rounded.
-struct Round<'a, const D: usize> {
-    pairs: &'a PairList<D>,
-    block: &'a Block,
-    moved: &'a [Vector<D>; BLOCK],
-    /// Factors on lengths and on coefficients.
-    units: (f64, f64),
-    rounded: &'a mut Rounded<D>,
-}
-
-impl<const D: usize> pulp::WithSimd for Round<'_, D> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) {
-        let Round { pairs, block, moved, units: (unit, unit_of_coefficients), rounded } = self;
-        let count = block.pair_count;
-        let (listed, _) = pairs.of_pair(block.pairs);
-        let separation = listed.separation.each_ref().map(|column| &column[..count]);
-        let (distances, overlaps) = (&listed.distance[..count], &listed.overlap[..count]);
-        let coefficients = &listed.coefficient[..count];
-        let moved = &moved[..count];
-        let apart = rounded.separation.each_mut().map(|column| &mut column[..count]);
-        let (distance, overlap) = (&mut rounded.distance[..count], &mut rounded.overlap[..count]);
-        let coefficient = &mut rounded.coefficient[..count];
-        for k in 0..count {
-            let (mut squared, mut change) = (0.0, 0.0);
-            for d in 0..D {
-                let along = separation[d][k] + moved[k][d];
-                squared += along * along;
-                change += moved[k][d] * (separation[d][k] + along);
-                apart[d][k] = (unit * along) as f32;
-            }
-            let length = f64::sqrt(squared);
-            distance[k] = (unit * length) as f32;
-            overlap[k] = (unit * (overlaps[k] - change / (length + distances[k]))) as f32;
-            coefficient[k] = (unit_of_coefficients * coefficients[k]) as f32;
-        }
-    }
-}
-
 /// The force of each pair of a block.
 struct Pressed<'a, const D: usize, L> {
     law: &'a L,
     pairs: &'a PairList<D>,
-    blocks: &'a [Rounded<D>],
+    blocks: &'a Rounded<D>,
 }
 
 impl<const D: usize, L: PairLaw> Kernel<D> for Pressed<'_, D, L> {
@@ -324,7 +254,7 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Pressed<'_, D, L> {
     ) -> &'a [[f32; D]; BLOCK] {
         ask_for_later_rows(self.pairs, &self.pairs.blocks[block]);
         gather(&mut columns.pull, self.pairs, &self.pairs.blocks[block], ways);
-        let (law, listed) = (self.law, &self.blocks[block]);
+        let (law, listed) = (self.law, self.blocks.of_block(block));
         let pair_count = self.pairs.blocks[block].pair_count;
         pulp::Arch::new().dispatch(Arithmetic { law, listed, columns, pair_count, asks: self.pairs.asks() });
         &columns.pull
@@ -348,7 +278,7 @@ impl<const D: usize> Columns<D> {
 
 struct Arithmetic<'a, const D: usize, L> {
     law: &'a L,
-    listed: &'a Rounded<D>,
+    listed: OfBlockInSingle<'a, D>,
     columns: &'a mut Columns<D>,
     pair_count: usize,
     /// Where a later block is asked to meanwhile, if the list is long.
@@ -360,7 +290,17 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Arithmetic { law, listed, columns, pair_count, asks } = self;
+        match self.listed {
+            OfBlockInSingle::Each(block) => self.press(simd, block),
+            OfBlockInSingle::Packed(block, kinds) => self.press(simd, (block, kinds)),
+        }
+    }
+}
+
+impl<const D: usize, L: PairLaw> Arithmetic<'_, D, L> {
+    #[inline(always)]
+    fn press<S: Simd, A: InSingle<D>>(self, simd: S, listed: A) {
+        let Arithmetic { law, columns, pair_count, asks, .. } = self;
         let count = pair_count.div_ceil(S::F32_LANES).min(BLOCK / S::F32_LANES);
         let read = |column| &S::as_simd_f32s(column).0[..count];
         let (zero, one) = (simd.splat_f32s(0.0), simd.splat_f32s(1.0));
@@ -368,9 +308,8 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
         let apart = columns.apart.each_mut().map(|column| &mut S::as_mut_simd_f32s(column).0[..count]);
         let change = &mut S::as_mut_simd_f32s(&mut columns.change).0[..count];
         let distance = &mut S::as_mut_simd_f32s(&mut columns.distance).0[..count];
-        let separation = listed.separation.each_ref().map(|column| read(&column[..]));
-        let (listed_distance, listed_overlap) = (read(&listed.distance), read(&listed.overlap));
-        let (coefficient, one_coefficient) = (read(&listed.coefficient), simd.splat_f32s(listed.coefficient[0]));
+        let separation = listed.separation().each_ref().map(|column| read(&column[..]));
+        let (listed_overlap, one_coefficient) = (read(listed.overlap()), simd.splat_f32s(listed.one_coefficient()));
         for k in 0..count {
             let way = components::split_single::<S, D>(simd, &pull[D * k..D * (k + 1)]);
             let (mut square, mut changed) = (zero, zero);
@@ -385,25 +324,17 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
                 apart[d][k] = along;
             }
             if let Some(cache) = asks {
-                let next = blocks_ahead(cache) * size_of::<Rounded<D>>() / size_of::<f32>() + k * S::F32_LANES;
-                for column in &listed.separation {
-                    cache.ask(column, next);
-                }
-                cache.ask(&listed.distance, next);
-                cache.ask(&listed.overlap, next);
-                if !L::ONE_COEFFICIENT {
-                    cache.ask(&listed.coefficient, next);
-                }
+                listed.ask(cache, blocks_ahead(cache), k * S::F32_LANES, !L::ONE_COEFFICIENT);
             }
             change[k] = changed;
             distance[k] = simd.sqrt_f32s(square);
         }
         for k in 0..count {
-            let both = simd.add_f32s(distance[k], listed_distance[k]);
+            let both = simd.add_f32s(distance[k], listed.distance(simd, k, listed_overlap[k]));
             let inverse = simd.div_f32s(one, simd.mul_f32s(distance[k], both));
             let changed = simd.mul_f32s(change[k], simd.mul_f32s(distance[k], inverse));
             let overlap = positive_part_in_single(simd, simd.sub_f32s(listed_overlap[k], changed));
-            let coefficient = if L::ONE_COEFFICIENT { one_coefficient } else { coefficient[k] };
+            let coefficient = if L::ONE_COEFFICIENT { one_coefficient } else { listed.coefficient(simd, k) };
             let force = law.forces_in_single(simd, coefficient, overlap);
             let factor = simd.mul_f32s(force, simd.mul_f32s(both, inverse));
             let mut along = [factor; D];
@@ -419,37 +350,50 @@ impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
 mod tests {
     use super::*;
     use crate::contact::Hertzian;
+    use crate::contact::rounded::{Each, KindsInSingle, Packed};
+
+    /// The forces of a block, on the widest vectors and one by one; how many pairs press.
+    fn forces_of(listed: OfBlockInSingle<'_, 2>, ways: &[[f32; 2]; BLOCK]) -> [[f32; 2]; BLOCK] {
+        let law = &Hertzian::default();
+        let mut forces = Vec::new();
+        for asks in [None, Some(Cache::First), Some(Cache::Second)] {
+            let [mut widest, mut scalar] = [(); 2].map(|()| Columns { pull: *ways, ..Columns::new() });
+            let of = |columns| Arithmetic { law, listed, columns, pair_count: BLOCK, asks };
+            pulp::Arch::new().dispatch(of(&mut widest));
+            pulp::WithSimd::with_simd(of(&mut scalar), pulp::Scalar::new());
+            forces.extend([widest.pull, scalar.pull]);
+        }
+        let bits = |forces: &[[f32; 2]; BLOCK]| forces.map(|force| force.map(f32::to_bits));
+        assert!(forces.iter().all(|one| bits(one) == bits(&forces[0])));
+        let pressed = forces[0].iter().filter(|force| force[0] != 0.0).count();
+        assert!((BLOCK / 4..BLOCK).contains(&pressed), "{pressed} pairs press");
+        forces[0]
+    }
 
     #[test]
     fn the_bits_of_a_block_do_not_depend_on_the_width_of_vectors() {
         let wave = |by: f32, from: f32, size: f32| -> [f32; BLOCK] {
             std::array::from_fn(|k| from + size * (by * k as f32).sin())
         };
-        let listed = Rounded::<2> {
-            separation: [wave(1.3, 0.4, 0.5), wave(2.7, 0.6, 0.3)],
-            distance: wave(0.7, 1.0, 0.1),
-            overlap: wave(1.9, 0.0, 0.2),
-            coefficient: wave(0.3, 2.0, 1.0),
-        };
+        let (separation, overlap) = ([wave(1.3, 0.4, 0.5), wave(2.7, 0.6, 0.3)], wave(1.9, 0.0, 0.2));
         let [x, y] = [wave(3.1, 0.0, 0.05), wave(0.9, 0.0, 0.05)];
-        let pull: [[f32; 2]; BLOCK] = std::array::from_fn(|k| [x[k], y[k]]);
-        let law = Hertzian::default();
-        for asks in [None, Some(Cache::First), Some(Cache::Second)] {
-            let [mut widest, mut scalar] = [(); 2].map(|()| Columns { pull, ..Columns::new() });
-            let pair_count = BLOCK;
-            pulp::Arch::new().dispatch(Arithmetic {
-                law: &law,
-                listed: &listed,
-                columns: &mut widest,
-                pair_count,
-                asks,
-            });
-            let alone = Arithmetic { law: &law, listed: &listed, columns: &mut scalar, pair_count, asks };
-            pulp::WithSimd::with_simd(alone, pulp::Scalar::new());
-            let bits = |columns: &Columns<2>| columns.pull.map(|pull| pull.map(f32::to_bits));
-            assert_eq!(bits(&widest), bits(&scalar));
-            let pressed = widest.pull.iter().filter(|pull| pull[0] != 0.0).count();
-            assert!((BLOCK / 4..BLOCK).contains(&pressed), "{pressed} pairs press");
-        }
+        let ways: [[f32; 2]; BLOCK] = std::array::from_fn(|k| [x[k], y[k]]);
+        let listed = Each::<2> { separation, distance: wave(0.7, 1.0, 0.1), overlap, coefficient: wave(0.3, 2.0, 1.0) };
+        forces_of(OfBlockInSingle::Each(&listed), &ways);
+        // Packed, and the same numbers not packed.
+        let kinds = KindsInSingle {
+            reach: [1.0, 1.2, 1.4, 1.3, 1.5, 0.0, 1.8, 0.0],
+            coefficient: [2.0, 2.1, 2.2, 2.15, 2.3, 0.0, 2.5, 0.0],
+        };
+        let kind: [u8; BLOCK] = std::array::from_fn(|k| [0, 1, 2, 3, 4, 6][k % 6]);
+        let packed = Packed::<2> { separation, overlap, kind };
+        let listed = Each::<2> {
+            separation,
+            distance: std::array::from_fn(|k| kinds.reach[usize::from(kind[k])] - overlap[k]),
+            overlap,
+            coefficient: kind.map(|kind| kinds.coefficient[usize::from(kind)]),
+        };
+        let of_packed = forces_of(OfBlockInSingle::Packed(&packed, &kinds), &ways);
+        assert_eq!(of_packed, forces_of(OfBlockInSingle::Each(&listed), &ways));
     }
 }

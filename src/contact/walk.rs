@@ -24,10 +24,10 @@ pub struct Walked<const D: usize> {
 
 /// Shows every listed pair to `look`, in the order of their numbers.
 pub fn walk<const D: usize>(pairs: &PairList<D>, displacements: &[Vector<D>], mut look: impl FnMut(&Walked<D>)) {
-    let mut moved = [[0.0; D]; BLOCK];
+    let (mut moved, mut room) = ([[0.0; D]; BLOCK], Measured::default());
     let mut at = At { apart: [[0.0; BLOCK]; D], distance: [0.0; BLOCK], overlap: [0.0; BLOCK] };
     for block in &pairs.blocks {
-        let (numbers, (listed, _)) = (block.pairs(), pairs.of_pair(block.pairs));
+        let (numbers, listed) = (block.pairs(), pairs.listed.unpacked(block.pairs / BLOCK, &mut room));
         gather(&mut moved, pairs, block, (displacements, 0));
         pulp::Arch::new().dispatch(Measure { count: block.pair_count, listed, moved: &moved, at: &mut at });
         for (place, pair) in numbers.enumerate() {

@@ -5,6 +5,7 @@ pub mod components;
 pub mod lanes;
 pub mod real;
 pub mod roots;
+pub mod table;
 
 use pulp::Simd;
 
