@@ -5,8 +5,9 @@
 //! kind → R_i + R_j, coefficient        |D| = R_i + R_j − δ⁰
 //! ```
 //!
-//! In a plane that is 25 bytes a pair in place of 40. |D| is off by the rounding of R_i + R_j, an overlap away from the anchors by that times
-//! (|r| − |D|)/(|r| + |D|): less than half a unit in the last place of the way between, or of a deep overlap itself.
+//! In a plane that is 25 bytes a pair in place of 40. |D| is off by half a unit in the last place of itself, as where it is listed, and by
+//! half a one of δ⁰; an overlap away from the anchors by that times (|r| − |D|)/(|r| + |D|): no more than u of the way between, or of a
+//! deep overlap itself.
 
 use pulp::Simd;
 
@@ -289,16 +290,17 @@ impl<const D: usize> Listed<D> {
         }
     }
 
-    /// Pairs of disks with the same centre.
+    /// Pairs of disks with the same centre. A distance that follows from an overlap is 0 below the rounding of this, and does not tell.
     pub fn together(&self) -> impl Iterator<Item = usize> {
-        let each = self.each.iter().flat_map(|block| &block.distance).map(|&distance| distance == 0.0);
-        let packed = self.packed.iter().flat_map(|block| {
+        let each = self.each.iter().map(|block| &block.separation);
+        let blocks = each.chain(self.packed.iter().map(|block| &block.separation));
+        let squares = blocks.flat_map(|columns| {
             (0..BLOCK).map(|place| {
-                let apart: Vector<D> = std::array::from_fn(|d| block.separation[d][place]);
-                dot(apart, apart) == 0.0
+                let apart: Vector<D> = columns.each_ref().map(|column| column[place]);
+                dot(apart, apart)
             })
         });
-        each.chain(packed).enumerate().filter(|&(_, together)| together).map(|(pair, _)| pair)
+        squares.enumerate().filter(|&(_, squared)| squared == 0.0).map(|(pair, _)| pair)
     }
 }
 
@@ -403,7 +405,7 @@ mod tests {
             assert_eq!(packed.coefficient(pair), plain.coefficient(pair), "pair {pair}");
             assert_eq!(packed.distance(pair), in_full.distance(pair), "pair {pair}");
             assert_eq!(packed.listed.kind(pair), in_full.listed.kind(pair), "pair {pair}");
-            // A sum and a difference of two numbers below 2.1, rounded, and |D| itself.
+            // Both |D|, below 4, by half a unit in the last place, 2⁻⁵², and δ⁰, below 2, by 2⁻⁵³.
             let off = packed.distance(pair) - plain.distance(pair);
             assert!(off.abs() <= 3.0 * f64::EPSILON, "pair {pair}: {off}");
         }
@@ -451,6 +453,16 @@ mod tests {
         let expected = PackingError::CoincidentCentres { first: 77, second: 19_000 };
         assert_eq!(Assembly::new(&packing, Hertzian::default()).err(), Some(expected));
         assert!(list_of(&packing, None).is_err(), "found in a list that is not packed as well");
+        // Far nearer than the rounding of the sum of their radii, but not together.
+        let mut positions = packing.positions().to_vec();
+        (positions[77], positions[19_000]) = ([1e-20, 0.0], [0.0; 2]);
+        let packing = Packing::new(*packing.domain(), positions, packing.radii().to_vec()).expect("as before");
+        for packs in [Some(true), Some(false), None] {
+            let (pairs, _) = list_of(&packing, packs).expect("no coincidence");
+            let mut found = vec![[0.0; 2]; packing.len()];
+            forces(&Hertzian::default(), &pairs, &vec![[0.0; 2]; packing.len()], &mut Across::default(), &mut found);
+            assert!(found.as_flattened().iter().all(|force| force.is_finite()));
+        }
     }
 
     #[test]

@@ -183,27 +183,14 @@ impl<const D: usize> Rounded<D> {
         let (count, Rounded { each, packed, kinds }) = (pairs.blocks.len(), self);
         *kinds = pairs.listed.kinds.map_or(KindsInSingle::default(), |kinds| factors.kinds(&kinds));
         let task = Task { pairs, base, factors, kinds };
-        match pairs.listed.kinds.filter(|kinds| kinds.packs) {
-            Some(_) => {
-                each.clear();
-                packed.resize(count, Packed::default());
-                side_by_side::each(packed.chunks_mut(PORTION).enumerate(), |(portion, blocks)| {
-                    blocks
-                        .iter_mut()
-                        .enumerate()
-                        .for_each(|(place, block)| task.pack(portion * PORTION + place, block));
-                });
-            }
-            None => {
-                packed.clear();
-                each.resize(count, Each::default());
-                side_by_side::each(each.chunks_mut(PORTION).enumerate(), |(portion, blocks)| {
-                    blocks
-                        .iter_mut()
-                        .enumerate()
-                        .for_each(|(place, block)| task.round(portion * PORTION + place, block));
-                });
-            }
+        if pairs.listed.kinds.is_some_and(|kinds| kinds.packs) {
+            each.clear();
+            packed.resize(count, Packed::default());
+            in_portions(packed, |block, packed| task.pack(block, packed));
+        } else {
+            packed.clear();
+            each.resize(count, Each::default());
+            in_portions(each, |block, each| task.round(block, each));
         }
     }
 
@@ -223,6 +210,15 @@ impl<const D: usize> Rounded<D> {
             }
         }
     }
+}
+
+/// Overwrites each block by what is made of its number, perhaps side by side.
+fn in_portions<T: Send>(blocks: &mut [T], make: impl Fn(usize, &mut T) + Send + Sync) {
+    side_by_side::each(blocks.chunks_mut(PORTION).enumerate(), |(portion, blocks)| {
+        for (place, block) in blocks.iter_mut().enumerate() {
+            make(portion * PORTION + place, block);
+        }
+    });
 }
 
 impl<const D: usize> Default for Each<D> {
