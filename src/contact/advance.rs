@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::contact::forces::{Across, Kernel, Task, add_incoming, sweep, sweep_border};
 use crate::contact::pair_list::PairList;
 use crate::contact::turns::Stage;
-use crate::contact::ways::{PORTION, Ways, is_within};
+use crate::contact::ways::{Bound, PORTION, Ways, is_within};
 use crate::side_by_side;
 
 /// What moves, and what acts on it.
@@ -76,17 +76,18 @@ pub(super) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     let is_spent = || spent.load(Ordering::Relaxed);
     let nothing = [K::Number::default(); D];
     // Moves disks from this one on, whose bound is `way`.
-    let moves = |disk: usize, (forces, velocities, displacements): Moving<'_, _, D>, way: &mut f64| {
-        *way += kick(forces, velocities, displacements);
-        if !is_within(*way, limit) {
-            *way = longest(disk, displacements);
-            if !is_within(*way, limit) {
+    let moves = |disk: usize, (forces, velocities, displacements): Moving<'_, _, D>, bound: &mut Bound| {
+        bound.step = kick(forces, velocities, displacements);
+        bound.way += bound.step;
+        if !is_within(bound.way, limit) {
+            bound.way = longest(disk, displacements);
+            if !is_within(bound.way, limit) {
                 spent.store(true, Ordering::Relaxed);
             }
         }
         forces.fill(nothing);
     };
-    let inside = |place: usize, (forces, velocities, displacements): Moving<'_, _, D>, ways: &mut [f64]| {
+    let inside = |place: usize, (forces, velocities, displacements): Moving<'_, _, D>, bounds: &mut [Bound]| {
         let (tile, mobile, first) = (&tiles[place], velocities.len(), place * size);
         let interior = tile.interior.start.min(mobile)..tile.interior.end.min(mobile);
         let (mut moved, mut swept, mut seen) = (0, tile.inner.start, interior.start);
@@ -96,10 +97,10 @@ pub(super) fn advance<const D: usize, K: Kernel<D>, P: Send>(
             while moved < pass.begun.min(mobile) {
                 let disks = moved..mobile.min(moved + PORTION);
                 moved = disks.end;
-                let way = &mut ways[disks.start / PORTION];
+                let bound = &mut bounds[disks.start / PORTION];
                 let begin = first + disks.start;
                 let of_disks = (&mut forces[disks.clone()], &mut velocities[disks.clone()], &mut displacements[disks]);
-                moves(begin, of_disks, way);
+                moves(begin, of_disks, bound);
             }
             if is_spent() {
                 continue;
@@ -134,7 +135,8 @@ pub(super) fn advance<const D: usize, K: Kernel<D>, P: Send>(
         let moving =
             velocities.chunks_mut(size).zip(ways.bounds.chunks_mut(of_tile)).chain(repeat_with(Default::default));
         let arrays = displacements.chunks_mut(size).zip(forces.chunks_mut(size)).zip(moving);
-        insides = side_by_side::each(arrays.enumerate(), |(place, ((u, f), (v, ways)))| inside(place, (f, v, u), ways));
+        insides =
+            side_by_side::each(arrays.enumerate(), |(place, ((u, f), (v, bounds)))| inside(place, (f, v, u), bounds));
         if is_spent() {
             return None;
         }

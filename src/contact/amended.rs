@@ -8,13 +8,14 @@
 //! of that it gets the pairs they lack where they are now, which becomes where they were listed. Tiles keep places for such pairs: a
 //! few blocks that are empty to begin with.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
+use crate::contact::far::Far;
+use crate::contact::lacking::Lacking;
 use crate::contact::measured::Measured;
 use crate::contact::pair_list::{BLOCK, Block, PairList, Source};
 use crate::contact::tiles::connect;
-use crate::side_by_side;
-use crate::vector::{Vector, dot};
 
 /// Fewest disks of a list that keeps places: a list of fewer is made quickly, and has few disks that go far.
 const FEWEST: usize = 4096;
@@ -22,14 +23,6 @@ const FEWEST: usize = 4096;
 /// Blocks of a tile that are empty to begin with: within it, and across its border.
 const INNER: usize = 4;
 const BORDER: usize = 2;
-
-/// A pair to be added: its disks, and how its source names it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Lacking {
-    pub first: u32,
-    pub second: u32,
-    pub name: u32,
-}
 
 impl<const D: usize> PairList<D> {
     /// Whether a list of so many disks keeps places for pairs to come.
@@ -55,53 +48,38 @@ impl<const D: usize> PairList<D> {
         }
     }
 
-    /// Pairs that have a marked disk.
-    pub(super) fn pairs_of(&self, marked: &[bool]) -> Vec<Lacking> {
-        let tiles = self.tiles.iter().zip(marked.chunks(self.tile_size));
-        let of_tiles = side_by_side::each(tiles, |(tile, disks)| {
-            // A pair is in the tile of its first disk; only those across a border have another disk elsewhere.
-            let begin = if disks.contains(&true) { tile.inner.start } else { tile.border.start };
-            let pairs = self.blocks[begin..tile.border.end].iter().flat_map(Block::pairs);
-            let named =
-                pairs.map(|pair| Lacking { first: self.first[pair], second: self.second[pair], name: pair as u32 });
-            named.filter(|pair| marked[pair.first as usize] | marked[pair.second as usize]).collect::<Vec<_>>()
-        });
-        of_tiles.concat()
-    }
-
-    /// Of the pairs of a wider list that have a marked disk, those that this one lacks and that are nearer than reach + `skin` where their
-    /// disks were `listed`.
-    pub(super) fn lacking(
-        &self,
-        whole: &PairList<D>,
-        marked: &[bool],
-        (listed, skin): (&[Vector<D>], f64),
-    ) -> Vec<Lacking> {
-        let mut lacking = whole.pairs_of(marked);
-        lacking.retain(|&Lacking { first, second, name }| {
-            let (pair, a, b) = (name as usize, listed[first as usize], listed[second as usize]);
-            let anchored = whole.separation(pair);
-            let apart: Vector<D> = std::array::from_fn(|d| anchored[d] + (a[d] - b[d]));
-            let range = whole.distance(pair) + whole.overlap(pair) + skin;
-            dot(apart, apart) < range * range
-        });
-        without(&mut lacking, &mut self.pairs_of(marked));
-        lacking
+    /// First and second disks of the pairs that have one of these as the first.
+    pub(super) fn pairs_of(&self, firsts: &Far) -> Vec<(u32, u32)> {
+        let mut found = Vec::new();
+        for (place, tile) in self.tiles.iter().enumerate() {
+            let origin = place * self.tile_size;
+            if !firsts.any_of(origin..origin + self.tile_size) {
+                continue;
+            }
+            let groups = tile.groups(origin).filter(|(_, disks)| firsts.any_of(disks.clone()));
+            let blocks = groups.map(|(blocks, _)| blocks).chain([tile.border.clone()]);
+            let pairs = blocks.flat_map(|blocks| &self.blocks[blocks]).flat_map(Block::pairs);
+            let of_firsts = pairs.filter(|&pair| firsts.contains(self.first[pair]));
+            found.extend(of_firsts.map(|pair| (self.first[pair], self.second[pair])));
+        }
+        found
     }
 
     /// Adds pairs the list lacks, in the order given. Nothing is done, and false returned, where there are not places enough.
     pub(super) fn amend(&mut self, lacking: &[Lacking], source: &mut impl Source<D>) -> bool {
         // The block each of them goes to, before anything is written.
-        let mut taken = vec![0; self.blocks.len()];
+        let mut taken = BTreeMap::new();
         let mut places = Vec::with_capacity(lacking.len());
         for &Lacking { first, second, .. } in lacking {
-            let tile = first as usize / self.tile_size;
-            let inside = tile == second as usize / self.tile_size;
-            let tile = &self.tiles[tile];
-            let mut blocks = if inside { places_of(&tile.inner, INNER) } else { places_of(&tile.border, BORDER) };
-            let free = |&place: &usize| self.blocks[place].pair_count + taken[place] < BLOCK;
+            let (tile, inside) = self.place_of(first, second);
+            let mut blocks = if inside {
+                places_of(&self.tiles[tile].inner, INNER)
+            } else {
+                places_of(&self.tiles[tile].border, BORDER)
+            };
+            let free = |place: &usize| self.blocks[*place].pair_count + taken.get(place).unwrap_or(&0) < BLOCK;
             let Some(place) = blocks.find(free) else { return false };
-            taken[place] += 1;
+            *taken.entry(place).or_insert(0) += 1;
             places.push(place);
         }
         let mut measured = Measured::default();
@@ -113,8 +91,21 @@ impl<const D: usize> PairList<D> {
                 self.put(*pair, place, (&measured, k), source.kind(pair.first, pair.name));
             }
         }
-        self.connect();
+        if lacking.iter().all(|pair| self.place_of(pair.first, pair.second).1) {
+            for &Lacking { first, second, .. } in lacking {
+                let tile = self.place_of(first, second).0;
+                self.tiles[tile].amend_by([first, second].map(|disk| disk - (tile * self.tile_size) as u32));
+            }
+        } else {
+            self.connect();
+        }
         true
+    }
+
+    /// The tile that has a pair, and whether within it.
+    fn place_of(&self, first: u32, second: u32) -> (usize, bool) {
+        let tile = first as usize / self.tile_size;
+        (tile, tile == second as usize / self.tile_size)
     }
 
     /// Puts a pair in a block that has a place for it.
@@ -147,13 +138,4 @@ impl<const D: usize> PairList<D> {
 /// The last ones of the blocks of a tile, which were empty to begin with.
 fn places_of(blocks: &Range<usize>, count: usize) -> Range<usize> {
     blocks.end - count..blocks.end
-}
-
-/// Takes pairs from others that are had already, and leaves each of the rest once, sorted.
-pub(super) fn without(lacking: &mut Vec<Lacking>, had: &mut [Lacking]) {
-    let disks = |pair: &Lacking| (pair.first, pair.second);
-    had.sort_unstable();
-    lacking.sort_unstable();
-    lacking.dedup_by_key(|pair| disks(pair));
-    lacking.retain(|pair| had.binary_search_by_key(&disks(pair), disks).is_err());
 }

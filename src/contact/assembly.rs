@@ -10,9 +10,11 @@ mod roaming;
 mod upkeep;
 
 use std::iter::repeat_with;
+use std::ops::RangeInclusive;
 
 use crate::contact::advance::{Advanced, Movers, Reach, advance};
 use crate::contact::assembly::upkeep::LISTED;
+use crate::contact::far::Far;
 use crate::contact::forces::{self, Across, Plain};
 use crate::contact::kinds::Classes;
 use crate::contact::law::PairLaw;
@@ -28,6 +30,9 @@ use crate::vector::{Vector, dot, extended_sum, longest_difference_squared, sum, 
 /// Width of the skin over the smallest radius \[1\]. Changes speed only: a wider one makes lists last longer and adds pairs
 /// that do not touch. From 0.25 to 0.5 these are 7 in 100 pairs and 4 in 100 of the time of the loop, for half the lists and less.
 pub const SKIN: f64 = 0.5;
+
+/// The least for a large list that is amended, so that it need not last for the few disks that go far.
+const AMENDED_SKIN: f64 = 0.3;
 
 /// A packing under a contact law, in working order.
 #[derive(Debug, Clone)]
@@ -63,15 +68,18 @@ pub struct Assembly<const D: usize, L> {
     smallest_radius: f64,
     /// Of the list of all pairs.
     skin: f64,
+    /// The narrowest and the widest of that list.
+    skins: RangeInclusive<f64>,
     /// Displacements when the list of all pairs was made, or when a disk was listed anew in it; the same for near pairs.
     listed: Vec<Vector<D>>,
     near_listed: Vec<Vector<D>>,
-    /// Disks that were listed anew in the list of all pairs since it was made.
-    roaming: Vec<u32>,
+    far: Far,
     /// Displacements to come back to, if the relaxer set a checkpoint.
     checkpoint: Vec<Vector<D>>,
     /// How far disks may have moved since they were listed in the list in use.
     ways: Ways,
+    /// How far each portion of them had gone in the list of all pairs when its near pairs were picked; none unless these are in use.
+    ways_before: Vec<f64>,
     /// Lists that were in use so far, and how often this one was amended.
     listing_number: (usize, usize),
     rebuild_count: usize,
@@ -90,22 +98,34 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         Self::with_skin(packing, law, SKIN)
     }
 
+    /// As [`Assembly::new`] for who has lists pruned and amended ([`Assembly::prune_lists`]): those of a large packing have a narrower skin,
+    /// unless all disks move.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_amended_lists(packing: &Packing<D>, law: L) -> Result<Self, PackingError> {
+        let narrowest = if PairList::<D>::keeps_places(packing.len()) { AMENDED_SKIN } else { SKIN };
+        Self::with_skins(packing, law, narrowest..=SKIN)
+    }
+
     /// As [`Assembly::new`] with another width of the skin, over the smallest radius \[1\].
     ///
     /// # Errors
     /// As there.
     pub fn with_skin(packing: &Packing<D>, law: L, skin: f64) -> Result<Self, PackingError> {
+        Self::with_skins(packing, law, skin..=skin)
+    }
+
+    fn with_skins(packing: &Packing<D>, law: L, skins: RangeInclusive<f64>) -> Result<Self, PackingError> {
         let order = spatial_order(packing.domain(), packing.positions(), packing.radii(), packing.held());
         let pick = |column: &[Vector<D>]| order.iter().map(|&disk| column[disk as usize]).collect::<Vec<_>>();
         let radii: Vec<f64> = order.iter().map(|&disk| packing.radii()[disk as usize]).collect();
         let smallest_radius = radii.iter().copied().fold(f64::INFINITY, f64::min);
         let largest = radii.iter().copied().fold(0.0, f64::max);
-        let mut skin = skin * smallest_radius;
-        if let Some(lengths) = packing.domain().lengths() {
-            // The list takes one image a pair, so its range stays below half the shortest side.
-            let shortest = lengths.iter().copied().fold(f64::INFINITY, f64::min);
-            skin = skin.min((0.5 * shortest - 2.0 * largest).max(0.0));
-        }
+        // The list takes one image a pair, so its range stays below half the shortest side.
+        let shortest = packing.domain().lengths().map(|lengths| lengths.iter().copied().fold(f64::INFINITY, f64::min));
+        let most = shortest.map_or(f64::INFINITY, |shortest| (0.5 * shortest - 2.0 * largest).max(0.0));
+        let [narrowest, widest] = [skins.start(), skins.end()].map(|skin| most.min(skin * smallest_radius));
         let (origin, domain) = origin_and_domain(packing);
         let (mut anchors, mut displacements) = (pick(packing.positions()), pick(packing.corrections()));
         for (anchor, displacement) in anchors.iter_mut().zip(&mut displacements) {
@@ -124,9 +144,10 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             forces: vec![[0.0; D]; packing.len()],
             listed: Vec::new(),
             near_listed: Vec::new(),
-            roaming: Vec::new(),
+            far: Far::default(),
             checkpoint: Vec::new(),
             ways: Ways::default(),
+            ways_before: Vec::new(),
             listing_number: (0, 0),
             rebuild_count: 0,
             from_sites: Vec::new(),
@@ -143,7 +164,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             classes: PairList::<D>::packs(radii.len()).then(|| Classes::of(&radii, &law)).flatten(),
             radii,
             smallest_radius,
-            skin,
+            skin: narrowest,
+            skins: narrowest..=widest,
             order,
         };
         if L::ON_SITE {

@@ -5,14 +5,17 @@
 pub mod advance;
 mod amended;
 pub mod assembly;
+mod cells;
 mod columns;
 pub mod damped_forces;
 pub mod damping;
+mod far;
 pub mod forces;
 #[cfg(feature = "linear")]
 pub mod hessian;
 mod joined;
 mod kinds;
+mod lacking;
 pub mod law;
 mod listed;
 mod measured;

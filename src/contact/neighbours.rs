@@ -4,8 +4,10 @@
 //! disk has moved by half the skin. Each pair carries its separation at the anchors, so the box and its images are
 //! looked at only while the list is built.
 
-use crate::contact::amended::{Lacking, without};
+use crate::contact::cells::{CellGrid, Run};
+use crate::contact::far::Far;
 use crate::contact::kinds::Classes;
+use crate::contact::lacking::Roaming;
 use crate::contact::measured::Measured;
 use crate::contact::pair_list::{BLOCK, PairList, Search, Source};
 use crate::packing::{Domain, PackingError};
@@ -28,153 +30,24 @@ pub struct Disks<'a, const D: usize> {
     pub(super) classes: Option<&'a Classes>,
 }
 
-/// Cells no smaller than the range, and the disks in each, in ascending order.
-#[derive(Debug, Clone, Default)]
-struct CellGrid {
-    /// Cells along each axis.
-    counts: Vec<usize>,
-    /// Where the first cell begins, and cells a length, along each axis.
-    corner: Vec<f64>,
-    scale: Vec<f64>,
-    cell_of: Vec<u32>,
-    starts: Vec<u32>,
-    members: Vec<u32>,
-}
-
-/// A run of cells along the first axis next to a cell, and the shift that brings its disks next to those of the cell.
-#[derive(Debug, Clone)]
-struct Run<const D: usize> {
-    cells: std::ops::Range<usize>,
-    shift: Vector<D>,
-}
-
-impl CellGrid {
-    /// Sorts the points into cells; whatever the grid held is overwritten, its room used again.
-    fn fill<const D: usize>(&mut self, domain: &Domain<D>, points: &[Vector<D>], range: f64) {
-        let (corner, lengths) = match domain {
-            Domain::Periodic { corner, lengths } => (*corner, *lengths),
-            Domain::Open => bounding_box(points),
-        };
-        // No more cells than disks: an open plane with one disk far away must not ask for the memory of its box.
-        let most = (points.len() as f64).powf(1.0 / D as f64).ceil().max(1.0);
-        let counts: [usize; D] = std::array::from_fn(|d| (lengths[d] / range).floor().clamp(1.0, 4.0 * most) as usize);
-        let cell_count: usize = counts.iter().product();
-        let scale: Vector<D> = std::array::from_fn(|d| counts[d] as f64 / lengths[d]);
-        for (column, values) in [(&mut self.corner, &corner), (&mut self.scale, &scale)] {
-            column.clear();
-            column.extend_from_slice(values);
-        }
-        self.counts.clear();
-        self.counts.extend_from_slice(&counts);
-        self.cell_of.resize(points.len(), 0);
-        side_by_side::each(self.cell_of.chunks_mut(PIECE).zip(points.chunks(PIECE)), |(cells, points)| {
-            for (cell_of, &point) in cells.iter_mut().zip(points) {
-                *cell_of = cell_at(point, (corner, scale, counts)) as u32;
-            }
-        });
-        // Counted one cell further on, so that filling a cell moves its start to where it belongs.
-        self.starts.clear();
-        self.starts.resize(cell_count + 2, 0);
-        for &cell in &self.cell_of {
-            self.starts[cell as usize + 2] += 1;
-        }
-        for cell in 0..=cell_count {
-            self.starts[cell + 1] += self.starts[cell];
-        }
-        self.members.clear();
-        self.members.resize(points.len(), 0);
-        for (disk, &cell) in self.cell_of.iter().enumerate() {
-            let next = &mut self.starts[cell as usize + 1];
-            self.members[*next as usize] = disk as u32;
-            *next += 1;
-        }
+impl<const D: usize> Disks<'_, D> {
+    /// Where a disk is, rounded \[length\].
+    pub(super) fn centre(&self, disk: usize) -> Vector<D> {
+        sum(self.anchors[disk], self.displacements[disk])
     }
-
-    /// The cell of a point of the domain.
-    fn cell_at<const D: usize>(&self, point: Vector<D>) -> usize {
-        let [corner, scale] = [&self.corner, &self.scale].map(|column| std::array::from_fn(|d| column[d]));
-        cell_at(point, (corner, scale, std::array::from_fn(|d| self.counts[d])))
-    }
-
-    /// The last of the disks of a cell.
-    fn last_of(&self, cell: usize) -> Option<usize> {
-        let (start, end) = (self.starts[cell] as usize, self.starts[cell + 1] as usize);
-        self.members[start..end].last().map(|&disk| disk as usize)
-    }
-
-    /// The cell and its neighbours as runs along the first axis, each cell once with each shift that can matter.
-    fn neighbourhood<const D: usize>(&self, cell: usize, lengths: Option<Vector<D>>, runs: &mut Vec<Run<D>>) {
-        // Along each axis the cell before, the cell and the cell after: where they begin, and their shift.
-        let mut sides = [[None; 3]; D];
-        let (mut rest, mut stride) = (cell, 1);
-        for d in 0..D {
-            let count = self.counts[d];
-            let index = rest % count;
-            rest /= count;
-            let wrapped = |to: usize, shift: f64| lengths.map(|lengths| (stride * to, shift * lengths[d]));
-            sides[d] = [
-                if index > 0 { Some((stride * (index - 1), 0.0)) } else { wrapped(count - 1, -1.0) },
-                Some((stride * index, 0.0)),
-                if index + 1 < count { Some((stride * (index + 1), 0.0)) } else { wrapped(0, 1.0) },
-            ];
-            stride *= count;
-        }
-        runs.clear();
-        for code in 0..3usize.pow(D as u32) {
-            let mut digits = code;
-            let (mut neighbour, mut shift, mut inside) = (0, [0.0; D], true);
-            for d in 0..D {
-                match sides[d][digits % 3] {
-                    Some((start, way)) => {
-                        neighbour += start;
-                        shift[d] = way;
-                    }
-                    None => inside = false,
-                }
-                digits /= 3;
-            }
-            if !inside {
-                continue;
-            }
-            match runs.last_mut() {
-                Some(run) if run.cells.end == neighbour && run.shift == shift => run.cells.end += 1,
-                _ => runs.push(Run { cells: neighbour..neighbour + 1, shift }),
-            }
-        }
-    }
-}
-
-/// The cell of a point, or the nearest one.
-#[inline(always)]
-fn cell_at<const D: usize>(point: Vector<D>, (corner, scale, counts): (Vector<D>, Vector<D>, [usize; D])) -> usize {
-    let mut cell = 0;
-    for d in (0..D).rev() {
-        let index = ((point[d] - corner[d]) * scale[d]).max(0.0) as usize;
-        cell = cell * counts[d] + index.min(counts[d] - 1);
-    }
-    cell
 }
 
 /// Room for making a list, kept between two: only the first one asks for memory.
 #[derive(Debug, Clone, Default)]
 pub struct ListRoom<const D: usize> {
-    grid: CellGrid,
+    pub(super) grid: CellGrid,
     points: Vec<Vector<D>>,
     /// Centres and radii in the order of the cells, so that the disks of a run lie side by side.
     sorted: Vec<(Vector<D>, f64)>,
-}
-
-fn bounding_box<const D: usize>(points: &[Vector<D>]) -> (Vector<D>, Vector<D>) {
-    let mut low = [f64::INFINITY; D];
-    let mut high = [f64::NEG_INFINITY; D];
-    for point in points {
-        for d in 0..D {
-            low[d] = low[d].min(point[d]);
-            high[d] = high[d].max(point[d]);
-        }
-    }
-    // A box of no extent (one disk, or all on a line) still needs a side to divide by.
-    (low, std::array::from_fn(|d| (high[d] - low[d]).max(f64::MIN_POSITIVE)))
+    /// Disks that were listed anew since.
+    pub(super) roaming: Roaming,
+    /// First disks of pairs that are looked up.
+    pub(super) asked: Far,
 }
 
 /// Order of the disks cell by cell in rows, mobile ones before held ones: neighbours in space are neighbours in memory.
@@ -213,7 +86,8 @@ pub fn build_pairs<const D: usize>(
             return Err(PackingError::BoxTooSmall { axis, length: lengths[axis], range: 2.0 * largest });
         }
     }
-    let ListRoom { grid, points, sorted } = room;
+    let ListRoom { grid, points, sorted, roaming, .. } = room;
+    roaming.clear();
     points.resize(disks.anchors.len(), [0.0; D]);
     let centres = disks.anchors.chunks(PIECE).zip(disks.displacements.chunks(PIECE));
     side_by_side::each(points.chunks_mut(PIECE).zip(centres), |(points, (anchors, displacements))| {
@@ -239,55 +113,6 @@ pub fn build_pairs<const D: usize>(
     })
 }
 
-/// Adds the pairs that a list made by [`build_pairs`] lacks now that some disks were listed anew. Nothing is done, and false
-/// returned, where there are not places enough.
-///
-/// # Shape
-/// `listed` tells where each disk was listed last, from its anchor: `roaming` are the disks that were listed anew since the list was made,
-/// those marked among them just now.
-pub(super) fn amend_pairs<const D: usize>(
-    (disks, listed): (&Disks<'_, D>, &[Vector<D>]),
-    (roaming, marked): (&[u32], &[bool]),
-    skin: f64,
-    coefficient: impl Fn(f64, f64) -> f64 + Sync,
-    room: &ListRoom<D>,
-    pairs: &mut PairList<D>,
-) -> bool {
-    let lengths = disks.domain.lengths();
-    let at = |disk: u32| sum(disks.anchors[disk as usize], listed[disk as usize]);
-    let (mut lacking, mut runs) = (Vec::new(), Vec::new());
-    for &disk in roaming.iter().filter(|&&disk| marked[disk as usize]) {
-        let point = at(disk);
-        let reach = disks.radii[disk as usize] + skin;
-        let mut offer = |other: u32| {
-            let mut apart = difference(point, at(other));
-            if let Some(lengths) = lengths {
-                for d in 0..D {
-                    // Most are near as they are.
-                    if 2.0 * apart[d].abs() > lengths[d] {
-                        apart[d] -= (apart[d] / lengths[d]).round_ties_even() * lengths[d];
-                    }
-                }
-            }
-            let range = reach + disks.radii[other as usize];
-            let (first, second) = (disk.min(other), disk.max(other));
-            if disk != other && dot(apart, apart) < range * range && (first as usize) < disks.mobile_count {
-                lacking.push(Lacking { first, second, name: second });
-            }
-        };
-        // Others are in the cells they were in; those that were listed anew are not, and are looked at one by one.
-        let cell = room.grid.cell_at(disks.domain.wrapped(point));
-        room.grid.neighbourhood(cell, lengths, &mut runs);
-        for Run { cells, .. } in &runs {
-            let (start, end) = (room.grid.starts[cells.start] as usize, room.grid.starts[cells.end] as usize);
-            room.grid.members[start..end].iter().for_each(|&other| offer(other));
-        }
-        roaming.iter().for_each(|&other| offer(other));
-    }
-    without(&mut lacking, &mut pairs.pairs_of(marked));
-    pairs.amend(&lacking, &mut Anchored::new(disks, &coefficient))
-}
-
 /// What every tile is searched in.
 #[derive(Clone, Copy)]
 struct Nearby<'a, const D: usize> {
@@ -308,14 +133,14 @@ struct TileSearch<'a, const D: usize, C> {
 }
 
 /// Pairs of disks as they are at their anchors.
-struct Anchored<'a, const D: usize, C> {
+pub(super) struct Anchored<'a, const D: usize, C> {
     disks: &'a Disks<'a, D>,
     coefficient: &'a C,
     ends: Ends<D>,
 }
 
 impl<'a, const D: usize, C> Anchored<'a, D, C> {
-    fn new(disks: &'a Disks<'a, D>, coefficient: &'a C) -> Self {
+    pub fn new(disks: &'a Disks<'a, D>, coefficient: &'a C) -> Self {
         let ends = Ends { anchors: [([1.0; D], [0.0; D]); BLOCK], radii: [(1.0, 1.0); BLOCK] };
         Anchored { disks, coefficient, ends }
     }

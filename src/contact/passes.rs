@@ -25,6 +25,19 @@ impl Tile {
         self.passes.iter().copied().chain([rest])
     }
 
+    /// Blocks of each group within the tile, and among which disks theirs are, the first of the tile being `origin`; last the pairs that were
+    /// added, or all where there are no passes.
+    pub fn groups(&self, origin: usize) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
+        let (mut begin, mut least) = (self.inner.start, origin);
+        self.all_passes().map(move |pass| {
+            let end = self.inner.start + pass.end;
+            let group = (begin..end, least..origin.saturating_add(pass.begun));
+            // The last one, and the rest, may have any.
+            (begin, least) = (end, if pass.done == usize::MAX { origin } else { origin + pass.done });
+            group
+        })
+    }
+
     /// Blocks of pairs that were added.
     pub fn added(&self) -> Range<usize> {
         self.passes.last().map_or(0..0, |pass| self.inner.start + pass.end..self.inner.end)

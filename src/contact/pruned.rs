@@ -24,27 +24,27 @@ const PAIRS_A_RADIUS: f64 = 0.75;
 /// Time of picking near pairs over that of an evaluation of the loop \[1\].
 const PICKING: f64 = 4.0;
 
+/// Time of making a list over that \[1\].
+const MAKING: f64 = 25.0;
+
 /// Narrowest skin over the smallest radius: it adds 4 pairs in 1000, and rounding is far below it \[1\].
 const NARROWEST: f64 = 1e-3;
 
 /// The skin of near pairs for which steps cost least when the fastest disk moves by `way` a step \[length\].
 pub(super) fn best_skin(radius: f64, way: f64) -> f64 {
-    (2.0 * PICKING / PAIRS_A_RADIUS * way * radius).sqrt().max(NARROWEST * radius)
+    best_for(PICKING, radius, way).max(NARROWEST * radius)
+}
+
+/// The same for the list of all pairs, when most disks move by `way` a step and it can be amended for the others \[length\].
+pub(super) fn best_skin_of_all(radius: f64, way: f64) -> f64 {
+    best_for(MAKING, radius, way)
+}
+
+fn best_for(cost: f64, radius: f64, way: f64) -> f64 {
+    (2.0 * cost / PAIRS_A_RADIUS * way * radius).sqrt()
 }
 
 impl<const D: usize> PairList<D> {
-    /// Adds the pairs of a wider list that it lacks, of marked disks that were listed anew. Nothing is done, and false returned, where
-    /// there are not places enough.
-    pub(super) fn amend_from(
-        &mut self,
-        whole: &PairList<D>,
-        marked: &[bool],
-        (listed, skin): (&[Vector<D>], f64),
-    ) -> bool {
-        let lacking = self.lacking(whole, marked, (listed, skin));
-        self.amend(&lacking, &mut Pruned { whole, displacements: listed, skin })
-    }
-
     /// Empties the list and fills it with the pairs of another one whose disks are nearer than reach + `skin`.
     pub(super) fn prune(&mut self, whole: &PairList<D>, displacements: &[Vector<D>], skin: f64) {
         self.first_count = whole.first_count;

@@ -12,6 +12,8 @@
 //! Units are powers of two near a radius and the force of its overlap, so that no number leaves the range of single precision, whatever
 //! units the packing has. Every operation is rounded as IEEE 754 has it, the same on any vectors.
 
+use std::ops::Range;
+
 use pulp::Simd;
 
 use crate::contact::advance::{Advanced, Movers, Reach, advance};
@@ -134,14 +136,15 @@ impl<const D: usize> Single<D> {
             // Where another list was made the disks were settled, and may have other anchors since.
             return;
         }
+        let places = assembly.displacements.chunks_mut(PIECE).zip(self.base.chunks(PIECE)).zip(self.ways.chunks(PIECE));
         let unit = self.units.length;
-        let pieces = assembly.displacements.chunks_mut(PIECE).zip(self.base.chunks(PIECE)).zip(self.ways.chunks(PIECE));
-        side_by_side::each(pieces, |((to, base), ways)| {
-            for ((to, base), way) in to.as_flattened_mut().iter_mut().zip(base.as_flattened()).zip(ways.as_flattened())
-            {
-                *to = base + unit * f64::from(*way);
-            }
-        });
+        side_by_side::each(places, |((to, base), ways)| place(unit, (base, ways), to));
+    }
+
+    /// The same for these disks.
+    fn settle_some<L: PairLaw>(&self, assembly: &mut Assembly<D, L>, disks: Range<usize>) {
+        let from = (&self.base[disks.clone()], &self.ways[disks.clone()]);
+        place(self.units.length, from, &mut assembly.displacements[disks]);
     }
 
     /// Makes the displacements of the assembly the base, if they are not and have to be, and rounds what its list has. Pairs that a long list
@@ -191,6 +194,10 @@ impl<const D: usize> Single<D> {
         if matches!(advanced, Advanced::Moved) || assembly.looks_next() {
             // The assembly looks at its disks.
             self.settle(assembly);
+        } else {
+            for disks in assembly.disks_to_see() {
+                self.settle_some(assembly, disks);
+            }
         }
         advanced
     }
@@ -216,15 +223,21 @@ impl<const D: usize> Single<D> {
     }
 }
 
+/// Where disks at base + way are.
+fn place<const D: usize>(unit: f64, (base, ways): (&[Vector<D>], &[[f32; D]]), places: &mut [Vector<D>]) {
+    let from = base.as_flattened().iter().zip(ways.as_flattened());
+    for (place, (base, way)) in places.as_flattened_mut().iter_mut().zip(from) {
+        *place = base + unit * f64::from(*way);
+    }
+}
+
 /// The longest way from where disks were listed, of those at base + way, as they are settled.
 fn longest_way<const D: usize>(unit: f64, (base, ways): (&[Vector<D>], &[[f32; D]]), listed: &[Vector<D>]) -> f64 {
     let mut places = [[0.0; D]; 64];
     let pieces = base.chunks(64).zip(ways.chunks(64)).zip(listed.chunks(64));
     let squares = pieces.map(|((base, ways), listed)| {
         let places = &mut places[..base.len()];
-        for ((place, base), way) in places.iter_mut().zip(base).zip(ways) {
-            *place = std::array::from_fn(|d| base[d] + unit * f64::from(way[d]));
-        }
+        place(unit, (base, ways), places);
         longest_difference_squared(places, listed)
     });
     squares.fold(0.0, larger).sqrt()

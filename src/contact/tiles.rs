@@ -25,6 +25,20 @@ pub(super) struct Tile {
     pub incoming: Vec<(u32, u32, u32)>,
 }
 
+impl Tile {
+    /// Takes note of the disks of a pair that was added within the tile, if it has passes.
+    pub fn amend_by(&mut self, disks: [u32; 2]) {
+        if self.passes.is_empty() {
+            return;
+        }
+        for disk in disks {
+            if let Err(place) = self.amended.binary_search(&disk) {
+                self.amended.insert(place, disk);
+            }
+        }
+    }
+}
+
 /// Finds what comes to each tile from others, and what lies inside of it.
 ///
 /// # Shape
@@ -40,17 +54,17 @@ pub(super) fn connect(tiles: &mut [Tile], tile_size: usize, blocks: &[Block], (f
     }
     side_by_side::each(tiles.iter_mut().enumerate(), |(place, tile)| {
         let own = blocks[tile.border.clone()].iter().flat_map(Block::pairs).map(|pair| &first[pair]);
-        let touched = own.chain(tile.incoming.iter().map(|(disk, ..)| disk));
-        let mut touched: Vec<usize> = touched.map(|&disk| disk as usize - place * tile_size).collect();
-        touched.sort_unstable();
-        touched.push(tile_size);
+        let mut is_touched = vec![false; tile_size];
+        for disk in own.chain(tile.incoming.iter().map(|(disk, ..)| disk)) {
+            is_touched[*disk as usize - place * tile_size] = true;
+        }
         let mut begin = 0;
         tile.interior = 0..0;
-        for end in touched {
-            if end > begin + tile.interior.len() {
-                tile.interior = begin..end;
+        for run in is_touched.split(|&touched| touched) {
+            if run.len() > tile.interior.len() {
+                tile.interior = begin..begin + run.len();
             }
-            begin = end + 1;
+            begin += run.len() + 1;
         }
         let amended = blocks[tile.added()].iter().flat_map(Block::pairs).flat_map(|pair| [first[pair], second[pair]]);
         tile.amended = amended.map(|disk| disk - (place * tile_size) as u32).collect();

@@ -1,24 +1,26 @@
 //! The few disks that go far while the others hardly move: they are listed anew, so that a list lasts for the others.
+//!
+//! What is done for them is done where they are: portions whose bound says that none went far are not looked at.
+
+use std::ops::Range;
 
 use crate::contact::assembly::Assembly;
 use crate::contact::assembly::upkeep::LISTED;
+use crate::contact::lacking::amend_pairs;
 use crate::contact::law::PairLaw;
-use crate::contact::neighbours::amend_pairs;
-use crate::contact::ways::{Ways, is_within};
-use crate::vector::{Vector, difference, dot};
+use crate::contact::neighbours::ListRoom;
+use crate::contact::pair_list::PairList;
+use crate::vector::{Vector, difference, dot, longest_difference_squared};
 
 /// A disk has gone far if it went this share of the way for which its list holds \[1\].
-const FAR: f64 = 0.5;
+const FAR: f64 = 0.7;
 
 /// Disks of which one may go far at once, and one may have been listed anew since a list was made.
 const ONE_OF: usize = 128;
-const ROAMING_ONE_OF: usize = 64;
-
-/// Most of the latter: each that goes far is compared with all of them.
-const MOST_ROAMING: usize = 4096;
+const ROAMING_ONE_OF: usize = 8;
 
 /// Time of amending near pairs over that of picking them \[1\].
-const AMENDING: f64 = 0.4;
+const AMENDING: f64 = 0.1;
 
 /// Time of picking near pairs of large lists over what it gains, over that of small ones \[1\].
 const PICKING: f64 = 3.5;
@@ -30,93 +32,142 @@ const COMMON_BUT_ONE_OF: usize = 512;
 const ASKED: usize = 1 << 17;
 
 impl<const D: usize, L: PairLaw> Assembly<D, L> {
-    /// Lists the disks that went far anew, if they are few, and adds the pairs that the list in use lacks then. False if that cannot be: near
-    /// pairs are not good any more then, and the list of all pairs is as it was.
-    pub(super) fn amend(&mut self) -> bool {
-        let Some(skin) = self.near_skin else {
-            let ways = self.ways.clone();
-            let amended = self.amend_all(&ways);
-            if amended {
-                self.begin_list();
-            }
-            self.take_ways();
-            return amended;
-        };
-        let ways = self.ways_from(&self.listed);
-        let mut moved = ways.longest();
-        if moved > FAR * LISTED * self.skin {
-            if !self.amend_all(&ways) {
-                return false;
-            }
-            moved = self.longest_way(&self.listed);
-        }
-        // Near pairs are looked for in the list of all pairs, so they must be nearer in that one too. It listed the far disk where it was no
-        // farther from here than the longest way, and another one no farther from where it is near than that and half a near skin.
-        if 2.0 * moved + 1.5 * skin > self.skin {
+    /// Amends the list in use if a step like the last one may spend it, so that this one need not be made without it. True if that was done.
+    pub(super) fn amend_ahead(&mut self) -> bool {
+        let limit = LISTED * self.skin();
+        let nearly: Vec<usize> = self.ways.nearly_spent(limit).collect();
+        if !self.prunes || nearly.is_empty() {
             return false;
         }
-        let Some(far) = self.far_from((&self.near_listed, &self.ways), skin) else { return false };
-        for &disk in &far {
-            self.near_listed[disk as usize] = self.displacements[disk as usize];
-        }
-        let marked = self.marked(&far);
-        self.take_ways();
-        self.near_pairs.amend_from(&self.pairs, &marked, (&self.near_listed, skin))
+        self.take_ways_of(nearly);
+        self.ways.nearly_spent(limit).next().is_some() && self.amend()
     }
 
-    /// The same for the list of all pairs, from which portions of disks have gone so far.
-    fn amend_all(&mut self, ways: &Ways) -> bool {
-        let Some(far) = self.far_from((&self.listed, ways), self.skin) else { return false };
-        let (mut listed, mut roaming) = (self.listed.clone(), self.roaming.clone());
-        for &disk in &far {
-            listed[disk as usize] = self.displacements[disk as usize];
+    /// The disks that [`Assembly::keep`] looks at after a step that did not spend the list.
+    pub(in crate::contact) fn disks_to_see(&self) -> Vec<Range<usize>> {
+        let limit = LISTED * self.skin();
+        if !self.prunes || self.ways.nearly_spent(limit).next().is_none() {
+            return Vec::new();
         }
-        roaming.extend(&far);
-        roaming.sort_unstable();
-        roaming.dedup();
-        if roaming.len() > MOST_ROAMING.min(self.len() / ROAMING_ONE_OF) {
+        let mut portions: Vec<usize> = self.ways.nearly_spent(limit).collect();
+        portions.extend(self.far_portions());
+        portions.extend(self.far_portions_of_all());
+        portions.sort_unstable();
+        portions.dedup();
+        portions.into_iter().map(|portion| self.ways.disks_of(portion)).collect()
+    }
+
+    /// Lists the disks that went far anew, if they are few, and adds the pairs that the list in use lacks then. False if that cannot be: then
+    /// it is as it was, and that of all pairs holds for as far as it did.
+    pub(super) fn amend(&mut self) -> bool {
+        if !self.pairs.keeps_places {
             return false;
         }
-        let marked = self.marked(&far);
-        let law = self.law;
-        let coefficient = |a, b| law.coefficient(a, b);
-        let mut pairs = std::mem::take(&mut self.pairs);
-        let (listing, who) = ((&self.disks(), listed.as_slice()), (roaming.as_slice(), marked.as_slice()));
-        let amended = amend_pairs(listing, who, self.skin, coefficient, &self.list_room, &mut pairs);
-        self.pairs = pairs;
+        // Disks that go far in near pairs are looked for in the cells of the list of all pairs, and must not be far from there.
+        let of_all = self.amend_all();
+        let amended = match self.near_skin {
+            None => of_all == Some(true),
+            Some(skin) => of_all.is_some() && self.amend_near(skin),
+        };
         if amended {
-            (self.listed, self.roaming) = (listed, roaming);
+            self.listing_number.1 += 1;
         }
         amended
     }
 
-    /// The mobile disks that went far from where they were, if they are few and the list may be amended. `ways` are bounds on how far
-    /// portions of them went.
-    fn far_from(&self, (listed, ways): (&[Vector<D>], &Ways), skin: f64) -> Option<Vec<u32>> {
-        if !self.pairs.keeps_places {
+    /// Lists the disks anew that went far in the list of all pairs. Whether there were any; none if that cannot be.
+    fn amend_all(&mut self) -> Option<bool> {
+        let portions: Vec<usize> = self.far_portions_of_all().collect();
+        let disks = self.far_of(&portions, &self.listed, self.skin)?;
+        if disks.is_empty() {
+            return Some(false);
+        }
+        self.far.set(disks, self.order.len());
+        let mut room = std::mem::take(&mut self.list_room);
+        let mut pairs = std::mem::take(&mut self.pairs);
+        let amended = room.roam(&self.disks(), &self.far, self.len() / ROAMING_ONE_OF)
+            && self.amend_list((&self.listed, self.skin), &mut room, &mut pairs);
+        (self.pairs, self.list_room) = (pairs, room);
+        if !amended {
             return None;
         }
-        let limit = FAR * LISTED * skin;
-        let mut far = Vec::new();
-        for portion in ways.portions(self.mobile_count, self.pairs.tile_size).filter(|(_, way)| !is_within(*way, limit))
-        {
-            let first = portion.0.start;
-            for (place, (&now, &before)) in
-                self.displacements[portion.0.clone()].iter().zip(&listed[portion.0]).enumerate()
-            {
-                let way = difference(now, before);
-                if dot(way, way) > limit * limit {
-                    far.push((first + place) as u32);
-                }
-            }
+        for &disk in self.far.disks() {
+            self.listed[disk as usize] = self.displacements[disk as usize];
         }
+        match self.near_skin {
+            Some(_) => self.take_ways_before(&portions),
+            None => self.take_ways_of(portions),
+        }
+        Some(true)
+    }
+
+    /// The same of near pairs.
+    fn amend_near(&mut self, skin: f64) -> bool {
+        let portions: Vec<usize> = self.far_portions().collect();
+        let Some(disks) = self.far_of(&portions, &self.near_listed, skin).filter(|disks| !disks.is_empty()) else {
+            return false;
+        };
+        self.far.set(disks, self.order.len());
+        let mut room = std::mem::take(&mut self.list_room);
+        let mut pairs = std::mem::take(&mut self.near_pairs);
+        let amended = self.amend_list((&self.near_listed, skin), &mut room, &mut pairs);
+        (self.near_pairs, self.list_room) = (pairs, room);
+        if amended {
+            for &disk in self.far.disks() {
+                self.near_listed[disk as usize] = self.displacements[disk as usize];
+            }
+            self.take_ways_before(&portions);
+            self.take_ways_of(portions);
+        }
+        amended
+    }
+
+    fn amend_list(&self, listing: (&[Vector<D>], f64), room: &mut ListRoom<D>, pairs: &mut PairList<D>) -> bool {
+        let law = self.law;
+        amend_pairs(&self.disks(), listing, &self.far, |a, b| law.coefficient(a, b), room, pairs)
+    }
+
+    /// Portions of which a disk may have gone far in the list in use.
+    fn far_portions(&self) -> impl Iterator<Item = usize> {
+        let limit = FAR * LISTED * self.skin();
+        let bounds = self.ways.bounds.iter().enumerate();
+        bounds.filter(move |(_, bound)| bound.way > limit).map(|(portion, _)| portion)
+    }
+
+    /// The same in the list of all pairs.
+    fn far_portions_of_all(&self) -> impl Iterator<Item = usize> {
+        let limit = FAR * LISTED * self.skin;
+        let before = self.ways_before.iter().copied().chain(std::iter::repeat(0.0));
+        let ways = self.ways.bounds.iter().zip(before).map(|(bound, before)| before + bound.way);
+        ways.enumerate().filter(move |(_, way)| *way > limit).map(|(portion, _)| portion)
+    }
+
+    /// The disks of some portions that went far from where they were listed, if they are few.
+    fn far_of(&self, portions: &[usize], listed: &[Vector<D>], skin: f64) -> Option<Vec<u32>> {
+        let limit = FAR * LISTED * skin;
+        let disks = portions.iter().flat_map(|&portion| self.ways.disks_of(portion));
+        let is_far = |disk: &usize| {
+            let way = difference(self.displacements[*disk], listed[*disk]);
+            dot(way, way) > limit * limit
+        };
+        let far: Vec<u32> = disks.filter(is_far).map(|disk| disk as u32).collect();
         (far.len() <= self.len() / ONE_OF).then_some(far)
     }
 
-    fn marked(&self, disks: &[u32]) -> Vec<bool> {
-        let mut marked = vec![false; self.len()];
-        disks.iter().for_each(|&disk| marked[disk as usize] = true);
-        marked
+    /// Takes how far the disks of some portions have gone since they were listed, in place of bounds on it.
+    pub(super) fn take_ways_of(&mut self, portions: Vec<usize>) {
+        for portion in portions {
+            let disks = self.ways.disks_of(portion);
+            self.ways.bounds[portion].way = longest(&self.displacements[disks.clone()], &self.listed_in_use()[disks]);
+        }
+    }
+
+    /// The same for how far they had gone when their near pairs were picked.
+    fn take_ways_before(&mut self, portions: &[usize]) {
+        for &portion in portions {
+            let disks = self.ways.disks_of(portion);
+            self.ways_before[portion] = longest(&self.near_listed[disks.clone()], &self.listed[disks]);
+        }
     }
 
     /// The way from where they were by which disks wear near pairs out: as much less by those that roam as amending takes less than
@@ -142,4 +193,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         let place = squares.len() - 1 - squares.len() / COMMON_BUT_ONE_OF;
         squares.select_nth_unstable_by(place, f64::total_cmp).1.sqrt()
     }
+}
+
+fn longest<const D: usize>(now: &[Vector<D>], before: &[Vector<D>]) -> f64 {
+    longest_difference_squared(now, before).sqrt()
 }

@@ -3,11 +3,11 @@
 use crate::contact::assembly::Assembly;
 use crate::contact::law::PairLaw;
 use crate::contact::pair_list::PairList;
-use crate::contact::pruned::best_skin;
+use crate::contact::pruned::{best_skin, best_skin_of_all};
 use crate::contact::ways::{PORTION, Ways, is_within};
 use crate::packing::PackingError;
 use crate::side_by_side;
-use crate::vector::{Vector, longest_difference_squared};
+use crate::vector::{Vector, larger, longest_difference_squared};
 
 /// How far a disk may go from where it was listed over the width of the skin: half of it, less the rounding of the comparison.
 pub(super) const LISTED: f64 = 0.4999;
@@ -18,6 +18,9 @@ const FIRST_LOOK: usize = 16;
 /// Widest skin of near pairs over that of the list in use \[1\]. A twelfth of a radius lasts some 70 steps where it is the best; picking the
 /// pairs of large packings costs two to three evaluations more than PICKING says.
 const WIDEST_NEAR: f64 = 0.16;
+
+/// The same where lists are amended: near pairs last longer there, and the list of all pairs has a narrower skin.
+const WIDEST_AMENDED: f64 = 0.3;
 
 impl<const D: usize, L: PairLaw> Assembly<D, L> {
     #[cfg(test)]
@@ -62,20 +65,21 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     }
 
     /// Takes how far disks have moved since they were listed, in place of bounds on it.
-    pub(super) fn take_ways(&mut self) {
-        self.ways = self.ways_from(self.listed_in_use());
+    fn take_ways(&mut self) {
+        let ways = self.ways_from(self.listed_in_use());
+        self.ways.bounds.iter_mut().zip(ways).for_each(|(bound, way)| bound.way = way);
     }
 
-    /// How far disks have moved from where they were.
-    pub(super) fn ways_from(&self, before: &[Vector<D>]) -> Ways {
+    /// How far the disks of each portion have moved from where they were, at most \[length\].
+    fn ways_from(&self, before: &[Vector<D>]) -> Vec<f64> {
         let mobile = self.mobile_count;
         let tiles = self.displacements[..mobile].chunks(self.pairs.tile_size);
         let tiles = tiles.zip(before[..mobile].chunks(self.pairs.tile_size));
         let longest = |(now, before): (&[_], &[_])| longest_difference_squared(now, before).sqrt();
-        let bounds = side_by_side::each(tiles, |(now, before)| {
+        let ways = side_by_side::each(tiles, |(now, before)| {
             now.chunks(PORTION).zip(before.chunks(PORTION)).map(longest).collect::<Vec<_>>()
         });
-        Ways { bounds: bounds.concat(), ..self.ways }
+        ways.concat()
     }
 
     /// Whether the way of the disks is looked at in the next call of [`Assembly::keep_listed`], however short it is.
@@ -90,87 +94,104 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Two disks with the same centre.
     pub fn keep_listed(&mut self, bound: f64) -> Result<bool, PackingError> {
         self.ways.add(bound);
-        self.keep()
+        self.change()
     }
 
-    /// Changes the list if it must be after a step of which [`Assembly::advance`] knows how far it went. True if it is another one.
+    /// Changes the list if it must be after a step of which [`Assembly::advance`] knows how far it went, or if the next one may spend it and it
+    /// can be amended. True if it is another one.
     ///
     /// # Errors
     /// Two disks with the same centre.
     pub fn keep(&mut self) -> Result<bool, PackingError> {
+        Ok(self.change()? || self.amend_ahead())
+    }
+
+    fn change(&mut self) -> Result<bool, PackingError> {
         self.age += 1;
         let looks = self.prunes && self.age == self.look_at;
         let limit = LISTED * self.skin();
         if is_within(self.ways.longest(), limit) && !looks {
             return Ok(false);
         }
-        self.take_ways();
+        let bounds = self.ways.bounds.iter().enumerate();
+        self.take_ways_of(
+            bounds.filter(|(_, bound)| !is_within(bound.way, limit)).map(|(portion, _)| portion).collect(),
+        );
         let longest = self.ways.longest();
         if longest.is_nan() {
             // Not a position any more: the forces are NaN too, and the relaxer stops on them.
             return Ok(false);
         }
-        let spent = longest > limit;
-        if !spent && !looks {
-            return Ok(false);
+        if longest > limit {
+            return self.renew().map(|()| true);
         }
-        if !spent {
-            let way = self.felt_way(&self.seen) / (self.age - self.seen_at) as f64;
-            self.seen.clone_from(&self.displacements);
-            (self.seen_at, self.look_at) = (self.age, 2 * self.age);
-            let best = best_skin(self.smallest_radius, way);
-            let narrower = best < WIDEST_NEAR * self.skin();
-            if narrower {
-                self.prune(best);
-            }
-            return Ok(narrower);
-        }
+        Ok(looks && self.look())
+    }
 
+    /// Looks at how fast disks are, and picks near pairs if they are slow. True if that was done.
+    fn look(&mut self) -> bool {
+        let way = self.felt_way(&self.seen) / (self.age - self.seen_at) as f64;
+        self.seen.clone_from(&self.displacements);
+        (self.seen_at, self.look_at) = (self.age, 2 * self.age);
+        self.picks(best_skin(self.smallest_radius, way), self.skin())
+    }
+
+    /// Another list for one that is spent.
+    fn renew(&mut self) -> Result<(), PackingError> {
         if self.prunes && self.amend() {
-            self.listing_number.1 += 1;
-            return Ok(true);
+            return Ok(());
         }
         let way = if self.prunes { self.felt_way(self.listed_in_use()) / self.age as f64 } else { f64::INFINITY };
         let best = best_skin(self.smallest_radius, way);
-        let moved = self.longest_way(&self.listed);
-        if self.near_skin.is_none() || moved > LISTED * self.skin {
+        if self.near_skin.is_none() || self.longest_way(&self.listed) > LISTED * self.skin {
+            // Disks whose near pairs are in use are slow.
+            let way = if self.near_skin.is_none() { self.common_way(&self.listed) / self.age as f64 } else { 0.0 };
+            let skin = best_skin_of_all(self.smallest_radius, way);
+            self.skin = skin.clamp(*self.skins.start(), *self.skins.end());
             self.rebuild()?;
-            if best < WIDEST_NEAR * self.skin {
-                self.prune(best);
-            }
-        } else {
-            // As long as that list lasts, near pairs are picked from it, or it is used itself.
-            let longest = self.skin - moved / LISTED;
-            if best < WIDEST_NEAR * self.skin && best < 2.0 * longest {
-                self.prune(best.min(longest));
-            } else {
-                self.near_skin = None;
-                self.listing_number = (self.listing_number.0 + 1, 0);
-                self.take_ways();
-            }
+            self.picks(best, self.skin);
+        } else if !self.picks(best, self.skin) {
+            // As long as the list of all pairs lasts it is used itself.
+            self.near_skin = None;
+            self.ways_before.clear();
+            self.listing_number = (self.listing_number.0 + 1, 0);
+            self.take_ways();
         }
-        Ok(true)
+        Ok(())
+    }
+
+    /// Picks the pairs nearer than this skin, or than one for which the list of all pairs has them, in place of a list with that other
+    /// skin, if it pays. True if that was done.
+    fn picks(&mut self, best: f64, other: f64) -> bool {
+        let widest = if self.pairs.keeps_places { WIDEST_AMENDED } else { WIDEST_NEAR };
+        if best >= widest * other {
+            return false;
+        }
+        // Where disks have gone a way w since they were listed, all pairs nearer than S - 2 w are in the list of all pairs, of width S.
+        let longest = self.skin - self.longest_way(&self.listed) / LISTED;
+        if best >= 2.0 * longest {
+            return false;
+        }
+        let skin = best.min(longest);
+        self.near_pairs.prune(&self.pairs, &self.displacements, skin);
+        self.near_skin = Some(skin);
+        self.near_listed.clone_from(&self.displacements);
+        self.ways_before = self.ways_from(&self.listed);
+        self.listing_number = (self.listing_number.0 + 1, 0);
+        self.begin_list();
+        true
     }
 
     /// The longest way of a mobile disk from where it was \[length\]; NaN if one is.
     pub(super) fn longest_way(&self, from: &[Vector<D>]) -> f64 {
-        self.ways_from(from).longest()
-    }
-
-    /// Picks the pairs nearer than this skin from the list of all pairs, which lasts until a disk has moved by half of it.
-    fn prune(&mut self, skin: f64) {
-        self.near_pairs.prune(&self.pairs, &self.displacements, skin);
-        self.near_skin = Some(skin);
-        self.near_listed.clone_from(&self.displacements);
-        self.listing_number = (self.listing_number.0 + 1, 0);
-        self.begin_list();
+        self.ways_from(from).into_iter().fold(0.0, larger)
     }
 
     /// The list of all pairs is new.
     pub(super) fn begin_all(&mut self) {
         self.near_skin = None;
+        self.ways_before.clear();
         self.listed.clone_from(&self.displacements);
-        self.roaming.clear();
         self.listing_number = (self.listing_number.0 + 1, 0);
         self.begin_list();
     }
@@ -182,7 +203,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     }
 
     /// Where the disks were when the list in use was made, or listed anew.
-    fn listed_in_use(&self) -> &[Vector<D>] {
+    pub(super) fn listed_in_use(&self) -> &[Vector<D>] {
         if self.near_skin.is_some() { &self.near_listed } else { &self.listed }
     }
 

@@ -12,7 +12,11 @@ struct Crossing<const D: usize> {
     roaming: Vec<usize>,
     /// Ways of those and of the others a step.
     ways: (f64, f64),
+    /// Whether steps are made tile by tile.
+    advances: bool,
     steps: usize,
+    /// Those of them that spent the list.
+    spent: usize,
 }
 
 impl<const D: usize> Crossing<D> {
@@ -24,26 +28,37 @@ impl<const D: usize> Crossing<D> {
         let mut roaming: Vec<usize> = (0..packing.len()).collect();
         roaming.sort_by(|one, two| away(one).total_cmp(&away(two)));
         roaming.truncate(count);
-        Crossing { assembly, roaming, ways, steps: 0 }
+        Crossing { assembly, roaming, ways, advances: false, steps: 0, spent: 0 }
     }
 
     fn step(&mut self) {
-        let mobile = self.assembly.mobile_count();
         // Components of 1 and less: √D times the way at most.
         let direction =
             |disk: usize| -> Vector<D> { std::array::from_fn(|d| (1.7 * disk as f64 + 2.0 * d as f64).cos()) };
-        for disk in 0..mobile {
-            // There and back again for the others.
-            let way = if (self.steps / 50).is_multiple_of(2) { self.ways.1 } else { -self.ways.1 };
-            let displacement = &mut self.assembly.displacements[disk];
-            *displacement = sum(*displacement, direction(disk).map(|along| way * along));
-        }
+        // There and back again for the others.
+        let way = if (self.steps / 50).is_multiple_of(2) { self.ways.1 } else { -self.ways.1 };
+        let mobile = 0..self.assembly.mobile_count();
+        let mut steps: Vec<Vector<D>> = mobile.map(|disk| direction(disk).map(|along| way * along)).collect();
         for &disk in &self.roaming {
-            let displacement = &mut self.assembly.displacements[disk];
-            *displacement = sum(*displacement, direction(disk).map(|along| self.ways.0 * along));
+            steps[disk] = sum(steps[disk], direction(disk).map(|along| self.ways.0 * along));
         }
         self.steps += 1;
-        self.assembly.keep_listed((D as f64).sqrt() * (self.ways.0 + self.ways.1)).expect("no coincidence");
+        let bound = (D as f64).sqrt() * (self.ways.0 + self.ways.1);
+        if self.advances {
+            let kick = |_: &[_], steps: &mut [_], displacements: &mut [_]| {
+                moved(steps, displacements);
+                bound
+            };
+            match self.assembly.advance(&mut steps, kick, |_, _| ()) {
+                Advanced::Not => panic!("a long list is advanced whatever comes"),
+                Advanced::Moved => self.spent += 1,
+                Advanced::Evaluated(_) => {}
+            }
+            self.assembly.keep().expect("no coincidence");
+        } else {
+            moved(&steps, &mut self.assembly.displacements);
+            self.assembly.keep_listed(bound).expect("no coincidence");
+        }
     }
 
     /// 140 steps, every seventh checked.
@@ -131,9 +146,27 @@ fn so_does_one_of_balls() {
 }
 
 #[test]
+fn a_list_amended_before_it_is_spent_misses_no_contact() {
+    let (packing, middle) = three_tiles();
+    let mut crossing = Crossing::new(&packing, (60, middle), (0.01, 1e-5));
+    crossing.advances = true;
+    crossing.go();
+    assert_eq!((crossing.assembly.rebuild_count(), crossing.spent), (1, 0));
+}
+
+#[test]
 fn near_pairs_amended_for_disks_that_go_far_miss_no_contact() {
     let (packing, middle) = three_tiles();
     Crossing::new(&packing, (40, middle), (1e-4, 1e-6)).go_slowly();
+}
+
+#[test]
+fn near_pairs_amended_before_they_are_spent_miss_no_contact() {
+    let (packing, middle) = three_tiles();
+    let mut crossing = Crossing::new(&packing, (40, middle), (1e-4, 1e-6));
+    crossing.advances = true;
+    crossing.go_slowly();
+    assert!(crossing.spent <= 3, "spent {} times", crossing.spent);
 }
 
 #[test]
@@ -142,14 +175,26 @@ fn so_do_those_of_balls() {
     Crossing::new(&balls(0.1), (8, [0.0; 3]), (1e-4, 1e-6)).go_slowly();
 }
 
-/// Velocities with which a few disks go far, and a step that moves by them and tells a bound of ten times the way.
+fn moved<const D: usize>(steps: &[Vector<D>], displacements: &mut [Vector<D>]) {
+    for (displacement, &step) in displacements.iter_mut().zip(steps) {
+        *displacement = sum(*displacement, step);
+    }
+}
+
+/// How far the first of a few disks goes a step; others that go far go three times as far.
 const WAY: f64 = 1e-3;
 
-fn go<const D: usize>(velocities: &[Vector<D>], displacements: &mut [Vector<D>]) -> f64 {
-    for (displacement, &velocity) in displacements.iter_mut().zip(velocities) {
-        *displacement = sum(*displacement, velocity);
-    }
+/// A step, of which a bound of ten times the way is told.
+fn go<const D: usize>(steps: &[Vector<D>], displacements: &mut [Vector<D>]) -> f64 {
+    moved(steps, displacements);
     10.0 * WAY
+}
+
+/// How many of these steps are made at once now and then, so that a list is spent that no step before it would have spent.
+const LEAP: f64 = 40.0;
+
+fn leaps(step: usize) -> bool {
+    step.is_multiple_of(50)
 }
 
 #[test]
@@ -194,9 +239,14 @@ fn steps_tile_by_tile_miss_no_contact_of_disks_that_go_far() {
     for &disk in &crossing.roaming {
         velocities[disk] = [3.0 * WAY * (1.7 * disk as f64).cos(), 3.0 * WAY * (1.7 * disk as f64 + 2.0).cos()];
     }
-    let (mut advanced, mut spent) = (0, 0);
+    let (mut advanced, mut amended, mut spent) = (0, 0, 0);
     for step in 1..=280 {
-        match crossing.assembly.advance(&mut velocities, |_, v, u| go(v, u), |forces, _| forces.to_vec()) {
+        let kick = |_: &[_], velocities: &mut [Vector<2>], displacements: &mut [Vector<2>]| {
+            let times = if leaps(step) { LEAP } else { 1.0 };
+            moved(&velocities.iter().map(|v| v.map(|v| times * v)).collect::<Vec<_>>(), displacements);
+            10.0 * times * WAY
+        };
+        match crossing.assembly.advance(&mut velocities, kick, |forces, _| forces.to_vec()) {
             Advanced::Evaluated(looked) => {
                 advanced += 1;
                 assert_eq!(
@@ -210,7 +260,7 @@ fn steps_tile_by_tile_miss_no_contact_of_disks_that_go_far() {
                 }
                 anew.evaluate();
                 assert_same_forces(&crossing.assembly.forces, &anew.forces, ROUNDING, step);
-                crossing.assembly.keep().expect("no coincidence");
+                amended += usize::from(crossing.assembly.keep().expect("no coincidence"));
             }
             Advanced::Moved => {
                 spent += 1;
@@ -219,7 +269,9 @@ fn steps_tile_by_tile_miss_no_contact_of_disks_that_go_far() {
             Advanced::Not => panic!("a long list is advanced whatever comes"),
         }
     }
-    assert!(advanced > 200 && spent > 3, "{advanced} steps, {spent} lists spent");
+    assert!(advanced > 200 && amended > 3, "{advanced} steps, amended {amended} times");
+    // By the leaps alone.
+    assert_eq!(spent, 5);
     assert!(crossing.assembly.rebuild_count() <= 4, "{} lists", crossing.assembly.rebuild_count());
 }
 
@@ -235,21 +287,24 @@ fn pairs_that_a_list_is_amended_by_have_their_forces_in_single_precision_too() {
     }
     // A radius is of the unit of lengths and below two of them.
     let step = (3.0 * WAY / disks.units().length) as f32;
-    let (mut advanced, mut amended) = (0, 0);
+    let (mut amended, mut spent) = (0, 0);
     for at in 1..=280 {
+        let times = if leaps(at) { LEAP } else { 1.0 };
         let kick = |_: &[_], velocities: &mut [[f32; 2]], ways: &mut [[f32; 2]]| {
             for (way, velocity) in ways.iter_mut().zip(velocities) {
-                *way = std::array::from_fn(|d| way[d] + step * velocity[d]);
+                *way = std::array::from_fn(|d| way[d] + times as f32 * step * velocity[d]);
             }
-            5.0 * WAY
+            5.0 * times * WAY
         };
-        match disks.advance(assembly, &mut velocities, kick, |_, _| ()) {
-            Advanced::Evaluated(_) => advanced += 1,
-            Advanced::Moved => amended += 1,
+        let holds = match disks.advance(assembly, &mut velocities, kick, |_, _| ()) {
+            Advanced::Evaluated(_) => true,
+            Advanced::Moved => false,
             Advanced::Not => panic!("a long list is advanced whatever comes"),
-        }
+        };
         let made = assembly.rebuild_count();
         let changed = assembly.keep().expect("no coincidence");
+        amended += usize::from(changed && holds);
+        spent += usize::from(!holds);
         assert_eq!(assembly.rebuild_count(), made, "step {at}: amended, not made anew");
         if !changed && at % 7 != 0 {
             continue;
@@ -265,5 +320,27 @@ fn pairs_that_a_list_is_amended_by_have_their_forces_in_single_precision_too() {
         // Overlaps known to 4 · 2⁻²⁴ of ways up to a diameter, in some eight contacts of a disk, over one of a tenth of that at least, Hertzian.
         assert_same_forces(&found, &exact.forces, 3e-5, at);
     }
-    assert!(advanced > 250 && amended > 3, "{advanced} steps, amended {amended} times");
+    assert!(amended > 3 && spent == 5, "amended {amended} times, spent {spent} times");
+}
+
+#[test]
+fn near_pairs_of_a_list_that_disks_have_worn_miss_no_contact() {
+    // Farther apart than is listed, by nearly nothing.
+    let packing =
+        Packing::new(Domain::Open, vec![[0.0, 0.0], [1.0 + 0.25 + 1e-9, 0.0]], vec![0.5; 2]).expect("two disks");
+    let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("apart");
+    assembly.prune_lists(true);
+    assert_eq!(assembly.pairs().len(), 0);
+    // Towards each other, fast, until the list just holds, then slowly: looked at then, near pairs seem to do.
+    for step in 1..=1200 {
+        let way = if step <= 32 { 0.124 / 32.0 } else { 2e-6 };
+        let right = if assembly.place(0)[0] < assembly.place(1)[0] { 0 } else { 1 };
+        assembly.displacements[right][0] += way;
+        assembly.displacements[1 - right][0] -= way;
+        assembly.keep_listed(way).expect("apart");
+        assembly.evaluate();
+        let overlap = 1.0 - (assembly.place(1 - right)[0] - assembly.place(right)[0]);
+        let pressed = assembly.forces[right][0] < 0.0;
+        assert_eq!(pressed, overlap > 0.0, "step {step}: {overlap}");
+    }
 }
