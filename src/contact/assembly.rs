@@ -31,8 +31,8 @@ use crate::vector::{Vector, dot, extended_sum, longest_difference_squared, sum, 
 /// that do not touch. From 0.25 to 0.5 these are 7 in 100 pairs and 4 in 100 of the time of the loop, for half the lists and less.
 pub const SKIN: f64 = 0.5;
 
-/// The least for a large list that is amended, so that it need not last for the few disks that go far.
-const AMENDED_SKIN: f64 = 0.3;
+/// The least for a long list that is amended, so that it need not last for the few disks that go far.
+const AMENDED_SKIN: f64 = 0.2;
 
 /// A packing under a contact law, in working order.
 #[derive(Debug, Clone)]
@@ -104,7 +104,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// # Errors
     /// As there.
     pub fn with_amended_lists(packing: &Packing<D>, law: L) -> Result<Self, PackingError> {
-        let narrowest = if PairList::<D>::keeps_places(packing.len()) { AMENDED_SKIN } else { SKIN };
+        let narrowest = if PairList::<D>::are_long(packing.len()) { AMENDED_SKIN } else { SKIN };
         Self::with_skins(packing, law, narrowest..=SKIN)
     }
 
@@ -161,7 +161,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             seen_at: 0,
             across: Across::default(),
             list_room: ListRoom::default(),
-            classes: PairList::<D>::packs(radii.len()).then(|| Classes::of(&radii, &law)).flatten(),
+            classes: PairList::<D>::are_long(radii.len()).then(|| Classes::of(&radii, &law)).flatten(),
             radii,
             smallest_radius,
             skin: narrowest,

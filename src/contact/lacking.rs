@@ -1,6 +1,6 @@
 //! The pairs that a list lacks once a few of its disks are listed where they are.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::contact::cells::Run;
 use crate::contact::far::Far;
@@ -23,14 +23,14 @@ pub(super) struct Lacking {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Roaming {
     of_cells: HashMap<usize, Vec<u32>>,
-    count: usize,
+    disks: HashSet<u32>,
 }
 
 impl Roaming {
     /// None any more.
     pub fn clear(&mut self) {
         self.of_cells.clear();
-        self.count = 0;
+        self.disks.clear();
     }
 
     fn of_cell(&self, cell: usize) -> &[u32] {
@@ -41,16 +41,17 @@ impl Roaming {
 impl<const D: usize> ListRoom<D> {
     /// Takes note that these disks are listed anew where they are. False if they would be more than so many.
     pub(super) fn roam(&mut self, disks: &Disks<'_, D>, far: &Far, most: usize) -> bool {
-        let Roaming { of_cells, count } = &mut self.roaming;
-        if *count + far.disks().len() > most {
+        let Roaming { of_cells, disks: roaming } = &mut self.roaming;
+        let others = far.disks().iter().filter(|&disk| !roaming.contains(disk)).count();
+        if roaming.len() + others > most {
             return false;
         }
+        roaming.extend(far.disks());
         for &disk in far.disks() {
             let cell = self.grid.cell_at(disks.domain.wrapped(disks.centre(disk as usize)));
             let of_cell = of_cells.entry(cell).or_default();
             if !of_cell.contains(&disk) {
                 of_cell.push(disk);
-                *count += 1;
             }
         }
         true

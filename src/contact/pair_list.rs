@@ -210,7 +210,7 @@ impl<const D: usize> PairList<D> {
         self.first_count = first_count;
         self.keeps_places = keeps_places;
         let tile_size = Self::tile_size(disk_count);
-        self.listed.kinds = kinds.filter(|_| Self::packs(disk_count));
+        self.listed.kinds = kinds.filter(|_| Self::are_long(disk_count));
         let disks = |place: usize| place * tile_size..disk_count.min((place + 1) * tile_size);
         self.fill_tiles(disk_count.div_ceil(tile_size), tile_size, |list, place, tile| {
             list.add_tile(disks(place), first_count, search(), tile);
@@ -222,8 +222,8 @@ impl<const D: usize> PairList<D> {
         Ok(())
     }
 
-    /// Whether a list of so many disks is long, and packed if their pairs have kinds.
-    pub(super) fn packs(disk_count: usize) -> bool {
+    /// Whether lists of so many disks are long, and packed if pairs have kinds.
+    pub(super) fn are_long(disk_count: usize) -> bool {
         disk_count > Self::tile_size(disk_count)
     }
 

@@ -12,15 +12,24 @@ use crate::contact::neighbours::ListRoom;
 use crate::contact::pair_list::PairList;
 use crate::vector::{Vector, difference, dot, longest_difference_squared};
 
-/// A disk has gone far if it went this share of the way for which its list holds \[1\].
-const FAR: f64 = 0.7;
-
-/// Disks of which one may go far at once, and one may have been listed anew since a list was made.
+/// Disks of which one may go far at once.
 const ONE_OF: usize = 128;
-const ROAMING_ONE_OF: usize = 8;
 
-/// Time of amending near pairs over that of picking them \[1\].
-const AMENDING: f64 = 0.1;
+/// What is best for lists of one tile, which are near the processor and quickly made, is not for long ones. Changes speed only.
+pub(super) struct Tuning {
+    /// A disk has gone far if it went this share of the way for which its list holds \[1\].
+    far: f64,
+    /// Disks of which one may have been listed anew since a list was made.
+    roaming_one_of: usize,
+    /// Time of amending near pairs over that of picking them \[1\].
+    amending: f64,
+    /// Widest skin of near pairs over that of the list in use \[1\]. A twelfth of a radius lasts some 70 steps where it is the best; picking the
+    /// pairs of large packings costs two to three evaluations more than PICKING says.
+    pub widest_near: f64,
+}
+
+const SHORT: Tuning = Tuning { far: 0.5, roaming_one_of: 64, amending: 0.4, widest_near: 0.16 };
+const LONG: Tuning = Tuning { far: 0.7, roaming_one_of: 8, amending: 0.1, widest_near: 0.3 };
 
 /// Time of picking near pairs of large lists over what it gains, over that of small ones \[1\].
 const PICKING: f64 = 3.5;
@@ -32,11 +41,20 @@ const COMMON_BUT_ONE_OF: usize = 512;
 const ASKED: usize = 1 << 17;
 
 impl<const D: usize, L: PairLaw> Assembly<D, L> {
-    /// Amends the list in use if a step like the last one may spend it, so that this one need not be made without it. True if that was done.
+    pub(super) fn tuning(&self) -> &'static Tuning {
+        if self.pairs.is_long() { &LONG } else { &SHORT }
+    }
+
+    /// Whether lists are amended before they are spent: a step that spends one need not be made without it then.
+    fn looks_ahead(&self) -> bool {
+        self.prunes && self.pairs.is_long()
+    }
+
+    /// Amends the list in use if a step like the last one may spend it. True if that was done.
     pub(super) fn amend_ahead(&mut self) -> bool {
         let limit = LISTED * self.skin();
         let nearly: Vec<usize> = self.ways.nearly_spent(limit).collect();
-        if !self.prunes || nearly.is_empty() {
+        if !self.looks_ahead() || nearly.is_empty() {
             return false;
         }
         self.take_ways_of(nearly);
@@ -46,7 +64,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// The disks that [`Assembly::keep`] looks at after a step that did not spend the list.
     pub(in crate::contact) fn disks_to_see(&self) -> Vec<Range<usize>> {
         let limit = LISTED * self.skin();
-        if !self.prunes || self.ways.nearly_spent(limit).next().is_none() {
+        if !self.looks_ahead() || self.ways.nearly_spent(limit).next().is_none() {
             return Vec::new();
         }
         let mut portions: Vec<usize> = self.ways.nearly_spent(limit).collect();
@@ -71,6 +89,10 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         };
         if amended {
             self.listing_number.1 += 1;
+            if self.near_skin.is_none() && !self.pairs.is_long() {
+                // How fast disks are is looked at as for a new list.
+                self.prune_lists(self.prunes);
+            }
         }
         amended
     }
@@ -85,7 +107,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.far.set(disks, self.order.len());
         let mut room = std::mem::take(&mut self.list_room);
         let mut pairs = std::mem::take(&mut self.pairs);
-        let amended = room.roam(&self.disks(), &self.far, self.len() / ROAMING_ONE_OF)
+        let amended = room.roam(&self.disks(), &self.far, self.len() / self.tuning().roaming_one_of)
             && self.amend_list((&self.listed, self.skin), &mut room, &mut pairs);
         (self.pairs, self.list_room) = (pairs, room);
         if !amended {
@@ -129,14 +151,14 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// Portions of which a disk may have gone far in the list in use.
     fn far_portions(&self) -> impl Iterator<Item = usize> {
-        let limit = FAR * LISTED * self.skin();
+        let limit = self.tuning().far * LISTED * self.skin();
         let bounds = self.ways.bounds.iter().enumerate();
         bounds.filter(move |(_, bound)| bound.way > limit).map(|(portion, _)| portion)
     }
 
     /// The same in the list of all pairs.
     fn far_portions_of_all(&self) -> impl Iterator<Item = usize> {
-        let limit = FAR * LISTED * self.skin;
+        let limit = self.tuning().far * LISTED * self.skin;
         let before = self.ways_before.iter().copied().chain(std::iter::repeat(0.0));
         let ways = self.ways.bounds.iter().zip(before).map(|(bound, before)| before + bound.way);
         ways.enumerate().filter(move |(_, way)| *way > limit).map(|(portion, _)| portion)
@@ -144,7 +166,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// The disks of some portions that went far from where they were listed, if they are few.
     fn far_of(&self, portions: &[usize], listed: &[Vector<D>], skin: f64) -> Option<Vec<u32>> {
-        let limit = FAR * LISTED * skin;
+        let limit = self.tuning().far * LISTED * skin;
         let disks = portions.iter().flat_map(|&portion| self.ways.disks_of(portion));
         let is_far = |disk: &usize| {
             let way = difference(self.displacements[*disk], listed[*disk]);
@@ -174,7 +196,11 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// picking; for large lists more, as picking takes longer there.
     pub(super) fn felt_way(&self, from: &[Vector<D>]) -> f64 {
         let longest = self.longest_way(from);
-        if self.pairs.keeps_places { PICKING * (self.common_way(from) + AMENDING * longest) } else { longest }
+        if self.pairs.keeps_places {
+            PICKING * (self.common_way(from) + self.tuning().amending * longest)
+        } else {
+            longest
+        }
     }
 
     /// The way from where they were that all mobile disks but a few, which may roam, did not exceed \[length\].

@@ -15,13 +15,6 @@ pub(super) const LISTED: f64 = 0.4999;
 /// Calls of [`Assembly::keep_listed`] after which the way of the disks is looked at for the first time; then at twice as many.
 const FIRST_LOOK: usize = 16;
 
-/// Widest skin of near pairs over that of the list in use \[1\]. A twelfth of a radius lasts some 70 steps where it is the best; picking the
-/// pairs of large packings costs two to three evaluations more than PICKING says.
-const WIDEST_NEAR: f64 = 0.16;
-
-/// The same where lists are amended: near pairs last longer there, and the list of all pairs has a narrower skin.
-const WIDEST_AMENDED: f64 = 0.3;
-
 impl<const D: usize, L: PairLaw> Assembly<D, L> {
     #[cfg(test)]
     pub(in crate::contact) fn near_pairs_used(&self) -> bool {
@@ -163,8 +156,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Picks the pairs nearer than this skin, or than one for which the list of all pairs has them, in place of a list with that other
     /// skin, if it pays. True if that was done.
     fn picks(&mut self, best: f64, other: f64) -> bool {
-        let widest = if self.pairs.keeps_places { WIDEST_AMENDED } else { WIDEST_NEAR };
-        if best >= widest * other {
+        if best >= self.tuning().widest_near * other {
             return false;
         }
         // Where disks have gone a way w since they were listed, all pairs nearer than S - 2 w are in the list of all pairs, of width S.

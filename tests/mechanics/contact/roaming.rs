@@ -163,7 +163,7 @@ fn near_pairs_amended_for_disks_that_go_far_miss_no_contact() {
 #[test]
 fn near_pairs_amended_before_they_are_spent_miss_no_contact() {
     let (packing, middle) = three_tiles();
-    let mut crossing = Crossing::new(&packing, (40, middle), (1e-4, 1e-6));
+    let mut crossing = Crossing::new(&packing, (40, middle), (4e-4, 1e-6));
     crossing.advances = true;
     crossing.go_slowly();
     assert!(crossing.spent <= 3, "spent {} times", crossing.spent);
