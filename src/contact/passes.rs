@@ -125,6 +125,14 @@ mod tests {
         let expected = [(2, 5, 2), (4, 5, 4), (6, 10, usize::MAX)];
         assert_eq!(tiles[0].passes, expected.map(|(end, begun, done)| Pass { end, begun, done }));
         assert_eq!((tiles[0].added(), tiles[1].passes.as_slice(), tiles[1].added()), (6..7, [].as_slice(), 0..0));
+        let groups: Vec<_> = tiles[0].groups(100).collect();
+        assert_eq!(groups, [(0..2, 100..105), (2..4, 102..105), (4..6, 104..110), (6..7, 100..usize::MAX)]);
+        for (of_group, disks) in groups {
+            let pairs = blocks[of_group].iter().flat_map(Block::pairs);
+            let with_disks = pairs.flat_map(|pair| [first[pair], second[pair]]);
+            assert!(with_disks.map(|disk| disk as usize + 100).all(|disk| disks.contains(&disk)));
+        }
+        assert_eq!(tiles[1].groups(110).collect::<Vec<_>>(), [(7..7, 110..usize::MAX)]);
         find_passes(&mut tiles[..1], &blocks, (&first, &second), 10);
         assert_eq!(tiles[0].passes, []);
     }

@@ -163,7 +163,7 @@ fn near_pairs_amended_for_disks_that_go_far_miss_no_contact() {
 #[test]
 fn near_pairs_amended_before_they_are_spent_miss_no_contact() {
     let (packing, middle) = three_tiles();
-    let mut crossing = Crossing::new(&packing, (40, middle), (4e-4, 1e-6));
+    let mut crossing = Crossing::new(&packing, (40, middle), (1e-3, 1e-6));
     crossing.advances = true;
     crossing.go_slowly();
     assert!(crossing.spent <= 3, "spent {} times", crossing.spent);
@@ -343,4 +343,29 @@ fn near_pairs_of_a_list_that_disks_have_worn_miss_no_contact() {
         let pressed = assembly.forces[right][0] < 0.0;
         assert_eq!(pressed, overlap > 0.0, "step {step}: {overlap}");
     }
+}
+
+#[test]
+fn a_list_that_all_disks_wear_out_is_made_anew_with_a_wider_skin() {
+    let (packing, _) = three_tiles();
+    let smallest = packing.radii().iter().copied().fold(f64::INFINITY, f64::min);
+    // Ways of all disks a step, over the smallest radius, and the skin that lasts for them: √(2 · 25 steps of making / 0.75 · way).
+    for (way, expected) in [(2e-4f64, 0.2), (2e-3, (50.0 / 0.75 * 2e-3f64).sqrt()), (1e-2, 0.5)] {
+        let mut assembly = Assembly::with_amended_lists(&packing, Hertzian::default()).expect("no coincidence");
+        assembly.prune_lists(true);
+        assert_eq!(assembly.skin(), 0.2 * smallest);
+        while assembly.rebuild_count() == 1 {
+            for (disk, displacement) in assembly.displacements.iter_mut().enumerate() {
+                let angle = 1.7 * disk as f64;
+                *displacement = sum(*displacement, [angle.cos(), angle.sin()].map(|along| way * smallest * along));
+            }
+            assembly.keep_listed(way * smallest).expect("no coincidence");
+        }
+        assert!((assembly.skin() - expected * smallest).abs() < 1e-9, "{way}: {}", assembly.skin());
+    }
+    // A short list has the wider one from the start.
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N5548_p100.xyz");
+    let packing = read_packing::<2>(file).expect("a stored packing");
+    let assembly = Assembly::with_amended_lists(&packing, Hertzian::default()).expect("no coincidence");
+    assert_eq!(assembly.skin(), 0.5 * smallest);
 }
