@@ -75,7 +75,7 @@ pub(super) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     let spent = AtomicBool::new(false);
     let is_spent = || spent.load(Ordering::Relaxed);
     let nothing = [K::Number::default(); D];
-    // Moves disks from this one on, whose bound is `way`.
+    // Moves disks of a portion, from this one on.
     let moves = |disk: usize, (forces, velocities, displacements): Moving<'_, _, D>, bound: &mut Bound| {
         bound.step = kick(forces, velocities, displacements);
         bound.way += bound.step;

@@ -73,12 +73,13 @@ pub struct Assembly<const D: usize, L> {
     /// Displacements when the list of all pairs was made, or when a disk was listed anew in it; the same for near pairs.
     listed: Vec<Vector<D>>,
     near_listed: Vec<Vector<D>>,
+    /// Those that are listed anew.
     far: Far,
     /// Displacements to come back to, if the relaxer set a checkpoint.
     checkpoint: Vec<Vector<D>>,
     /// How far disks may have moved since they were listed in the list in use.
     ways: Ways,
-    /// How far each portion of them had gone in the list of all pairs when its near pairs were picked; none unless these are in use.
+    /// How far each portion of them had gone in the list of all pairs when they were listed in near pairs; none unless these are in use.
     ways_before: Vec<f64>,
     /// Lists that were in use so far, and how often this one was amended.
     listing_number: (usize, usize),

@@ -137,10 +137,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         let way = if self.prunes { self.felt_way(self.listed_in_use()) / self.age as f64 } else { f64::INFINITY };
         let best = best_skin(self.smallest_radius, way);
         if self.near_skin.is_none() || self.longest_way(&self.listed) > LISTED * self.skin {
-            // Disks whose near pairs are in use are slow.
-            let way = if self.near_skin.is_none() { self.common_way(&self.listed) / self.age as f64 } else { 0.0 };
-            let skin = best_skin_of_all(self.smallest_radius, way);
-            self.skin = skin.clamp(*self.skins.start(), *self.skins.end());
+            self.choose_skin();
             self.rebuild()?;
             self.picks(best, self.skin);
         } else if !self.picks(best, self.skin) {
@@ -151,6 +148,16 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             self.take_ways();
         }
         Ok(())
+    }
+
+    /// The skin for which the next list of all pairs lasts, if most disks go on as fast as they went in this one.
+    fn choose_skin(&mut self) {
+        let (narrowest, widest) = (*self.skins.start(), *self.skins.end());
+        if narrowest < widest {
+            // Disks whose near pairs are in use are slow.
+            let way = if self.near_skin.is_none() { self.common_way(&self.listed) / self.age as f64 } else { 0.0 };
+            self.skin = best_skin_of_all(self.smallest_radius, way).clamp(narrowest, widest);
+        }
     }
 
     /// Picks the pairs nearer than this skin, or than one for which the list of all pairs has them, in place of a list with that other
