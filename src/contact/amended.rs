@@ -12,7 +12,6 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::contact::far::Far;
-use crate::contact::lacking::Lacking;
 use crate::contact::measured::Measured;
 use crate::contact::pair_list::{BLOCK, Block, PairList, Source};
 use crate::contact::tiles::connect;
@@ -65,13 +64,14 @@ impl<const D: usize> PairList<D> {
         found
     }
 
-    /// Adds pairs the list lacks, in the order given. Nothing is done, and false returned, where there are not places enough.
-    pub(super) fn amend(&mut self, lacking: &[Lacking], source: &mut impl Source<D>) -> bool {
+    /// Adds pairs the list lacks, in the order given, of a source that names each by its second disk. Nothing is done, and false returned,
+    /// where there are not places enough.
+    pub(super) fn amend(&mut self, lacking: &[(u32, u32)], source: &mut impl Source<D>) -> bool {
         // The block each of them goes to, before anything is written.
         let mut taken = BTreeMap::new();
         let mut places = Vec::with_capacity(lacking.len());
-        for &Lacking { first, second, .. } in lacking {
-            let (tile, inside) = self.place_of(first, second);
+        for &pair in lacking {
+            let (tile, inside) = self.place_of(pair);
             let mut blocks = if inside {
                 places_of(&self.tiles[tile].inner, INNER)
             } else {
@@ -84,16 +84,15 @@ impl<const D: usize> PairList<D> {
         }
         let mut measured = Measured::default();
         for (lacking, places) in lacking.chunks(BLOCK).zip(places.chunks(BLOCK)) {
-            let first: Vec<u32> = lacking.iter().map(|pair| pair.first).collect();
-            let names: Vec<u32> = lacking.iter().map(|pair| pair.name).collect();
-            source.measure(&first, &names, &mut measured);
-            for (k, (pair, &place)) in lacking.iter().zip(places).enumerate() {
-                self.put(*pair, place, (&measured, k), source.kind(pair.first, pair.name));
+            let (first, second): (Vec<u32>, Vec<u32>) = lacking.iter().copied().unzip();
+            source.measure(&first, &second, &mut measured);
+            for (k, (&pair, &place)) in lacking.iter().zip(places).enumerate() {
+                self.put(pair, place, (&measured, k), source.kind(pair.0, pair.1));
             }
         }
-        if lacking.iter().all(|pair| self.place_of(pair.first, pair.second).1) {
-            for &Lacking { first, second, .. } in lacking {
-                let tile = self.place_of(first, second).0;
+        if lacking.iter().all(|&pair| self.place_of(pair).1) {
+            for &(first, second) in lacking {
+                let (tile, _) = self.place_of((first, second));
                 self.tiles[tile].amend_by([first, second].map(|disk| disk - (tile * self.tile_size) as u32));
             }
         } else {
@@ -103,20 +102,20 @@ impl<const D: usize> PairList<D> {
     }
 
     /// The tile that has a pair, and whether within it.
-    fn place_of(&self, first: u32, second: u32) -> (usize, bool) {
+    fn place_of(&self, (first, second): (u32, u32)) -> (usize, bool) {
         let tile = first as usize / self.tile_size;
         (tile, tile == second as usize / self.tile_size)
     }
 
     /// Puts a pair in a block that has a place for it.
-    fn put(&mut self, pair: Lacking, block: usize, measured: (&Measured<D>, usize), kind: u8) {
+    fn put(&mut self, (first, second): (u32, u32), block: usize, measured: (&Measured<D>, usize), kind: u8) {
         let block = &mut self.blocks[block];
         let (place, row) = (block.pairs + block.pair_count, block.rows + block.row_count);
         block.pair_count += 1;
         block.row_count += 1;
         let origin = block.origin;
-        (self.first[place], self.second[place]) = (pair.first, pair.second);
-        (self.rows[row], self.ends[place]) = (pair.first - origin, pair.second - origin);
+        (self.first[place], self.second[place]) = (first, second);
+        (self.rows[row], self.ends[place]) = (first - origin, second - origin);
         self.listed.put(place, measured, kind);
     }
 

@@ -11,14 +11,6 @@ use crate::vector::{Vector, difference, dot, sum};
 /// A pair that is nearer than the range of a list by this share of the skin is in it, whatever the rounding of coordinates \[1\].
 const UNSURE: f64 = 1e-3;
 
-/// A pair to be added: its disks, and how its source names it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Lacking {
-    pub first: u32,
-    pub second: u32,
-    pub name: u32,
-}
-
 /// Disks that were listed anew, in the cells where they were then.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Roaming {
@@ -101,7 +93,7 @@ pub(super) fn amend_pairs<const D: usize>(
             // Those that were near before are listed; where rounding might decide that is looked up.
             let surely = range - UNSURE * skin;
             if apart(there, before(other)) >= surely * surely {
-                lacking.push(Lacking { first, second, name: second });
+                lacking.push((first, second));
             }
         };
         // Others are in the cells they were in; those that were listed anew are in others as well.
@@ -114,9 +106,9 @@ pub(super) fn amend_pairs<const D: usize>(
     }
     lacking.sort_unstable();
     lacking.dedup();
-    asked.set(lacking.iter().map(|pair| pair.first).collect(), disks.radii.len());
+    asked.set(lacking.iter().map(|&(first, _)| first).collect(), disks.radii.len());
     let mut had = pairs.pairs_of(asked);
     had.sort_unstable();
-    lacking.retain(|pair| had.binary_search(&(pair.first, pair.second)).is_err());
+    lacking.retain(|pair| had.binary_search(pair).is_err());
     pairs.amend(&lacking, &mut Anchored::new(disks, &coefficient))
 }
