@@ -369,3 +369,31 @@ fn a_list_that_all_disks_wear_out_is_made_anew_with_a_wider_skin() {
     let assembly = Assembly::with_amended_lists(&packing, Hertzian::default()).expect("no coincidence");
     assert_eq!(assembly.skin(), 0.5 * smallest);
 }
+
+#[test]
+fn disks_that_go_far_in_near_pairs_find_each_other() {
+    // Two disks beside very many at rest come together, several cells from where either was when the list was made.
+    let beside = [[-20.0, 0.0], [-20.0, 4.5]];
+    let places = (0..4900).map(|disk| [3.0 * f64::from(disk % 70), 3.0 * f64::from(disk / 70)]).chain(beside).collect();
+    let packing = Packing::new(Domain::Open, places, vec![0.5; 4902]).expect("disks apart");
+    let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("no coincidence");
+    assembly.prune_lists(true);
+    let [lower, upper] =
+        [4900, 4901].map(|disk| assembly.order().iter().position(|&other| other == disk).expect("every disk"));
+    let way = 1e-4;
+    for step in 1..=17_600 {
+        assembly.displacements[lower][1] += way;
+        assembly.displacements[upper][1] -= way;
+        assembly.keep_listed(way).expect("apart");
+        if step > 17_400 {
+            assembly.evaluate();
+            let overlap = 1.0 - (assembly.place(upper)[1] - assembly.place(lower)[1]);
+            assert!(overlap.abs() < 0.1, "they meet at the end");
+            // Rounding decides at the touch itself.
+            let pressed = assembly.forces[lower][1] < 0.0;
+            assert!(overlap.abs() < 1e-9 || pressed == (overlap > 0.0), "step {step}: {overlap}");
+        }
+    }
+    assert_eq!(assembly.rebuild_count(), 1);
+    assert!(assembly.skin() < 0.1, "by near pairs: {}", assembly.skin());
+}
