@@ -184,7 +184,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
     }
 
-    /// The same for how far they had gone when their near pairs were picked.
+    /// The same for how far they had gone in the list of all pairs when they were listed in near pairs.
     fn take_ways_before(&mut self, portions: &[usize]) {
         for &portion in portions {
             let disks = self.ways.disks_of(portion);
