@@ -26,11 +26,14 @@ use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
 use crate::contact::damped_forces::{add_damping, damped_forces};
 use crate::contact::damping::{DampingChoice, DampingLaw};
+use crate::contact::walk::{Walked, walk};
 use crate::packing::{Packing, PackingError};
+use crate::relax::energy_balance::{Energies, EnergyBalance};
+use crate::relax::explicit_step::ExplicitStep;
 use crate::relax::flat::products;
 use crate::relax::monitor::{LOOK_EVERY, Monitor};
 use crate::relax::{Cost, ForceLimit, Look, Outcome, Relaxer, Stop, Trace};
-use crate::vector::Vector;
+use crate::vector::{Vector, difference, dot, larger};
 
 /// Explicit damped dynamics.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -90,13 +93,14 @@ impl Default for TimeStep {
     }
 }
 
-/// Total energy over that at the start above which the motion counts as unstable. Damping only takes energy away; what the
-/// scheme conserves of an undamped mode is K + U (1 − q) with q = h² λ_K/4, so a collision may show up to 1/(1 − q) of its
-/// energy: 5.3 at 0.9 of the bound.
-const ENERGY_GAIN: f64 = 6.0;
+/// Share of the bound below which steps that gain energy are not shortened any more.
+const SMALLEST_SHARE: f64 = 1e-3;
 
-/// Steps after which the bound on the time step is taken anew.
-pub(super) const BOUND_EVERY: usize = 50;
+/// Ratio of a step to one that gained energy.
+const SHORTER: f64 = 0.5;
+
+/// Growth of the share after steps that gained none.
+const SHARE_GROWTH: f64 = 1.2;
 
 impl Relaxer for DampedDynamics {
     fn relax<const D: usize, L: PairLaw>(
@@ -129,35 +133,45 @@ impl DampedDynamics {
         let start = Instant::now();
         let mut motion = Motion::new(&packing, law, damping)?;
         let mut monitor = Monitor::new(self.limit, &motion.assembly);
-        let mut time_step = 0.0;
-        let mut step_count = 0;
+        let (mut time_step, mut step_count) = (0.0, 0);
+        let (fixed, mut control) = match self.time_step {
+            TimeStep::Fixed(step) => (step, None),
+            TimeStep::OfStability(share) => (0.0, Some(ExplicitStep::new(share))),
+        };
         // The one that made the motion.
         let mut evaluation_count = 1;
-        let (mut first_energy, mut first_scale) = (f64::INFINITY, f64::INFINITY);
+        let mut balance: Option<EnergyBalance> = None;
+        let mut rejected_count = 0;
         let mobile = motion.assembly.mobile_count();
         let stop = loop {
             if step_count % LOOK_EVERY == 0 {
                 let totals = motion.assembly.evaluate_totals();
                 evaluation_count += 1;
+                let kinetic_energy = motion.kinetic_energy();
                 let look = Look {
                     step_count,
                     energy: totals.energy,
-                    kinetic_energy: motion.kinetic_energy(),
+                    kinetic_energy,
                     residual: 0.0,
                     time_step,
                     restart: false,
                 };
-                let energy = totals.energy + motion.kinetic_energy();
-                let limit = if L::ON_SITE {
-                    // Energies of either sign: a gain is judged by what is stored in contacts and at sites.
-                    first_energy + (ENERGY_GAIN - 1.0) * (first_scale + totals.on_site_energy.abs())
+                let energies = Energies::new(&totals, kinetic_energy, motion.dissipated);
+                let balance = balance.get_or_insert(EnergyBalance::new(energies));
+                if balance.accept_unless_gained(energies) {
+                    motion.remember();
+                    if let (Some(control), TimeStep::OfStability(share)) = (&mut control, self.time_step) {
+                        control.lengthen(SHARE_GROWTH, share);
+                    }
+                } else if let Some(control) = control.as_mut().filter(|control| control.share() > SMALLEST_SHARE)
+                    && step_count < self.step_limit
+                {
+                    control.shorten(SHORTER);
+                    motion.take_back()?;
+                    rejected_count += LOOK_EVERY;
+                    continue;
                 } else {
-                    ENERGY_GAIN * first_energy
-                };
-                if step_count == 0 {
-                    (first_energy, first_scale) = (energy, totals.energy_scale());
-                } else if energy > limit {
-                    break Stop::Unstable;
+                    break if totals.energy.is_finite() { Stop::Unstable } else { Stop::NonFinite };
                 }
                 let net_forces = match self.net_force {
                     NetForce::Elastic => &motion.assembly.forces[..mobile],
@@ -174,12 +188,10 @@ impl DampedDynamics {
             if step_count >= self.step_limit {
                 break Stop::StepLimit;
             }
-            if step_count % BOUND_EVERY == 0 {
-                time_step = match self.time_step {
-                    TimeStep::Fixed(step) => step,
-                    TimeStep::OfStability(share) => share * motion.stable_step(),
-                };
-            }
+            time_step = match &mut control {
+                None => fixed,
+                Some(control) => control.next(&mut motion),
+            };
             let list_count = motion.assembly.rebuild_count();
             motion.step(time_step)?;
             step_count += 1;
@@ -197,9 +209,12 @@ impl DampedDynamics {
             NetForce::Elastic => &motion.assembly.forces[..mobile],
             NetForce::Total => &motion.accelerations[..mobile],
         };
+        let monitor_energies = monitor.energies();
         let (residual, rounding_floor) = monitor.finish(&motion.assembly, net_forces);
         let cost = Cost {
             step_count,
+            rejected_count,
+            energies: monitor_energies.zip(balance).map(|(energies, balance)| balance.account(energies.after)),
             force_evaluation_count: evaluation_count,
             rebuild_count: motion.assembly.rebuild_count(),
             seconds: start.elapsed().as_secs_f64(),
@@ -225,6 +240,16 @@ pub struct Motion<const D: usize, L, C> {
     /// What is lost to damping now \[energy / time\].
     dissipation: f64,
     row: Vec<f64>,
+    before: Before<D>,
+}
+
+/// What [`Motion::take_back`] goes back to, beside the places of the disks.
+#[derive(Debug, Clone, Default)]
+struct Before<const D: usize> {
+    velocities: Vec<Vector<D>>,
+    accelerations: Vec<Vector<D>>,
+    dissipated: f64,
+    dissipation: f64,
 }
 
 impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
@@ -249,6 +274,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
             dissipated: 0.0,
             dissipation: 0.0,
             row: Vec::new(),
+            before: Before::default(),
             assembly,
         };
         motion.set_damping_coefficients();
@@ -271,6 +297,24 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
             &mut motion.accelerations,
         );
         motion
+    }
+
+    /// Remembers where everything is, for [`Motion::take_back`].
+    fn remember(&mut self) {
+        self.assembly.set_checkpoint();
+        self.before.velocities.clone_from(&self.velocities);
+        self.before.accelerations.clone_from(&self.accelerations);
+        (self.before.dissipated, self.before.dissipation) = (self.dissipated, self.dissipation);
+    }
+
+    /// Goes back to what was last remembered.
+    fn take_back(&mut self) -> Result<(), PackingError> {
+        self.assembly.restore()?;
+        self.set_damping_coefficients();
+        self.velocities.clone_from(&self.before.velocities);
+        self.accelerations.clone_from(&self.before.accelerations);
+        (self.dissipated, self.dissipation) = (self.before.dissipated, self.before.dissipation);
+        Ok(())
     }
 
     /// One step of the scheme above.
@@ -347,7 +391,43 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
             let bound = 2.0 * law.stiffness(law.force(law.coefficient(radius, radius), overlap), overlap);
             return 2.0 / bound.sqrt();
         }
-        2.0 * ((damping * damping + stiffness).sqrt() - damping) / stiffness
+        longest_stable(stiffness, damping)
+    }
+
+    /// The longest step the bound allows while contacts are pressed as far as they can be within this time, by velocities and forces as
+    /// they are \[time\].
+    pub(super) fn stable_step_within(&mut self, time: f64) -> f64 {
+        let Motion { assembly, velocities, accelerations, damping, damping_coefficient, row, .. } = self;
+        let (law, mobile) = (assembly.law(), assembly.mobile_count());
+        // Stiffness, then damping, of each disk.
+        row.clear();
+        row.resize(2 * assembly.len(), 0.0);
+        let (stiffness, resistance) = row.split_at_mut(assembly.len());
+        walk(
+            assembly.pairs(),
+            &assembly.displacements,
+            |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
+                let (i, j) = (ends.0 as usize, ends.1 as usize);
+                let closing = |of: &[Vector<D>]| {
+                    let other = if j < mobile { of[j] } else { [0.0; D] };
+                    (-dot(difference(of[i], other), apart) / distance).max(0.0)
+                };
+                let ahead = overlap + time * (closing(velocities) + 0.5 * time * closing(accelerations));
+                if ahead > 0.0 {
+                    let sides = if j < mobile { 2.0 } else { 1.0 };
+                    let (k, c) = (
+                        sides * law.stiffness(law.force(coefficient, ahead), ahead),
+                        sides * damping.damping(damping_coefficient[pair], ahead),
+                    );
+                    (stiffness[i], resistance[i]) = (stiffness[i] + k, resistance[i] + c);
+                    (stiffness[j], resistance[j]) = (stiffness[j] + k, resistance[j] + c);
+                }
+            },
+        );
+        let most = |rows: &[f64]| rows[..mobile].iter().fold(0.0, |most, &row| larger(row, most));
+        let sites = if L::ON_SITE { law.on_site_coupling().abs() } else { 0.0 };
+        let (stiffness, resistance) = (most(stiffness) + sites, most(resistance));
+        if stiffness == 0.0 { self.stable_step() } else { longest_stable(stiffness, resistance) }
     }
 
     fn set_damping_coefficients(&mut self) {
@@ -355,6 +435,11 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         let of_pair = |(&i, &j): (&u32, &u32)| self.damping.coefficient(radii[i as usize], radii[j as usize]);
         self.damping_coefficient = pairs.first.iter().zip(&pairs.second).map(of_pair).collect();
     }
+}
+
+/// The step at which `h λ_Γ + h² λ_K / 4 = 1` \[time\].
+fn longest_stable(stiffness: f64, damping: f64) -> f64 {
+    2.0 * ((damping * damping + stiffness).sqrt() - damping) / stiffness
 }
 
 #[cfg(test)]

@@ -8,6 +8,8 @@
 pub mod conjugate_gradients;
 pub mod damped;
 mod descent;
+mod energy_balance;
+mod explicit_step;
 pub mod fire;
 mod flat;
 #[cfg(feature = "linear")]
@@ -29,6 +31,7 @@ use crate::packing::{Packing, PackingError};
 
 pub use conjugate_gradients::NonlinearConjugateGradients;
 pub use damped::{DampedDynamics, Motion, NetForce, TimeStep};
+pub use energy_balance::EnergyAccount;
 pub use fire::{Fire, Precision, StepBack, Uphill};
 #[cfg(feature = "linear")]
 pub use implicit::{GradientFlow, ImplicitDynamics};
@@ -104,8 +107,10 @@ pub enum Stop {
     RoundingFloor,
     /// A force became NaN or infinite.
     NonFinite,
-    /// A damped motion gained energy: its time step is too long.
+    /// A damped motion gained energy, or its energies do not add up, however short its steps: they are too long.
     Unstable,
+    /// At rest, but higher in energy than at the start: not where a relaxation can lead.
+    EnergyGained,
     /// Pushed from their sites (Γ > 0), disks ran away: one is [`RUNAWAY`] from where it began. Near the sites the stiffness
     /// matrix is indefinite or became so on the way, and there is no minimum. The state is the one they ran to; its residual
     /// says nothing. (Forces alone do not tell a saddle from a minimum: disks that nothing pushes off a saddle stay there and
@@ -179,6 +184,9 @@ pub struct Cost {
     /// Iterations of conjugate gradients on linear systems; not written where there are none.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub iteration_count: usize,
+    /// Energies at the start and at the end, and of the motion between them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub energies: Option<EnergyAccount>,
     /// Time that has passed in the motion, by the relaxers that follow one; not written where there is none \[time\].
     #[serde(default, skip_serializing_if = "is_no_time")]
     pub simulated_time: f64,
@@ -196,7 +204,7 @@ fn is_no_time(time: &f64) -> bool {
 }
 
 impl Cost {
-    /// Both together.
+    /// Both together, the other after this one.
     pub fn plus(self, other: Cost) -> Cost {
         Cost {
             step_count: self.step_count + other.step_count,
@@ -206,6 +214,10 @@ impl Cost {
             rebuild_count: self.rebuild_count + other.rebuild_count,
             factorisation_count: self.factorisation_count + other.factorisation_count,
             iteration_count: self.iteration_count + other.iteration_count,
+            energies: match (self.energies, other.energies) {
+                (Some(first), Some(second)) => Some(first.then(second)),
+                (first, second) => first.or(second),
+            },
             simulated_time: self.simulated_time + other.simulated_time,
             seconds: self.seconds + other.seconds,
         }

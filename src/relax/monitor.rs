@@ -7,7 +7,9 @@ use crate::contact::law::PairLaw;
 use crate::contact::network::{Links, Peeling};
 use crate::contact::totals::Totals;
 use crate::packing::Packing;
-use crate::relax::{Cost, Criterion, ForceLimit, Look, Outcome, RUNAWAY, Residual, Stop, Trace, UNJAMMED_FORCE};
+use crate::relax::{
+    Cost, Criterion, EnergyAccount, ForceLimit, Look, Outcome, RUNAWAY, Residual, Stop, Trace, UNJAMMED_FORCE,
+};
 use crate::vector::{Vector, dot, larger};
 
 /// Evaluations between two looks at the residual. An evaluation with a look costs half as much again.
@@ -33,6 +35,10 @@ pub struct Watch {
     pub waits_for_rattlers: bool,
 }
 
+/// Elastic energy at rest over that at the start, up to which it counts as no gain: two states within the same limit on forces may
+/// differ by the square of a residual of 10⁻⁴.
+const ENERGY_GAIN: f64 = 1e-8;
+
 /// Watches one relaxation.
 pub struct Monitor {
     limit: ForceLimit,
@@ -51,6 +57,9 @@ pub struct Monitor {
     floor: f64,
     anchors_felt: bool,
     last: Residual,
+    /// Elastic energy at the first and at the last check, and what the rounding of the first is relative to.
+    energies: Option<(f64, f64)>,
+    first_scale: f64,
 }
 
 impl Monitor {
@@ -85,6 +94,8 @@ impl Monitor {
             floor: 0.0,
             anchors_felt: false,
             last: Residual { largest_net_force: f64::INFINITY, mean_contact_force: 1.0 },
+            energies: None,
+            first_scale: 0.0,
         }
     }
 
@@ -98,6 +109,11 @@ impl Monitor {
         trace: &mut impl Trace,
     ) -> Option<Stop> {
         self.look_count += 1;
+        let first = self.energies.map_or(totals.energy, |(first, _)| first);
+        if self.energies.is_none() {
+            self.first_scale = totals.energy_scale();
+        }
+        self.energies = Some((first, totals.energy));
         let (inner, outer) = self.largest(net_forces);
         let mean = totals.mean_contact_force();
         self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
@@ -118,7 +134,8 @@ impl Monitor {
         let due = promising || self.look_count.is_multiple_of(self.watch.refresh_every) || self.look_count == 1;
         let converged = if due { self.refresh(assembly, net_forces) } else { None };
         if converged.is_some() {
-            return converged;
+            let gained = totals.energy - first > ENERGY_GAIN * (self.first_scale + totals.energy_scale());
+            return if gained { Some(Stop::EnergyGained) } else { converged };
         }
         self.at_the_floor().then_some(Stop::RoundingFloor)
     }
@@ -229,6 +246,11 @@ impl Monitor {
         std::mem::take(&mut self.anchors_felt)
     }
 
+    /// Elastic energies at the first and at the last check.
+    pub fn energies(&self) -> Option<EnergyAccount> {
+        self.energies.map(|(before, after)| EnergyAccount { before, after, ..EnergyAccount::default() })
+    }
+
     /// The outcome of a relaxer whose net forces are those of the assembly, which began at `start`.
     pub fn outcome<const D: usize, L: PairLaw>(
         self,
@@ -237,9 +259,10 @@ impl Monitor {
         (stop, cost): (Stop, Cost),
         start: Instant,
     ) -> Outcome<Packing<D>> {
+        let energies = cost.energies.or(self.energies());
         let (residual, rounding_floor) = self.finish(&assembly, &assembly.forces[..assembly.mobile_count()]);
         let (rebuild_count, seconds) = (assembly.rebuild_count(), start.elapsed().as_secs_f64());
-        let cost = Cost { rebuild_count, seconds, ..cost };
+        let cost = Cost { rebuild_count, seconds, energies, ..cost };
         Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost }
     }
 

@@ -88,7 +88,7 @@ impl Staged {
             let step_limit = self.step_limit.saturating_sub(cost.step_count);
             let fire = Fire { limit, step_limit, precision: self.precision, ..Fire::default() };
             let (stop, part) = fire.run(assembly, &mut monitor, &mut later(trace, cost.step_count))?;
-            cost = cost.plus(part);
+            cost = cost.plus(Cost { energies: monitor.energies(), ..part });
             // An absolute limit may ask for less than what counts as no force.
             if matches!(
                 (stop, self.limit, last),
@@ -104,7 +104,7 @@ impl Staged {
             let left = self.factorisation_limit.saturating_sub(cost.factorisation_count);
             let mut descent = Descent::new(self.largest_step, left, Patience::Factorisations(PATIENCE));
             let end = descent.run(assembly, &mut monitor, &mut later(trace, cost.step_count))?;
-            cost = cost.plus(descent.cost);
+            cost = cost.plus(Cost { energies: monitor.energies(), ..descent.cost });
             match end {
                 End::Stalled | End::Stop(Stop::NoDescent) => {}
                 End::Stop(Stop::StepLimit | Stop::OutOfMemory) => alone = true,

@@ -92,6 +92,7 @@ fn stop(stop: Stop) -> &'static str {
         Stop::RoundingFloor => "rounding floor",
         Stop::NonFinite => "not finite",
         Stop::Unstable => "unstable",
+        Stop::EnergyGained => "energy gained",
         Stop::NoMinimum => "no minimum",
         Stop::Restless => "does not come to rest",
         Stop::OutOfMemory => "out of memory",

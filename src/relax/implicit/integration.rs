@@ -6,17 +6,20 @@ use crate::contact::PairLaw;
 use crate::contact::assembly::Assembly;
 use crate::contact::damping::DampingLaw;
 use crate::contact::totals::Totals;
+use crate::contact::walk::walk;
 use crate::packing::{Packing, PackingError};
+use crate::relax::energy_balance::{Energies, EnergyBalance};
 use crate::relax::implicit::Finish;
+use crate::relax::implicit::finish::{Finishing, Standing};
 use crate::relax::implicit::growth::{LARGEST_GROWTH, SMALLEST_GROWTH, growth};
 use crate::relax::implicit::motion::{ImplicitMotion, Inertia, Stepped};
 use crate::relax::implicit::pace::{Kind, Pace};
 use crate::relax::implicit::restless::Restless;
 use crate::relax::implicit::stretch;
 use crate::relax::monitor::Monitor;
-use crate::relax::newton::{Descent, End, Patience, WATCH};
+use crate::relax::newton::WATCH;
 use crate::relax::{Cost, ForceLimit, Look, NetForce, Outcome, Stop, Trace};
-use crate::vector::{Vector, difference, larger, norm};
+use crate::vector::{Vector, larger, norm};
 
 /// Settings of either.
 pub(super) struct Integration {
@@ -30,6 +33,9 @@ pub(super) struct Integration {
 /// Ratio after a step whose matrix was not positive definite.
 const INDEFINITE_GROWTH: f64 = 0.5;
 
+/// Ratio after a step that broke the balance of energies.
+const UNBALANCED_GROWTH: f64 = 0.5;
+
 /// Error allowed off the backbone over that on it. Rattlers fly and hit; where they hit matters little to the backbone, but an
 /// error there is an overlap, and so energy.
 const OFF_BACKBONE: f64 = 3.0;
@@ -40,15 +46,6 @@ const SMALLEST_OVERLAP: f64 = 1e-6;
 /// (hγ)² λ, or hγ λ/ζ, of the stiffest contacts beyond which a step grows no more: disks that touch nothing are held by the
 /// mass term alone, and the pivots of the matrix must stay well apart from rounding.
 const LONGEST_STEP: f64 = 1e12;
-
-/// Factorisations in which Newton must bring the residual down to a tenth.
-const PATIENCE: usize = 12;
-
-/// Longest way of a disk in one of Newton's steps over its radius \[1\], as is [`Newton`](super::Newton)'s default.
-const LONGEST_NEWTON_STEP: f64 = 0.1;
-
-/// Newton's factorisations at most.
-const NEWTON_LIMIT: usize = 100;
 
 impl Integration {
     pub(super) fn relax<const D: usize, L: PairLaw, C: DampingLaw>(
@@ -63,9 +60,12 @@ impl Integration {
         let mut motion = ImplicitMotion::new(&packing, law, damping, inertia)?;
         let mut monitor = Monitor::with(self.limit, WATCH, &motion.assembly);
         let mut cost = Cost::default();
-        let stop = self.run(&mut motion, &mut monitor, &mut cost, trace)?;
+        let totals = motion.evaluate();
+        let mut balance = EnergyBalance::new(Energies::new(&totals, 0.0, 0.0));
+        let stop = self.run(totals, &mut motion, &mut monitor, (&mut cost, &mut balance), trace)?;
         let assembly = &motion.assembly;
         let net_forces = self.judged(&motion);
+        cost.energies = monitor.energies().map(|energies| balance.account(energies.after));
         let (residual, rounding_floor) = monitor.finish(assembly, net_forces);
         cost.force_evaluation_count += motion.work.evaluation_count;
         cost.factorisation_count += motion.work.factorisation_count;
@@ -78,17 +78,18 @@ impl Integration {
 
     fn run<const D: usize, L: PairLaw, C: DampingLaw>(
         &self,
+        mut totals: Totals<D>,
         motion: &mut ImplicitMotion<D, L, C>,
         monitor: &mut Monitor,
-        cost: &mut Cost,
+        (cost, balance): (&mut Cost, &mut EnergyBalance),
         trace: &mut impl Trace,
     ) -> Result<Stop, PackingError> {
-        let mut totals = motion.evaluate();
-        let mut hand_over = match self.finish {
-            Finish::Motion => 0.0,
-            Finish::Newton(residual) => residual,
+        let mut finishing = match self.finish {
+            Finish::Motion => None,
+            Finish::Newton(residual) => Some(Finishing::from(residual)),
         };
         let mut time_step = 0.0;
+        let mut overlaps = Vec::new();
         let mut restless = Restless::default();
         let mut pace = Pace::new(motion);
         loop {
@@ -111,13 +112,15 @@ impl Integration {
             if monitor.takes_new_anchors() {
                 motion.reanchor()?;
             }
-            let overlap = mean_overlap(&motion.assembly, &totals);
-            let slow = kinetic_energy <= hand_over * hand_over * totals.energy_scale();
-            if residual <= hand_over && slow {
-                if let Some(stop) = finish(motion, monitor, cost, overlap, trace)? {
+            let overlap = typical_overlap(&motion.assembly, &mut overlaps);
+            if let Some(finishing) = &mut finishing {
+                let kinetic = motion.kinetic_energy_of(monitor.backbone());
+                let standing = Standing { residual, kinetic, scale: totals.energy_scale(), overlap };
+                if finishing.is_due(&standing)
+                    && let Some(stop) = finishing.attempt(motion, monitor, cost, &standing, trace)?
+                {
                     return Ok(stop);
                 }
-                hand_over *= 0.1;
             }
             if time_step == 0.0 {
                 time_step = first_step(motion, self.tolerance * overlap);
@@ -133,12 +136,19 @@ impl Integration {
             }
             let allowed = Allowed { overlap, tolerance: self.tolerance, backbone: monitor.backbone() };
             match kind {
-                Kind::Explicit => totals = stretch::explicit(motion, &mut pace, &mut time_step, cost)?,
+                Kind::Explicit => match stretch::explicit(motion, &mut pace, &mut time_step, (cost, &mut *balance))? {
+                    Ok(reached) => totals = reached,
+                    Err(stop) => return Ok(stop),
+                },
                 Kind::Stabilised { .. } => {
-                    totals = stretch::stabilised(motion, &mut pace, &mut time_step, cost, &allowed)?;
+                    let account = (&mut *cost, &mut *balance);
+                    if let Some(reached) = stretch::stabilised(motion, &mut pace, &mut time_step, account, &allowed)? {
+                        totals = reached;
+                    }
                 }
                 Kind::Implicit => {
-                    match self.advance(motion, cost, &mut time_step, (&allowed, pressed.then_some(&pace)))? {
+                    let account = (&mut *cost, &mut *balance);
+                    match self.advance(motion, account, &mut time_step, (&allowed, pressed.then_some(&pace)))? {
                         Ok(Some(reached)) => {
                             totals = reached;
                             pace.stepped();
@@ -157,7 +167,7 @@ impl Integration {
     fn advance<const D: usize, L: PairLaw, C: DampingLaw>(
         &self,
         motion: &mut ImplicitMotion<D, L, C>,
-        cost: &mut Cost,
+        (cost, balance): (&mut Cost, &mut EnergyBalance),
         time_step: &mut f64,
         (allowed, pace): (&Allowed<'_>, Option<&Pace>),
     ) -> Result<Result<Option<Totals<D>>, Stop>, PackingError> {
@@ -177,11 +187,12 @@ impl Integration {
                 Stepped::Moved(reached) => {
                     let error = allowed.share(motion, |motion, disk| motion.error(*time_step, disk));
                     let growth = growth(error, LARGEST_GROWTH);
-                    if error <= 1.0 {
+                    let energies = || Energies::new(&reached, motion.kinetic_energy(), motion.dissipated);
+                    if error <= 1.0 && balance.accept(energies()) {
                         *time_step *= if rejected { growth.min(1.0) } else { growth };
                         return Ok(Ok(Some(reached)));
                     }
-                    growth
+                    if error <= 1.0 { UNBALANCED_GROWTH } else { growth }
                 }
             };
             cost.rejected_count += 1;
@@ -233,39 +244,18 @@ impl Allowed<'_> {
     }
 }
 
-/// Leaves the last part of the way to Newton. None if that is not where the motion leads: everything is as before then.
-fn finish<const D: usize, L: PairLaw, C: DampingLaw>(
-    motion: &mut ImplicitMotion<D, L, C>,
-    monitor: &mut Monitor,
-    cost: &mut Cost,
-    overlap: f64,
-    trace: &mut impl Trace,
-) -> Result<Option<Stop>, PackingError> {
-    let before = motion.assembly.clone();
-    let mut descent = Descent::new(LONGEST_NEWTON_STEP, NEWTON_LIMIT, Patience::Factorisations(PATIENCE));
-    let end = descent.run(&mut motion.assembly, monitor, trace)?;
-    *cost = cost.plus(descent.cost);
-    let far = |disk: usize| {
-        let way = difference(motion.assembly.place(disk), before.place(disk));
-        monitor.backbone()[disk] && norm(way) > overlap
-    };
-    let here = !(0..before.mobile_count()).any(far);
-    match end {
-        End::Stop(stop @ (Stop::Converged(_) | Stop::RoundingFloor)) if here => Ok(Some(stop)),
-        _ => {
-            motion.assembly = before;
-            motion.put_back()?;
-            Ok(None)
-        }
-    }
-}
-
-/// The overlap of a contact, in the mean over contacts by their force: α Σu / ΣF.
-fn mean_overlap<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, totals: &Totals<D>) -> f64 {
+/// The median overlap of all contacts: not moved by the few that an inflation presses a thousand times as far \[length\].
+fn typical_overlap<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, overlaps: &mut Vec<f64>) -> f64 {
     let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
-    let contacts = totals.energy - totals.on_site_energy;
-    let overlap = if totals.force_sum > 0.0 { assembly.law().exponent() * contacts / totals.force_sum } else { 0.0 };
-    larger(overlap, SMALLEST_OVERLAP * radius)
+    overlaps.clear();
+    walk(assembly.pairs(), &assembly.displacements, |pair| {
+        if pair.overlap > 0.0 {
+            overlaps.push(pair.overlap);
+        }
+    });
+    let middle = overlaps.len() / 2;
+    let median = if overlaps.is_empty() { 0.0 } else { *overlaps.select_nth_unstable_by(middle, f64::total_cmp).1 };
+    larger(median, SMALLEST_OVERLAP * radius)
 }
 
 /// The step in which the largest force moves a disk by as much as an error may be.

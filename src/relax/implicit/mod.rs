@@ -12,6 +12,7 @@
 //! stabilised explicit steps take their place, made again with shorter ones around the disks that collide.
 
 mod chebyshev;
+mod finish;
 mod growth;
 mod integration;
 mod matrix;
@@ -69,9 +70,9 @@ pub struct GradientFlow {
 pub enum Finish {
     /// By its own steps.
     Motion,
-    /// By [`Newton`](super::Newton) from this relative residual on \[1\], once what is left of the motion is too slow to leave
-    /// the minimum. Where Newton's way is longer than a mean overlap, or does not end at rest, the motion goes on from where
-    /// it was, to a tenth of the residual.
+    /// By [`Newton`](super::Newton) from this relative residual r on \[1\], once the backbone's kinetic energy is r² of the elastic one.
+    /// Its minimum is taken if it is nearer than a tenth of an overlap, or if it is found again after the kinetic energy has fallen to
+    /// a quarter; until then the motion goes on from where it was.
     Newton(f64),
 }
 

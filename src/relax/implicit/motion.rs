@@ -25,7 +25,7 @@ use crate::packing::{Packing, PackingError};
 use crate::relax::flat::products;
 use crate::relax::implicit::matrix::StepMatrix;
 use crate::relax::implicit::tableau::{ROS34PW2, STAGE_COUNT};
-use crate::vector::Vector;
+use crate::vector::{Vector, dot};
 
 pub(super) use refined::Refine;
 use refined::Refinement;
@@ -118,6 +118,14 @@ pub struct ImplicitMotion<const D: usize, L, C> {
     unknowns: Vec<f64>,
     row: Vec<f64>,
     smallest_radius: f64,
+}
+
+/// A motion at the start of a stretch of steps.
+pub(super) struct Snapshot<const D: usize, L> {
+    assembly: Assembly<D, L>,
+    velocities: Vec<Vector<D>>,
+    dissipated: f64,
+    time: f64,
 }
 
 /// What a step that is taken back has to put back.
@@ -220,6 +228,12 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         0.5 * products(v, v).speed_squared
     }
 
+    /// Σ v²/2 over these disks, in working order \[energy\].
+    pub(super) fn kinetic_energy_of(&self, members: &[bool]) -> f64 {
+        let of_members = self.velocities.iter().zip(members).filter(|&(_, &member)| member);
+        0.5 * of_members.map(|(&v, _)| dot(v, v)).sum::<f64>()
+    }
+
     /// Anchors take over the displacements.
     ///
     /// # Errors
@@ -249,6 +263,27 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         self.set_damping_coefficients();
         let _ = self.evaluate();
         Ok(())
+    }
+
+    /// Everything a stretch of steps changes.
+    pub(super) fn snapshot(&self) -> Snapshot<D, L> {
+        Snapshot {
+            assembly: self.assembly.clone(),
+            velocities: self.velocities.clone(),
+            dissipated: self.dissipated,
+            time: self.time,
+        }
+    }
+
+    /// Back to where a snapshot was taken.
+    ///
+    /// # Errors
+    /// Two disks with the same centre.
+    pub(super) fn return_to(&mut self, snapshot: Snapshot<D, L>) -> Result<(), PackingError> {
+        let Snapshot { assembly, velocities, dissipated, time } = snapshot;
+        (self.assembly, self.velocities, self.dissipated, self.time) = (assembly, velocities, dissipated, time);
+        self.taken_back = true;
+        self.put_back()
     }
 
     fn remember(&mut self) {

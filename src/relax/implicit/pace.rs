@@ -15,6 +15,7 @@
 
 use crate::contact::PairLaw;
 use crate::contact::damping::DampingLaw;
+use crate::relax::explicit_step::ExplicitStep;
 use crate::relax::implicit::chebyshev::Stiffness;
 use crate::relax::implicit::motion::ImplicitMotion;
 
@@ -32,7 +33,13 @@ pub(super) const SHARE: f64 = 0.9;
 const TRIED: f64 = 2.0;
 
 /// Work of the shortest stretch of explicit steps over E, and of the longest.
-const STRETCHES: (usize, usize) = (2, 8);
+const STRETCHES: (usize, usize) = (2, 64);
+
+/// Share of the bound below which explicit steps that break the balance of energies are not shortened any more.
+const SMALLEST_SHARE: f64 = 1e-3;
+
+/// Growth of that share after a stretch that kept the balance.
+const SHARE_GROWTH: f64 = 1.2;
 
 /// Implicit steps after which the next stretch of explicit ones is a short one again.
 const SETTLED: usize = 4;
@@ -59,6 +66,8 @@ pub(super) struct Pace {
     length: usize,
     /// h_x \[time\]; 0 where no explicit step is of use.
     explicit_step: f64,
+    /// Length of explicit steps.
+    pub(super) control: ExplicitStep,
     /// For stabilised steps, where they are of use.
     pub(super) stiffness: Option<Stiffness>,
     /// Implicit steps since the last stretch of explicit ones.
@@ -70,13 +79,33 @@ impl Pace {
         let worth = WORTH * (motion.assembly.mobile_count() as f64).powf(0.125);
         let explicit_step = if motion.has_masses() { SHARE * motion.stable_step() } else { 0.0 };
         let stiffness = motion.stiffness();
-        let mut pace = Pace { worth, length: STRETCHES.0, explicit_step: 0.0, stiffness, step_count: 0 };
+        let mut pace = Pace {
+            worth,
+            length: STRETCHES.0,
+            explicit_step: 0.0,
+            control: ExplicitStep::new(SHARE),
+            stiffness,
+            step_count: 0,
+        };
         pace.set_explicit_step(explicit_step);
         pace
     }
 
     pub(super) fn set_explicit_step(&mut self, time_step: f64) {
         self.explicit_step = if time_step.is_finite() { time_step } else { 0.0 };
+    }
+
+    /// A stretch of explicit steps broke the balance of energies. Whether shorter ones are worth a trial.
+    pub(super) fn shorten(&mut self) -> bool {
+        self.control.shorten(0.5);
+        self.length = STRETCHES.0;
+        self.control.share() > SMALLEST_SHARE
+    }
+
+    /// A stretch of explicit steps kept the balance.
+    pub(super) fn kept(&mut self) {
+        self.control.lengthen(SHARE_GROWTH, SHARE);
+        self.set_explicit_step(self.control.time_step());
     }
 
     /// E, rounded down.

@@ -4,11 +4,12 @@ use crate::contact::PairLaw;
 use crate::contact::damping::DampingLaw;
 use crate::contact::totals::Totals;
 use crate::packing::PackingError;
-use crate::relax::Cost;
+use crate::relax::energy_balance::{Energies, EnergyBalance};
 use crate::relax::implicit::growth::{LARGEST_GROWTH, SMALLEST_GROWTH, growth};
 use crate::relax::implicit::integration::Allowed;
 use crate::relax::implicit::motion::{ImplicitMotion, Refine};
-use crate::relax::implicit::pace::{Kind, Pace, SHARE};
+use crate::relax::implicit::pace::{Kind, Pace};
+use crate::relax::{Cost, Stop};
 
 /// Error allowed in a stabilised step over that allowed in an implicit one. Of twelve motions of 1000 disks at p = 10 (constant
 /// damping) seven end where explicit dynamics do at 1/2, ten at 1/4, eleven at 1/10 where steps have
@@ -22,6 +23,9 @@ const SET_APART: f64 = 0.01;
 /// Growth where that does not work.
 const GROWTH_UNREFINED: f64 = 0.5;
 
+/// Growth after a stretch that broke the balance of energies.
+const UNBALANCED_GROWTH: f64 = 0.25;
+
 /// Largest growth from the longest stable step: no step follows it but an implicit one, which pays only if it is much longer.
 const GROWTH_FROM_LONGEST: f64 = 20.0;
 
@@ -30,14 +34,24 @@ pub(super) fn explicit<const D: usize, L: PairLaw, C: DampingLaw>(
     motion: &mut ImplicitMotion<D, L, C>,
     pace: &mut Pace,
     time_step: &mut f64,
-    cost: &mut Cost,
-) -> Result<Totals<D>, PackingError> {
-    let count = pace.next_stretch();
-    let (totals, explicit_step) = motion.go_explicitly(count, SHARE, pace.tried())?;
-    cost.explicit_count += count;
-    pace.set_explicit_step(explicit_step);
-    *time_step = pace.tried();
-    Ok(totals)
+    (cost, balance): (&mut Cost, &mut EnergyBalance),
+) -> Result<Result<Totals<D>, Stop>, PackingError> {
+    loop {
+        let count = pace.next_stretch();
+        let mut control = pace.control.clone();
+        let stretch = motion.try_explicitly(count, &mut control)?;
+        cost.explicit_count += count;
+        if balance.accept(stretch.energies()) {
+            pace.control = control;
+            pace.kept();
+            *time_step = pace.tried();
+            return Ok(Ok(motion.accept(stretch, *time_step)));
+        }
+        cost.rejected_count += 1;
+        if !pace.shorten() {
+            return Ok(Err(Stop::Unstable));
+        }
+    }
 }
 
 /// Stabilised steps while they are what pays, rejected ones repeated shorter; `time_step` is that of the next afterwards.
@@ -45,9 +59,11 @@ pub(super) fn stabilised<const D: usize, L: PairLaw, C: DampingLaw>(
     motion: &mut ImplicitMotion<D, L, C>,
     pace: &mut Pace,
     time_step: &mut f64,
-    cost: &mut Cost,
+    (cost, balance): (&mut Cost, &mut EnergyBalance),
     allowed: &Allowed<'_>,
-) -> Result<Totals<D>, PackingError> {
+) -> Result<Option<Totals<D>>, PackingError> {
+    let snapshot = motion.snapshot();
+    let first_step = *time_step;
     motion.margin = allowed.overlap;
     pace.stiffness = motion.stiffness();
     let before = motion.work.evaluation_count;
@@ -77,7 +93,14 @@ pub(super) fn stabilised<const D: usize, L: PairLaw, C: DampingLaw>(
         *time_step = step * growth;
     }
     cost.explicit_count += motion.work.evaluation_count - before;
-    Ok(motion.evaluate())
+    let totals = motion.evaluate();
+    if balance.accept(Energies::new(&totals, motion.kinetic_energy(), motion.dissipated)) {
+        return Ok(Some(totals));
+    }
+    cost.rejected_count += 1;
+    motion.return_to(snapshot)?;
+    *time_step = UNBALANCED_GROWTH * first_step;
+    Ok(None)
 }
 
 /// Errors of a step, over those allowed.

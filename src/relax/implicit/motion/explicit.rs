@@ -4,33 +4,54 @@ use crate::contact::PairLaw;
 use crate::contact::damping::DampingLaw;
 use crate::contact::totals::Totals;
 use crate::packing::PackingError;
-use crate::relax::damped::{BOUND_EVERY, Motion};
+use crate::relax::damped::Motion;
+use crate::relax::energy_balance::Energies;
+use crate::relax::explicit_step::ExplicitStep;
 use crate::relax::implicit::motion::ImplicitMotion;
 use crate::vector::scaled;
 
+/// A stretch of explicit steps that has been tried: nothing of the motion it began from has changed.
+pub(in crate::relax::implicit) struct Stretch<const D: usize, L, C> {
+    motion: Motion<D, L, C>,
+    totals: Totals<D>,
+    time: f64,
+    dissipated: f64,
+}
+
+impl<const D: usize, L: PairLaw, C: DampingLaw> Stretch<D, L, C> {
+    /// Energies at its end.
+    pub(in crate::relax::implicit) fn energies(&self) -> Energies {
+        Energies::new(&self.totals, self.motion.kinetic_energy(), self.dissipated)
+    }
+}
+
 impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
-    /// So many explicit steps of damped dynamics, each of this share of the bound on a stable one; the last one's length
-    /// \[time\] beside the totals. `ahead` is the length of the step that is to follow, which looks out for contacts that far.
+    /// So many explicit steps of damped dynamics from here.
     ///
     /// # Errors
     /// Two disks with the same centre.
-    pub(in crate::relax::implicit) fn go_explicitly(
+    pub(in crate::relax::implicit) fn try_explicitly(
         &mut self,
         count: usize,
-        share: f64,
-        ahead: f64,
-    ) -> Result<(Totals<D>, f64), PackingError> {
+        step: &mut ExplicitStep,
+    ) -> Result<Stretch<D, L, C>, PackingError> {
         let mut motion = Motion::moving(self.assembly.clone(), &self.velocities, &self.damping);
-        let mut time_step = 0.0;
-        for step in 0..count {
-            if step % BOUND_EVERY == 0 {
-                time_step = share * motion.stable_step();
-            }
+        let mut time = self.time;
+        for _ in 0..count {
+            let time_step = step.next(&mut motion);
             motion.step(time_step)?;
-            self.time += time_step;
+            time += time_step;
         }
         self.work.evaluation_count += count + 1;
-        self.dissipated += motion.dissipated;
+        let totals = motion.assembly.evaluate_totals();
+        Ok(Stretch { totals, time, dissipated: self.dissipated + motion.dissipated, motion })
+    }
+
+    /// The motion goes on from the end of a stretch. `ahead` is the length of the step that is to follow, which looks out for contacts
+    /// that far \[time\].
+    pub(in crate::relax::implicit) fn accept(&mut self, stretch: Stretch<D, L, C>, ahead: f64) -> Totals<D> {
+        let Stretch { motion, time, dissipated, .. } = stretch;
+        (self.time, self.dissipated) = (time, dissipated);
         self.velocities.copy_from_slice(&motion.velocities[..self.assembly.mobile_count()]);
         self.assembly = motion.assembly;
         self.taken_back = false;
@@ -38,7 +59,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             *moved = scaled(ahead, velocity);
         }
         self.set_damping_coefficients();
-        Ok((self.evaluate(), time_step))
+        self.evaluate()
     }
 
     /// The longest stable explicit step, as [`Motion::stable_step`].
