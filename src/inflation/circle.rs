@@ -82,6 +82,14 @@ impl<const D: usize> Circle<D> {
         self.centre
     }
 
+    /// Label and distance from the centre of the mobile disk farthest out, if it has left the circle through the rim: if a disk of the
+    /// largest radius would have room between it and r_out.
+    pub(super) fn beyond_rim(&self, packing: &Packing<D>) -> Option<(u64, f64)> {
+        let largest = packing.radii().iter().copied().fold(0.0, f64::max);
+        let mobile = (0..self.centre).map(|disk| (packing.labels()[disk], norm(packing.positions()[disk])));
+        mobile.filter(|&(_, distance)| distance > self.outer_radius + 2.0 * largest).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
     /// Pressure of the circle: virial of its disks over π r_out², contacts with the rim counted half
     /// \[force / length^(D−1)\].
     pub fn pressure_of(&self, network: &ContactNetwork<D>) -> f64 {

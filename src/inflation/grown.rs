@@ -179,6 +179,11 @@ impl<const D: usize> Experiment<D> {
             let residual = residual.relative();
             return Err(InflationError::NotAtRest { stage, stop, step_count: cost.step_count, residual });
         };
+        if let Experiment::HeldRim(circle) = self
+            && let Some((label, distance)) = circle.beyond_rim(packing.get())
+        {
+            return Err(InflationError::BeyondRim { stage, label, distance, outer_radius: circle.outer_radius });
+        }
         let network = ContactNetwork::new(packing.get(), law)?;
         Ok(Rest {
             pressure: if criterion == Criterion::Unjammed { 0.0 } else { self.pressure_of(&network) },

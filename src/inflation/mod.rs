@@ -139,6 +139,20 @@ pub enum InflationError {
         /// The label asked for.
         label: u64,
     },
+    /// A mobile disk was pushed through the held rim: its centre is farther out than the rim and a disk.
+    #[error(
+        "{stage}: disk {label} was pushed through the rim: it is at {distance} from the centre, and disks from {outer_radius} on are held"
+    )]
+    BeyondRim {
+        /// Which of the relaxations.
+        stage: Stage,
+        /// Label of the disk.
+        label: u64,
+        /// Its distance from the centre \[length\].
+        distance: f64,
+        /// r_out \[length\].
+        outer_radius: f64,
+    },
     /// A relaxation did not end at rest.
     #[error("{stage}: the relaxation stopped with {stop:?} after {step_count} steps, residual {residual:e}")]
     NotAtRest {

@@ -80,7 +80,7 @@ impl Default for Finish {
     /// From 10⁻³ on. Of 60 motions of 1000 disks (ten circles at p = 10, 100, 800, both damping laws) all end within 10⁻⁸ of
     /// where they do when Newton begins at 10⁻⁵; so they do from 10⁻² on.
     fn default() -> Self {
-        Finish::Newton(1e-3)
+        Finish::Newton(1e-2)
     }
 }
 

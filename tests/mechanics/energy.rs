@@ -1,0 +1,157 @@
+//! No relaxation gains energy: damped motions from the blow of an inflation, energies in the costs, and states that no relaxation can
+//! lead to.
+
+use jamscope::contact::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
+use jamscope::contact::{ContactNetwork, Hertzian};
+use jamscope::inflation::{Boundary, Inflation, inflate};
+use jamscope::io::read_packing;
+use jamscope::packing::Packing;
+use jamscope::relax::implicit::Finish;
+use jamscope::relax::{
+    DampedDynamics, Fire, ForceLimit, GradientFlow, ImplicitDynamics, Look, NonlinearConjugateGradients, Outcome,
+    QuasiNewton, Relaxer, RelaxerChoice, Staged, Stop, TimeStep,
+};
+
+const DAMPINGS: [DampingChoice; 2] = [
+    DampingChoice::Constant(ConstantDamping { rate: 500.0 }),
+    DampingChoice::Viscoelastic(ViscoelasticDamping { rate: 500.0 }),
+];
+
+fn energy(packing: &Packing<2>) -> f64 {
+    ContactNetwork::new(packing, &Hertzian::default()).expect("no coincidence").energy()
+}
+
+/// A circle at rest whose centre has just grown by 0.1: seed 2001 of 5548 disks.
+fn blow(name: &str) -> (f64, Packing<2>) {
+    let file = format!("{}/fixtures/lammps/viscoelastic_{name}.before.xyz", env!("CARGO_MANIFEST_DIR"));
+    let before = read_packing::<2>(file).expect("a fixture");
+    let centre =
+        (0..before.len()).find(|&disk| before.positions()[disk] == [0.0; 2]).expect("the centre is the origin");
+    assert!(before.held()[centre]);
+    let at_rest = energy(&before);
+    (at_rest, before.with_radius(centre, 0.6).expect("a positive radius"))
+}
+
+/// Total energy at every check, and how the relaxation ended.
+fn watched(relaxer: &impl Relaxer, start: Packing<2>) -> (Vec<(f64, f64)>, Outcome<Packing<2>>) {
+    let mut energies = Vec::new();
+    let mut trace = |look: &Look| energies.push((look.energy, look.kinetic_energy));
+    let outcome = relaxer.relax(start, &Hertzian::default(), &mut trace).expect("no coincidence");
+    (energies, outcome)
+}
+
+/// The energy in motion may be wrong by 5 % from one check to the next, and by 10⁻⁷ of the elastic energy (the balance that steps
+/// keep); damping takes at least as much all along, so the sum falls, but for that.
+fn never_gains(energies: &[(f64, f64)]) {
+    for two in energies.windows(2) {
+        let [(before, moving), (after, moved)] = [two[0], two[1]];
+        let gain = after + moved - before - moving;
+        assert!(gain <= 0.05 * moving.max(moved) + 2e-7 * before.max(after), "{two:?}");
+    }
+}
+
+#[test]
+fn the_blow_of_an_inflation_near_jamming_gains_no_energy() {
+    for (name, damping) in [("p005", DAMPINGS[1]), ("p005", DAMPINGS[0]), ("p1", DAMPINGS[1])] {
+        let (at_rest, start) = blow(name);
+        let blown = energy(&start);
+        assert!(blown > 100.0 * at_rest);
+        // Until a thousandth of the blow is left or less: the front has spread through the circle.
+        let dynamics =
+            ImplicitDynamics { damping, step_limit: 60, finish: Finish::Motion, ..ImplicitDynamics::default() };
+        let (energies, outcome) = watched(&dynamics, start.clone());
+        assert_eq!(outcome.stop, Stop::StepLimit);
+        never_gains(&energies);
+        let account = outcome.cost.energies.expect("energies of a motion");
+        assert!((account.before / blown - 1.0).abs() < 1e-12, "{account:?}");
+        // Steps that keep 5 % of the energy in motion, which is taken once: 5 % of the blow.
+        assert!(account.imbalance <= 0.05 * blown, "{account:?}");
+        let sum = account.after + account.damped + account.left;
+        assert!((sum - account.before).abs() <= account.imbalance * (1.0 + 1e-9) + 1e-9 * blown, "{account:?}");
+        // What is left is of the order of the packing, not of the blow; it was 2000 times as much, or nothing.
+        let after = energy(&outcome.state);
+        assert!(after > 0.1 * at_rest && after < 30.0 * at_rest, "{name}: {after}, at rest {at_rest}");
+    }
+}
+
+#[test]
+fn default_explicit_steps_foresee_that_contacts_stiffen() {
+    for damping in DAMPINGS {
+        let (_, start) = blow("p005");
+        let dynamics = DampedDynamics { damping, step_limit: 2000, ..DampedDynamics::default() };
+        let (energies, outcome) = watched(&dynamics, start);
+        assert_eq!(outcome.stop, Stop::StepLimit);
+        never_gains(&energies);
+        // Not by steps tried again and again.
+        assert!(outcome.cost.rejected_count <= 100, "{:?}", outcome.cost);
+    }
+}
+
+#[test]
+fn an_explicit_step_that_is_always_too_long_is_unstable() {
+    let (_, start) = blow("p1");
+    let dynamics =
+        DampedDynamics { damping: DAMPINGS[1], time_step: TimeStep::Fixed(0.02), ..DampedDynamics::default() };
+    let (_, outcome) = watched(&dynamics, start);
+    assert!(matches!(outcome.stop, Stop::Unstable | Stop::NonFinite), "{:?}", outcome.stop);
+}
+
+fn small_start(name: &str) -> Packing<2> {
+    read_packing::<2>(format!("{}/fixtures/packings/{name}.xyz", env!("CARGO_MANIFEST_DIR"))).expect("a fixture")
+}
+
+#[test]
+fn every_relaxer_ends_lower_than_it_began_and_inside_the_rim() {
+    let limit = ForceLimit::Relative(1e-8);
+    let mut relaxers = vec![
+        RelaxerChoice::Fire(Fire { limit, ..Fire::default() }),
+        RelaxerChoice::ConjugateGradients(NonlinearConjugateGradients {
+            limit,
+            ..NonlinearConjugateGradients::default()
+        }),
+        RelaxerChoice::QuasiNewton(QuasiNewton { limit, ..QuasiNewton::default() }),
+        RelaxerChoice::Staged(Staged { limit, ..Staged::default() }),
+        RelaxerChoice::GradientFlow(GradientFlow { limit, ..GradientFlow::default() }),
+    ];
+    relaxers
+        .extend(DAMPINGS.map(|damping| {
+            RelaxerChoice::Implicit(ImplicitDynamics { damping, limit, ..ImplicitDynamics::default() })
+        }));
+    let boundary = Boundary::HeldRim { outer_radius_over_side: 0.45 };
+    for name in ["hertz_N1000_p005", "hertz_N1000_p1", "hertz_N1000_p100"] {
+        for relaxer in relaxers.iter() {
+            let inflation = Inflation { boundary, ..Inflation::default() };
+            let inflated = inflate(&inflation, &small_start(name), &Hertzian::default(), relaxer, 3, &mut ());
+            let inflated = inflated.unwrap_or_else(|error| panic!("{name}, {}: {error}", relaxer.name()));
+            let account = inflated.after.cost.energies.expect("energies");
+            assert!(account.after <= account.before, "{name}, {}: {account:?}", relaxer.name());
+            // Summed by blocks, and by contacts.
+            assert!((inflated.after.energy - account.after).abs() <= 1e-9 * account.before, "{name}: {account:?}");
+            let largest = 0.7;
+            for (place, &held) in
+                inflated.after.packing.get().positions().iter().zip(inflated.after.packing.get().held())
+            {
+                assert!(held || place[0].hypot(place[1]) < inflated.outer_radius + 2.0 * largest);
+            }
+        }
+    }
+}
+
+#[test]
+fn newton_finishes_where_the_motion_leads() {
+    // From one trajectory: Newton's method, tried early, and the motion followed until it is a hundredth of a hundredth as fast.
+    for (name, damping) in
+        [("hertz_N1000_p1", DAMPINGS[1]), ("hertz_N1000_p100", DAMPINGS[1]), ("hertz_N1000_p10", DAMPINGS[0])]
+    {
+        let end = |finish: Finish| {
+            let relaxer = ImplicitDynamics { damping, finish, ..ImplicitDynamics::default() };
+            let boundary = Boundary::HeldRim { outer_radius_over_side: 0.45 };
+            let inflation = Inflation { boundary, ..Inflation::default() };
+            let inflated = inflate(&inflation, &small_start(name), &Hertzian::default(), &relaxer, 5, &mut ());
+            inflated.unwrap_or_else(|error| panic!("{name}: {error}")).after.energy
+        };
+        let (early, late) = (end(Finish::default()), end(Finish::Newton(1e-4)));
+        // One minimum: energies at rest differ by the square of a residual of 10⁻⁸.
+        assert!((early - late).abs() < 1e-10 * late, "{name}: {early} and {late}");
+    }
+}
