@@ -104,6 +104,9 @@ pub enum Stop {
     RoundingFloor,
     /// A force became NaN or infinite.
     NonFinite,
+    /// Disks overlap, but their forces are so small that the squares of net forces are no longer numbers with all digits: the
+    /// stiffness constant, or the radii, are too small, and no residual can be told.
+    Underflow,
     /// A damped motion gained energy: its time step is too long.
     Unstable,
     /// Pushed from their sites (Γ > 0), disks ran away: one is [`RUNAWAY`] from where it began. Near the sites the stiffness
