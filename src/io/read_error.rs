@@ -112,7 +112,7 @@ pub enum ReadError {
         /// What there is instead.
         found: String,
     },
-    /// An id, column or key that stands twice.
+    /// An id, column, key, header line, section or item that stands twice.
     #[error("{path}, line {line}: {field} `{value}` stands already in line {first_line}")]
     Repeated {
         /// The file.
@@ -125,6 +125,42 @@ pub enum ReadError {
         value: String,
         /// The earlier line, from 1.
         first_line: usize,
+    },
+    /// A low part of a coordinate that is too large for one.
+    #[error(
+        "{path}, line {line}: {field} is `{value}`, expected a low part of the coordinate {coordinate:?}: below {spacing:e}, the spacing of numbers there"
+    )]
+    CorrectionTooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// The column and its axis.
+        field: String,
+        /// The text found.
+        value: String,
+        /// The coordinate it belongs to \[length\].
+        coordinate: f64,
+        /// From it to the next number \[length\].
+        spacing: f64,
+    },
+    /// A coordinate so far out that its rounding is not small.
+    #[error(
+        "{path}, line {line}: {field} is {value:?}, beyond {limit:?}, a million times {unit}: six of its 16 digits are lost there, and overlaps with them"
+    )]
+    TooFar {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// The coordinate.
+        field: String,
+        /// Its value \[length\].
+        value: f64,
+        /// Largest value on either side of the origin \[length\].
+        limit: f64,
+        /// The length it is a million times of.
+        unit: &'static str,
     },
     /// A box that is not a rectangle along the axes.
     #[error(
