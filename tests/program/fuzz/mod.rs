@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Without these variables the seed is [`SEED`] and each kind has [`COUNT`] cases. A case that fails is written to the folder for
-//! temporary files; its path, seed and number are printed.
+//! temporary files; its path, seed and number are printed. What ends the whole process is left there in a folder `jamscope-fuzz-…`.
 
 mod commands;
 mod corpus;
@@ -56,7 +56,7 @@ fn from_environment(name: &str, default: u64) -> u64 {
 fn fuzz(name: &str, corpus: &[Vec<u8>], numbers: Numbers, share: u64, meet: fn(&Path) -> Fault) {
     let seed = from_environment("JAMSCOPE_FUZZ_SEED", SEED);
     let count = from_environment("JAMSCOPE_FUZZ_COUNT", COUNT) / share;
-    let folder = tempfile::tempdir().expect("a temporary folder");
+    let folder = tempfile::Builder::new().prefix("jamscope-fuzz-").tempdir().expect("a temporary folder");
     let path = folder.path().join(name);
     for (index, text) in corpus.iter().enumerate() {
         std::fs::write(&path, text).expect("a temporary file");
