@@ -7,13 +7,14 @@ use jamscope::contact::{ContactNetwork, LawChoice, PairLaw};
 use jamscope::io::{read_packing, write_packing};
 use jamscope::observe::ForceDistribution;
 use jamscope::packing::Packing;
+use jamscope::relax::{Fire, Outcome, Relaxer, RelaxerChoice, Stop};
 use jamscope::scene::Scene;
 use jamscope::study::{Plan, Study};
 
 use super::{Fault, law_of_file, scene_file};
 
 /// What refusals of packings name where it is not a line.
-const PACKING_FIELDS: [&str; 9] =
+pub const PACKING_FIELDS: [&str; 9] =
     ["the file is empty", "no known format", "law", "stiffness", "exponent", "disk ", "disks ", "box axis", "frame"];
 
 /// A refusal that does not name the file, or neither a field nor a line of it.
@@ -72,7 +73,30 @@ fn measured<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> Fault 
     };
     let numbers = [network.energy(), network.coordination(), network.mean_contact_force(), network.largest_net_force()];
     let _ = (network.rattlers().count(), ForceDistribution::of(&network), numbers);
-    Certificate::of(packing, law, None).err().and_then(|error| named(&error))
+    if let Err(error) = Certificate::of(packing, law, None) {
+        return named(&error);
+    }
+    relaxers().iter().find_map(|relaxer| match relaxer.relax(packing.clone(), law, &mut ()) {
+        Err(error) => named(&error),
+        Ok(outcome) => at_rest_or_named(&outcome).map(|fault| format!("{}: {fault}", relaxer.name())),
+    })
+}
+
+/// What `run --packing` relaxes with, for a few steps.
+fn relaxers() -> Vec<RelaxerChoice> {
+    vec![
+        RelaxerChoice::Fire(Fire { step_limit: 60, ..Fire::default() }),
+        #[cfg(feature = "linear")]
+        RelaxerChoice::Implicit(jamscope::relax::ImplicitDynamics { step_limit: 10, ..Default::default() }),
+    ]
+}
+
+/// A state that counts as at rest has numbers for all coordinates and for its residual.
+fn at_rest_or_named<const D: usize>(outcome: &Outcome<Packing<D>>) -> Fault {
+    let Stop::Converged(criterion) = outcome.stop else { return None };
+    let finite = outcome.state.positions().iter().flatten().all(|x| x.is_finite());
+    let known = finite && outcome.residual.relative().is_finite();
+    (!known).then(|| format!("at rest by {criterion:?} with {:?}", outcome.residual))
 }
 
 /// What was read can be written, and is read again.
@@ -95,7 +119,8 @@ fn scene_fields() -> Vec<String> {
     words.map(Into::into).collect()
 }
 
-fn nameless_scene(message: &str, path: &Path) -> Fault {
+/// As [`nameless`], with the fields of scenes and studies.
+pub fn nameless_scene(message: &str, path: &Path) -> Fault {
     let fields = scene_fields();
     nameless(
         message,
