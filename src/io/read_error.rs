@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::io::source::spacing;
 use crate::packing::PackingError;
 
 /// Why a file was not read as a packing. Lines count from 1; long values are shortened.
@@ -128,21 +129,21 @@ pub enum ReadError {
     },
     /// A low part of a coordinate that is too large for one.
     #[error(
-        "{path}, line {line}: {field} is `{value}`, expected a low part of the coordinate {coordinate:?}: below {spacing:e}, the spacing of numbers there"
+        "{path}, line {line}: {field} {axis} is `{value}`, expected a low part of the coordinate {coordinate:?}: below {:e}, the spacing of numbers there", spacing(*.coordinate)
     )]
     CorrectionTooLarge {
         /// The file.
         path: PathBuf,
         /// Line, from 1.
         line: usize,
-        /// The column and its axis.
-        field: String,
+        /// The column.
+        field: &'static str,
+        /// The axis: x, y or z.
+        axis: char,
         /// The text found.
         value: String,
         /// The coordinate it belongs to \[length\].
         coordinate: f64,
-        /// From it to the next number \[length\].
-        spacing: f64,
     },
     /// A coordinate so far out that its rounding is not small.
     #[error(

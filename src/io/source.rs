@@ -44,6 +44,11 @@ pub(super) fn excerpt(text: &str) -> String {
     }
 }
 
+/// From a number to the next one that is larger in size.
+pub(super) fn spacing(number: f64) -> f64 {
+    number.abs().next_up() - number.abs()
+}
+
 /// The largest radius \[length\].
 pub(super) fn largest_radius<const D: usize>(disks: &[Disk<D>]) -> f64 {
     disks.iter().map(|disk| disk.radius).fold(0.0, f64::max)

@@ -3,7 +3,7 @@
 use crate::io::ReadError;
 use crate::io::comment_line::CommentLine;
 use crate::io::extended_xyz::flag;
-use crate::io::source::{AXES, Disk, Row, Source, excerpt};
+use crate::io::source::{AXES, Disk, Row, Source, excerpt, spacing};
 use crate::vector::Vector;
 
 /// Largest number of values one property may have; far above any use, far below an overflow of their sum.
@@ -138,21 +138,20 @@ impl<const D: usize> Columns<D> {
         &self,
         source: &Source,
         row: &Row,
-        (start, name): (Option<usize>, &str),
+        (start, name): (Option<usize>, &'static str),
         (line, high, low): (usize, &Vector<D>, &Vector<D>),
     ) -> Result<(), ReadError> {
         for axis in 0..D {
-            let spacing = high[axis].abs().next_up() - high[axis].abs();
             if let Some(start) = start
-                && low[axis].abs() >= spacing
+                && low[axis].abs() >= spacing(high[axis])
             {
                 return Err(ReadError::CorrectionTooLarge {
                     path: source.path.into(),
                     line: line + 1,
-                    field: format!("{name} {}", AXES[axis]),
+                    field: name,
+                    axis: AXES[axis],
                     value: excerpt(row.values[start + axis]),
                     coordinate: high[axis],
-                    spacing,
                 });
             }
         }

@@ -89,7 +89,7 @@ fn once(text: &[u8], numbers: Numbers, random: &mut Random) -> Vec<u8> {
         _ => {
             let all = words(&bytes, is_word);
             if !all.is_empty() {
-                let place = all[random.below(all.len())].clone();
+                let place = all[place(all.len(), random)].clone();
                 let renamed = renamed(&bytes[place.clone()], random);
                 drop(bytes.splice(place, renamed));
             }
@@ -124,9 +124,15 @@ fn number(numbers: Numbers, random: &mut Random) -> Vec<u8> {
 fn replace(bytes: &mut Vec<u8>, fits: fn(&[u8]) -> bool, with: &[u8], random: &mut Random) {
     let all = words(bytes, fits);
     if !all.is_empty() {
-        let place = all[random.below(all.len())].clone();
+        let place = all[place(all.len(), random)].clone();
         drop(bytes.splice(place, with.iter().copied()));
     }
+}
+
+/// One of so many places: in every other case one of the first, where headers are, for a packing is rows of numbers.
+fn place(count: usize, random: &mut Random) -> usize {
+    let header = random.below(2) == 0;
+    random.below(if header { count.min(30) } else { count })
 }
 
 /// A word of the text.
