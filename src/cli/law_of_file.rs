@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use jamscope::contact::{Hertzian, Hookean, LawChoice, PowerLaw};
+use jamscope::contact::{Hertzian, Hookean, LawChoice, PairLaw, PowerLaw};
 use jamscope::io::read_properties;
 
 /// A law as the command line names it.
@@ -51,7 +51,7 @@ pub enum LawOfFileError {
         law: String,
     },
     /// A number of the law in the file is none.
-    #[error("{path}: {key} is `{value}`, not a number")]
+    #[error("{path}: {key} is `{value}`, not a positive number")]
     NotANumber {
         /// The file.
         path: String,
@@ -59,6 +59,18 @@ pub enum LawOfFileError {
         key: &'static str,
         /// What it says.
         value: String,
+    },
+    /// The file contradicts itself.
+    #[error("{path}: law is `{law}`, but {key} is {value}")]
+    OwnContradiction {
+        /// The file.
+        path: String,
+        /// What it says of the law in words.
+        law: String,
+        /// The key that says something else.
+        key: &'static str,
+        /// Its value.
+        value: f64,
     },
     /// The file says the power law but not its exponent.
     #[error("{path}: law is `{law}`, without an exponent: say --law power:ALPHA")]
@@ -91,18 +103,41 @@ pub fn law_of(
     let name = path.display().to_string();
     let properties = read_properties(path)?;
     let value = |key: &str| properties.iter().find(|(other, _)| other.eq_ignore_ascii_case(key)).map(|(_, text)| text);
-    let number = |key: &'static str| -> Result<Option<f64>, LawOfFileError> {
-        let wrong = |value: &String| LawOfFileError::NotANumber { path: name.clone(), key, value: value.clone() };
-        value(key).map(|text| text.parse().map_err(|_| wrong(text))).transpose()
+    // A number of the law by its key, or by a word of the law itself; both only if they agree.
+    let number = |key: &'static str, word: &str| -> Result<Option<f64>, LawOfFileError> {
+        let wrong = |value: &str| LawOfFileError::NotANumber { path: name.clone(), key, value: value.into() };
+        let positive = |text: &str| text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
+        let keyed = value(key).map(|text| positive(text).ok_or_else(|| wrong(text))).transpose()?;
+        let Some(law) = value("law") else { return Ok(keyed) };
+        match (keyed, number_after(law, word)) {
+            (Some(value), Some(worded)) if value != worded => {
+                Err(LawOfFileError::OwnContradiction { path: name.clone(), law: law.clone(), key, value })
+            }
+            (keyed, worded) => Ok(keyed.or(worded)),
+        }
+    };
+    // A law of one exponent goes with no other.
+    let fixed = |law: &String, own: f64| match number("exponent", "exponent")? {
+        Some(value) if value != own => {
+            let (path, law) = (name.clone(), law.clone());
+            Err(LawOfFileError::OwnContradiction { path, law, key: "exponent", value })
+        }
+        _ => Ok(()),
     };
     let told = match value("law") {
         None => None,
         Some(law) => {
             let word = law.to_ascii_lowercase();
             match (word.get(..4), asked) {
-                (Some("hert"), _) => Some(LawName::Hertzian),
-                (Some("hook"), _) => Some(LawName::Hookean),
-                (Some("powe"), _) => match (number("exponent")?, asked) {
+                (Some("hert"), _) => {
+                    fixed(law, Hertzian::default().exponent())?;
+                    Some(LawName::Hertzian)
+                }
+                (Some("hook"), _) => {
+                    fixed(law, Hookean::default().exponent())?;
+                    Some(LawName::Hookean)
+                }
+                (Some("powe"), _) => match (number("exponent", "exponent")?, asked) {
                     (Some(exponent), _) => Some(LawName::Power(exponent)),
                     (None, Some(LawName::Power(exponent))) => Some(LawName::Power(exponent)),
                     (None, _) => return Err(LawOfFileError::NoExponent { path: name, law: law.clone() }.into()),
@@ -113,7 +148,11 @@ pub fn law_of(
         }
     };
     // A stiffness belongs to the law beside it.
-    let told_stiffness = if told.is_some() { number("stiffness")? } else { None };
+    let told_stiffness = match told {
+        Some(LawName::Power(_)) => number("stiffness", "scale")?,
+        Some(_) => number("stiffness", "stiffness")?,
+        None => None,
+    };
     let law = agreed(&name, "law", told, asked)?.unwrap_or(LawName::Hertzian);
     let stiffness = agreed(&name, "stiffness", told_stiffness, asked_stiffness)?;
     Ok(match law {
@@ -125,6 +164,13 @@ pub fn law_of(
         }
         LawName::Power(exponent) => LawChoice::PowerLaw(PowerLaw { energy_scale: stiffness.unwrap_or(1.0), exponent }),
     })
+}
+
+/// The number that follows a word of the text, as in "Hertzian contacts, stiffness 200000".
+fn number_after(text: &str, word: &str) -> Option<f64> {
+    let mut parts = text.split(|c: char| c.is_whitespace() || matches!(c, ',' | ';' | '=' | ':' | '(' | ')'));
+    parts.find(|part| part.eq_ignore_ascii_case(word))?;
+    parts.find(|part| !part.is_empty())?.parse().ok()
 }
 
 /// The one that is there; both only if they agree.

@@ -20,16 +20,23 @@ pub(super) enum Problem {
 impl CommentLine {
     pub fn parse(text: &str) -> Result<Self, Problem> {
         let mut pairs: Vec<(String, String)> = Vec::new();
+        // Which of them stand alone.
+        let mut flags: Vec<bool> = Vec::new();
         let mut rest = text.trim_start();
         while !rest.is_empty() {
             let (key, after) = word(rest, true).map_err(|value| Problem::Unclosed { key: value.clone(), value })?;
             let spaced = after.starts_with(char::is_whitespace);
             rest = after.trim_start();
-            let earlier = pairs.iter().any(|(earlier, _)| earlier.eq_ignore_ascii_case(&key));
+            let earlier = pairs.iter().position(|(earlier, _)| earlier.eq_ignore_ascii_case(&key));
             let Some(after) = rest.strip_prefix('=') else {
-                // Free text is a row of flags, in which words may repeat.
-                if !earlier {
-                    pairs.push((key, "T".into()));
+                match earlier {
+                    None => {
+                        pairs.push((key, "T".into()));
+                        flags.push(true);
+                    }
+                    // Free text is a row of flags, in which words may repeat.
+                    Some(place) if flags[place] => {}
+                    Some(_) => return Err(Problem::Repeated { key }),
                 }
                 continue;
             };
@@ -38,10 +45,11 @@ impl CommentLine {
             let value;
             (value, rest) = word(after, false).map_err(|value| Problem::Unclosed { key: key.clone(), value })?;
             rest = rest.trim_start();
-            if earlier {
+            if earlier.is_some() {
                 return Err(Problem::Repeated { key });
             }
             pairs.push((key, value));
+            flags.push(false);
         }
         Ok(CommentLine { pairs })
     }
@@ -135,6 +143,7 @@ mod tests {
         assert!(matches!(CommentLine::parse("a=\"b c"), Err(Problem::Unclosed { key, .. }) if key == "a"));
         assert!(matches!(CommentLine::parse("a=[1 2"), Err(Problem::Unclosed { .. })));
         assert!(matches!(CommentLine::parse("pbc=T PBC=F"), Err(Problem::Repeated { key }) if key == "PBC"));
+        assert!(matches!(CommentLine::parse("pbc=T pbc"), Err(Problem::Repeated { key }) if key == "pbc"));
         assert!(CommentLine::parse("to be or not to be").is_ok());
     }
 }

@@ -18,8 +18,8 @@
 //! Columns of `Atoms`: id, type, diameter \[length\], density, x, y, z \[length\] and, if given, three image flags, which
 //! are counted and left aside. Another style named after `#` is refused; a file that names none is taken as `sphere`,
 //! and then types must be those announced, densities positive. For D = 2 z must be 0. A data file does not say which
-//! directions are periodic: all are, which is LAMMPS's own default. Other sections are passed over. Disks come in
-//! ascending order of their ids.
+//! directions are periodic: all are, which is LAMMPS's own default. Other sections are passed over. A header line or a
+//! section that stands twice is refused: LAMMPS would take the last. Disks come in ascending order of their ids.
 //!
 //! # Source
 //! LAMMPS manual, commands `read_data` and `write_data`.
@@ -46,15 +46,17 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
     let sections: Vec<usize> = (1..source.lines.len()).filter(|&line| opens_section(source.lines[line])).collect();
     let header_end = sections.first().copied().unwrap_or(source.lines.len());
     let header = Header::<D>::new(source, header_end)?;
-    let name = |line: usize| source.lines[line].split_ascii_whitespace().next().unwrap_or("");
-    let mut atoms = sections.iter().enumerate().filter(|&(_, &line)| name(line) == "Atoms");
-    let Some((place, &start)) = atoms.next() else {
+    let names: Vec<String> = sections.iter().map(|&line| source.row_without_comment(line).values.join(" ")).collect();
+    for (place, name) in names.iter().enumerate() {
+        if let Some(earlier) = names[..place].iter().position(|earlier| earlier == name) {
+            return Err(source.repeated(sections[place], "section", name, sections[earlier]));
+        }
+    }
+    let Some(place) = names.iter().position(|name| name == "Atoms") else {
         // Not `missing`: a file cut before its first disk ends up here.
         return Err(source.truncated(source.lines.len(), "disks of section Atoms", header.count, 0));
     };
-    if let Some((_, &again)) = atoms.next() {
-        return Err(source.repeated(again, "section", "Atoms", start));
-    }
+    let start = sections[place];
     let style = source.lines[start].split('#').nth(1).unwrap_or("").trim();
     if !matches!(style, "" | "sphere") {
         let style = crate::io::source::excerpt(style);
@@ -81,7 +83,7 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
         if kind == 0 || header.type_count.is_some_and(|count| kind > count) {
             return Err(source.bad(line, "type", row.values[1], "one of the atom types announced"));
         }
-        let radius = 0.5 * row.positive(2, "diameter")?;
+        let radius = row.radius(2, "diameter", 0.5)?;
         row.positive(3, "density")?;
         let mut position = [0.0; D];
         for axis in 0..D {
@@ -114,18 +116,26 @@ struct Header<const D: usize> {
 
 impl<const D: usize> Header<D> {
     fn new(source: &Source, end: usize) -> Result<Self, ReadError> {
-        let mut count: Option<(usize, usize)> = None;
+        let mut count = None;
         let mut type_count = None;
         let mut sides: [Option<(f64, f64)>; 3] = [None; 3];
+        let mut known: Vec<(String, usize)> = Vec::new();
         for line in 1..end {
             let row = source.row_without_comment(line);
+            let keyword = keyword(&row.values);
+            if let Some((_, earlier)) = known.iter().find(|(earlier, _)| *earlier == keyword) {
+                return Err(source.repeated(line, "header line", &keyword, *earlier));
+            }
+            if !keyword.is_empty() {
+                known.push((keyword, line));
+            }
             match row.values[..] {
                 [number, "atoms"] => {
-                    if let Some((_, earlier)) = count {
-                        return Err(source.repeated(line, "header line", "atoms", earlier));
-                    }
-                    let number = number.parse().map_err(|_| source.bad(line, "atoms", number, "a whole number"))?;
-                    count = Some((number, line));
+                    count = match number.parse() {
+                        Ok(0) => return Err(source.no_disks(line, "atoms")),
+                        Ok(number) => Some(number),
+                        Err(_) => return Err(source.bad(line, "atoms", number, "a whole number")),
+                    };
                 }
                 [_, "atom", "types"] => type_count = Some(row.whole(0, "atom types")?),
                 [.., "avec" | "bvec" | "cvec"] | [.., "abc", "origin"] => {
@@ -148,7 +158,7 @@ impl<const D: usize> Header<D> {
             }
         }
         let last = end.saturating_sub(1);
-        let Some((count, _)) = count else { return Err(source.missing(last, "header line `N atoms`", "none")) };
+        let Some(count) = count else { return Err(source.missing(last, "header line `N atoms`", "none")) };
         let (mut corner, mut lengths) = ([0.0; D], [0.0; D]);
         for axis in 0..D {
             let Some(side) = sides[axis] else {
@@ -158,4 +168,10 @@ impl<const D: usize> Header<D> {
         }
         Ok(Header { count, type_count, domain: Domain::Periodic { corner, lengths } })
     }
+}
+
+/// What a header line is about: its words after the last number.
+fn keyword(values: &[&str]) -> String {
+    let start = values.iter().rposition(|word| !word.starts_with(|c: char| c.is_ascii_alphabetic()));
+    values[start.map_or(0, |last| last + 1)..].join(" ")
 }

@@ -24,7 +24,8 @@
 //! | `xs ys zs`, `xsu ysu zsu` | lower end of the box + value × side |
 //!
 //! For D = 2 no z is needed, and one that is there must be 0. Other columns are ignored. LAMMPS writes six digits unless
-//! told otherwise (`dump_modify format float %.17g`). Disks come in ascending order of their ids.
+//! told otherwise (`dump_modify format float %.17g`). Disks come in ascending order of their ids. An item that stands twice in
+//! a frame is refused.
 //!
 //! A box that is not periodic in the directions of the packing is refused, as a dump does not tell its walls.
 //!
@@ -52,10 +53,17 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
     let place = source.frame(frame, starts.len())?;
     let end = starts.get(place + 1).copied().unwrap_or(lines.len());
     let mut parts = Parts::<D>::default();
+    let mut known: Vec<(&str, usize)> = Vec::new();
     let mut line = starts[place];
     while line < end {
         let next = (line + 1..end).find(|&next| lines[next].starts_with("ITEM:")).unwrap_or(end);
         if let Some(item) = lines[line].strip_prefix("ITEM:") {
+            let name = ["BOX BOUNDS", "ATOMS"].into_iter().find(|name| item.trim().starts_with(name));
+            let name = name.unwrap_or(item.trim());
+            if let Some((_, earlier)) = known.iter().find(|(earlier, _)| *earlier == name) {
+                return Err(source.repeated(line, "item", name, *earlier));
+            }
+            known.push((name, line));
             parts.take(source, item.trim(), line, next)?;
         }
         line = next;
@@ -86,19 +94,20 @@ impl<const D: usize> Parts<D> {
     /// Takes in the item whose title is in line `title` and whose values are in the lines after it, before `end`.
     fn take(&mut self, source: &Source, item: &str, title: usize, end: usize) -> Result<(), ReadError> {
         let first = title + 1;
-        let repeated = |earlier| if earlier { Err(source.repeated(title, "item", item, title)) } else { Ok(()) };
         if item == "NUMBER OF ATOMS" {
-            repeated(self.count.is_some())?;
             if first == end {
                 return Err(source.truncated(end, "values of ITEM: NUMBER OF ATOMS", 1, 0));
             }
             let value = source.lines[first].trim();
-            self.count = Some(value.parse().map_err(|_| source.bad(first, item, value, "a whole number, 0 or more"))?);
+            self.count = match value.parse() {
+                Ok(0) => return Err(source.no_disks(first, item)),
+                Ok(count) => Some(count),
+                Err(_) => return Err(source.bad(first, item, value, "a whole number, 0 or more")),
+            };
+            expect_end(source, item, first + 1, end)?;
         } else if let Some(flags) = item.strip_prefix("BOX BOUNDS") {
-            repeated(self.bounds.is_some())?;
             self.bounds = Some(bounds(source, flags, title, end)?);
         } else if let Some(columns) = item.strip_prefix("ATOMS") {
-            repeated(self.disks.is_some())?;
             let Some(count) = self.count else {
                 return Err(source.missing(title, "ITEM: NUMBER OF ATOMS", "ITEM: ATOMS before it"));
             };
@@ -141,9 +150,18 @@ fn bounds<const D: usize>(source: &Source, flags: &str, title: usize, end: usize
         }
         sides[axis] = source.side(line, ["xlo xhi", "ylo yhi", "zlo zhi"][axis], row.values[0], row.values[1])?;
     }
+    expect_end(source, "ITEM: BOX BOUNDS", title + 4, end)?;
     let corner = std::array::from_fn(|axis| sides[axis].0);
     let lengths = std::array::from_fn(|axis| sides[axis].1);
     Ok((Domain::Periodic { corner, lengths }, sides))
+}
+
+/// Refuses what stands after the last value of an item.
+fn expect_end(source: &Source, item: &str, first: usize, end: usize) -> Result<(), ReadError> {
+    match (first..end).find(|&line| !source.lines[line].trim().is_empty()) {
+        Some(line) => Err(source.bad(line, item, source.lines[line], "no further value")),
+        None => Ok(()),
+    }
 }
 
 /// Where the columns stand in a row.
@@ -220,7 +238,7 @@ impl Columns {
                 }
             }
             let (column, name, factor) = self.radius;
-            let radius = factor * row.positive(column, name)?;
+            let radius = row.radius(column, name, factor)?;
             let label = row.whole(self.id, "id")?;
             disks.push(Disk { label, line, position: std::array::from_fn(|axis| all[axis]), radius });
         }

@@ -7,7 +7,9 @@
 //! | LAMMPS data, `atom_style sphere` | yes | yes, without corrections | column `diameter` |
 //! | LAMMPS text dump | yes | no | column `radius` or `diameter` |
 //!
-//! What a file does not say is an error and not a guess: radii, the sides of the box, which directions are periodic.
+//! What a file does not say is an error and not a guess: radii, the sides of the box, which directions are periodic. What
+//! it says twice is refused as well: a key, a header line, a section, an item of a frame. So are coordinates a million of the
+//! largest radii away: a number keeps 16 digits, and six of them are lost there.
 //! Each [`ReadError`] names the file, the line, the field and what stood there. A file must end with a line break, as
 //! all these programs write it: without one, a file cut in the middle of its last number could not be told from a
 //! whole one.
@@ -21,6 +23,7 @@ mod read_error;
 mod source;
 mod write_lammps_data;
 mod write_packing;
+mod xyz_columns;
 
 use std::path::Path;
 

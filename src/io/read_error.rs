@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::io::source::spacing;
 use crate::packing::PackingError;
 
 /// Why a file was not read as a packing. Lines count from 1; long values are shortened.
@@ -112,7 +113,7 @@ pub enum ReadError {
         /// What there is instead.
         found: String,
     },
-    /// An id, column or key that stands twice.
+    /// An id, column, key, header line, section or item that stands twice.
     #[error("{path}, line {line}: {field} `{value}` stands already in line {first_line}")]
     Repeated {
         /// The file.
@@ -125,6 +126,42 @@ pub enum ReadError {
         value: String,
         /// The earlier line, from 1.
         first_line: usize,
+    },
+    /// A low part of a coordinate that is too large for one.
+    #[error(
+        "{path}, line {line}: {field} {axis} is `{value}`, expected a low part of the coordinate {coordinate:?}: below {:e}, the spacing of numbers there", spacing(*.coordinate)
+    )]
+    CorrectionTooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// The column.
+        field: &'static str,
+        /// The axis: x, y or z.
+        axis: char,
+        /// The text found.
+        value: String,
+        /// The coordinate it belongs to \[length\].
+        coordinate: f64,
+    },
+    /// A coordinate so far out that its rounding is not small.
+    #[error(
+        "{path}, line {line}: {field} is {value:?}, beyond {limit:?}, a million times {unit}: six of its 16 digits are lost there, and overlaps with them"
+    )]
+    TooFar {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// The coordinate.
+        field: String,
+        /// Its value \[length\].
+        value: f64,
+        /// Largest value on either side of the origin \[length\].
+        limit: f64,
+        /// The length it is a million times of.
+        unit: &'static str,
     },
     /// A box that is not a rectangle along the axes.
     #[error(

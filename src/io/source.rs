@@ -3,11 +3,17 @@
 use std::path::Path;
 
 use crate::io::{Frame, ReadError};
-use crate::packing::{Domain, Packing};
+use crate::packing::{Domain, LARGEST_RADIUS, Packing, SMALLEST_RADIUS};
 use crate::vector::Vector;
 
 /// Names of the axes.
 pub(super) const AXES: [char; 3] = ['x', 'y', 'z'];
+
+/// Largest coordinate over the largest radius, and corner of a box over its side \[1\].
+///
+/// The rounding of such a coordinate is 2·10⁻¹⁰ radii, overlaps at the lowest pressures of the study are 10⁻⁵ radii. No
+/// packing near the origin comes so far: a box of a million radii has room for 10¹¹ disks, more than there are indices.
+const FARTHEST: f64 = 1e6;
 
 /// A file cut into lines. Lines are counted from 0 here and from 1 in errors.
 pub(super) struct Source<'a> {
@@ -38,6 +44,16 @@ pub(super) fn excerpt(text: &str) -> String {
     }
 }
 
+/// From a number to the next one that is larger in size.
+pub(super) fn spacing(number: f64) -> f64 {
+    number.abs().next_up() - number.abs()
+}
+
+/// The largest radius \[length\].
+pub(super) fn largest_radius<const D: usize>(disks: &[Disk<D>]) -> f64 {
+    disks.iter().map(|disk| disk.radius).fold(0.0, f64::max)
+}
+
 impl<'a> Source<'a> {
     pub fn new(path: &'a Path, text: &'a str) -> Self {
         Source { path, lines: text.lines().collect() }
@@ -61,6 +77,10 @@ impl<'a> Source<'a> {
             value: excerpt(value),
             expected,
         }
+    }
+
+    pub fn no_disks(&self, line: usize, field: &str) -> ReadError {
+        self.bad(line, field, "0", "at least one disk")
     }
 
     pub fn missing(&self, line: usize, field: &'static str, found: impl Into<String>) -> ReadError {
@@ -116,6 +136,7 @@ impl<'a> Source<'a> {
         let start = self.number(line, field, low)?;
         let length = self.number(line, field, high)? - start;
         if length.is_finite() && length > 0.0 {
+            self.check_corner(line, field, start, length)?;
             return Ok((start, length));
         }
         Err(self.bad(line, field, &format!("{low} {high}"), "a lower end below the upper one"))
@@ -133,6 +154,35 @@ impl<'a> Source<'a> {
         Err(ReadError::NoSuchFrame { path: self.path.into(), frame: index, frame_count: count })
     }
 
+    /// Refuses the corner of a box that is more than [`FARTHEST`] sides away from the origin.
+    pub fn check_corner(&self, line: usize, field: &str, corner: f64, side: f64) -> Result<(), ReadError> {
+        self.check_far(line, field, corner, (side, "the side of the box"))
+    }
+
+    /// Refuses a point that is more than [`FARTHEST`] of the largest radii away from the origin.
+    pub fn check_reach<const D: usize>(
+        &self,
+        line: usize,
+        field: &str,
+        point: &Vector<D>,
+        largest_radius: f64,
+    ) -> Result<(), ReadError> {
+        for axis in 0..D {
+            let unit = (largest_radius, "the largest radius");
+            self.check_far(line, &format!("{field} {}", AXES[axis]), point[axis], unit)?;
+        }
+        Ok(())
+    }
+
+    fn check_far(&self, line: usize, field: &str, value: f64, unit: (f64, &'static str)) -> Result<(), ReadError> {
+        let limit = FARTHEST * unit.0;
+        if value.abs() <= limit {
+            return Ok(());
+        }
+        let (path, field) = (self.path.into(), field.to_owned());
+        Err(ReadError::TooFar { path, line: line + 1, field, value, limit, unit: unit.1 })
+    }
+
     /// The packing of disks in their order.
     pub fn packing<const D: usize>(
         &self,
@@ -140,6 +190,10 @@ impl<'a> Source<'a> {
         disks: &[Disk<D>],
         labelled: bool,
     ) -> Result<Packing<D>, ReadError> {
+        let largest_radius = largest_radius(disks);
+        for disk in disks {
+            self.check_reach(disk.line, "coordinate", &disk.position, largest_radius)?;
+        }
         let positions = disks.iter().map(|disk| disk.position).collect();
         let radii = disks.iter().map(|disk| disk.radius).collect();
         let packing = Packing::new(domain, positions, radii);
@@ -178,6 +232,15 @@ impl Row<'_> {
 
     pub fn positive(&self, column: usize, field: &str) -> Result<f64, ReadError> {
         self.source.positive(self.line, field, self.values[column])
+    }
+
+    /// A radius, `factor` times the value.
+    pub fn radius(&self, column: usize, field: &str, factor: f64) -> Result<f64, ReadError> {
+        let radius = factor * self.positive(column, field)?;
+        if (SMALLEST_RADIUS..=LARGEST_RADIUS).contains(&radius) {
+            return Ok(radius);
+        }
+        Err(self.source.bad(self.line, field, self.values[column], "a radius from 1e-130 to 1e150"))
     }
 
     pub fn whole(&self, column: usize, field: &str) -> Result<u64, ReadError> {

@@ -39,6 +39,8 @@ pub struct Column<'a> {
 /// # Shape
 /// Every column has `packing.len() * width` values, disk by disk.
 ///
+/// Centres a million of the largest radii away, and such a corner of the box, are written, but the reader refuses them.
+///
 /// # Errors
 /// [`WriteError`] names the file and what is wrong; nothing is written then.
 pub fn write_packing<const D: usize>(

@@ -107,6 +107,9 @@ pub enum Stop {
     RoundingFloor,
     /// A force became NaN or infinite.
     NonFinite,
+    /// Disks overlap, but their forces are so small that the squares of net forces are no longer numbers with all digits: the
+    /// stiffness constant, or the radii, are too small, and no residual can be told.
+    Underflow,
     /// A damped motion gained energy, or its energies do not add up, however short its steps: they are too long.
     Unstable,
     /// At rest, but higher in energy than at the start: not where a relaxation can lead.

@@ -21,6 +21,10 @@ const FAR_LOOKS: usize = 4;
 /// A force is far from small if it is this many times what a look waits for \[1\].
 const FAR: f64 = 30.0;
 
+/// Mean contact force below which a residual is not known \[force\]: the square of its last digit is below the smallest normal
+/// number, √(2⁻¹⁰²²)/2⁻⁵². Residuals come from squares of net forces.
+const SMALLEST_FORCE: f64 = f64::from_bits((1023 - 511 + 52) << 52);
+
 /// The watch of relaxers whose steps cost one evaluation.
 const WATCH: Watch = Watch { refresh_every: 10, patience: 150, waits_for_rattlers: false };
 
@@ -44,6 +48,8 @@ pub struct Monitor {
     limit: ForceLimit,
     watch: Watch,
     unjammed_force: f64,
+    /// Whether forces of the law that count are below [`SMALLEST_FORCE`].
+    weak: bool,
     /// Way from a site that ends the relaxation; infinite unless the law pushes disks from theirs.
     farthest: f64,
     backbone: Vec<bool>,
@@ -83,6 +89,7 @@ impl Monitor {
                 ForceLimit::Absolute(limit) => unjammed_force.min(limit),
                 ForceLimit::Relative(_) => unjammed_force,
             },
+            weak: unjammed_force < SMALLEST_FORCE,
             farthest,
             backbone: vec![true; assembly.len()],
             links: Links::default(),
@@ -126,6 +133,9 @@ impl Monitor {
         }
         if !(inner + outer + totals.energy).is_finite() {
             return Some(Stop::NonFinite);
+        }
+        if self.weak && totals.contact_count > 0 && mean < SMALLEST_FORCE {
+            return Some(Stop::Underflow);
         }
         if larger(inner, outer) <= self.unjammed_force && mean <= self.unjammed_force {
             return Some(Stop::Converged(Criterion::Unjammed));

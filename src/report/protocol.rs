@@ -91,6 +91,7 @@ fn stop(stop: Stop) -> &'static str {
         Stop::StepLimit => "step limit",
         Stop::RoundingFloor => "rounding floor",
         Stop::NonFinite => "not finite",
+        Stop::Underflow => "underflow",
         Stop::Unstable => "unstable",
         Stop::EnergyGained => "energy gained",
         Stop::NoMinimum => "no minimum",

@@ -3,7 +3,7 @@
 use jamscope::contact::damping::{ConstantDamping, DampingChoice};
 use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw, PowerLaw};
 use jamscope::packing::{Domain, Packing, PackingError};
-use jamscope::relax::{DampedDynamics, ForceLimit, Relaxer, Stop};
+use jamscope::relax::{Criterion, DampedDynamics, ForceLimit, Relaxer, RelaxerChoice, Stop};
 
 use crate::{all_finite, points, relax, relaxers};
 
@@ -118,6 +118,34 @@ fn forces_that_overflow_are_said_to() {
     check(Hertzian { stiffness: 1e300 }, 1e20);
     check(PowerLaw { energy_scale: 1e308, exponent: 2.5 }, 1e-20);
     check(Hookean { stiffness: 1e200 }, 1e100);
+}
+
+#[test]
+fn forces_too_small_for_their_squares_are_said_to_be() {
+    fn check<L: PairLaw>(law: L, unit: f64) {
+        let mut all = relaxers(1e-10);
+        all.push(RelaxerChoice::Damped(DampedDynamics { step_limit: 1000, ..DampedDynamics::default() }));
+        #[cfg(feature = "linear")]
+        all.extend([
+            RelaxerChoice::Newton(jamscope::relax::Newton::default()),
+            RelaxerChoice::Staged(jamscope::relax::Staged::default()),
+            RelaxerChoice::Implicit(jamscope::relax::ImplicitDynamics::default()),
+        ]);
+        for relaxer in all {
+            let outcome = relax(in_unit(&points(16, 0.95, 5), unit), &law, &relaxer);
+            let found = (outcome.stop, outcome.cost.step_count);
+            assert_eq!(found, (Stop::Underflow, 0), "{law:?} in {unit:e}, {}", relaxer.name());
+            // Disks that do not touch are at rest, whatever the law.
+            let apart = Packing::new(Domain::cube(4.0 * unit), vec![[unit; 2], [3.0 * unit; 2]], vec![0.5 * unit; 2]);
+            let outcome = relax(apart.expect("valid"), &law, &relaxer);
+            assert_eq!(outcome.stop, Stop::Converged(Criterion::Unjammed), "{law:?} in {unit:e}, {}", relaxer.name());
+        }
+    }
+    check(Hookean { stiffness: 1e-200 }, 1.0);
+    check(Hookean { stiffness: 1e-320 }, 1.0);
+    check(Hertzian { stiffness: f64::from_bits(1) }, 1.0);
+    check(Hertzian::default(), 1e-120);
+    check(PowerLaw { energy_scale: 1e-160, exponent: 2.5 }, 1.0);
 }
 
 #[test]

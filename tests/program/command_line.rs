@@ -252,6 +252,11 @@ fn the_law_is_that_of_the_file_then_of_the_command_line_then_of_the_model() {
     write("law=\"power-law contacts\" stiffness=2.0 exponent=2.5");
     assert_eq!(law(&[])["power_law"]["exponent"].as_f64(), Some(2.5));
     assert_eq!(law(&[])["power_law"]["energy_scale"].as_f64(), Some(2.0));
+    // What the law says in words counts where no key says it, and agrees where one does.
+    write("law=\"Hookean contacts, stiffness 7\"");
+    assert_eq!(law(&[])["hookean"]["stiffness"].as_f64(), Some(7.0));
+    write("law=\"Hertzian contacts, stiffness 200000\" stiffness=200000.0 exponent=2.5");
+    assert_eq!(law(&[])["hertzian"]["stiffness"].as_f64(), Some(2e5));
     write("law=other stiffness=9.0");
     assert_eq!(law(&["--law", "power:3"])["power_law"]["exponent"].as_f64(), Some(3.0));
     assert_eq!(law(&["--law", "power:3"])["power_law"]["energy_scale"].as_f64(), Some(1.0));
@@ -266,6 +271,24 @@ fn the_law_is_that_of_the_file_then_of_the_command_line_then_of_the_model() {
         ("law=other", vec![], vec!["other", "--law"]),
         ("law=hookean stiffness=three", vec![], vec!["stiffness", "three"]),
         ("law=hookean stiffness=-3", vec![], vec!["stiffness", "-3"]),
+        ("law=hookean stiffness=nan", vec![], vec!["packing.xyz", "stiffness", "nan"]),
+        ("law=hertz exponent=2", vec![], vec!["packing.xyz", "law is `hertz`", "exponent is 2"]),
+        ("law=hookean exponent=two", vec![], vec!["packing.xyz", "exponent", "two"]),
+        (
+            "law=\"Hertzian contacts, stiffness 200000\" stiffness=3.0",
+            vec![],
+            vec!["packing.xyz", "`Hertzian contacts, stiffness 200000`", "stiffness is 3"],
+        ),
+        (
+            "law=\"power-law contacts, scale 1, exponent 2.5\" stiffness=1.0 exponent=2",
+            vec![],
+            vec!["packing.xyz", "exponent 2.5", "exponent is 2"],
+        ),
+        (
+            "law=\"power-law contacts, scale 1, exponent 2\" stiffness=2.0 exponent=2",
+            vec![],
+            vec!["packing.xyz", "scale 1", "stiffness is 2"],
+        ),
     ] {
         write(said);
         let complaint = complaint(&[&["inspect", text(&path)], arguments.as_slice()].concat());

@@ -5,6 +5,8 @@ mod analysis;
 mod command_line;
 #[cfg(feature = "cli")]
 mod exact_command;
+#[cfg(feature = "cli")]
+mod fuzz;
 mod io;
 #[cfg(feature = "linear")]
 mod precision;

@@ -1,5 +1,6 @@
 //! Packings to files and back, and what is said about files that are no packings.
 
+mod contradictions;
 mod damaged_files;
 mod lammps;
 mod lammps_data_written;

@@ -25,33 +25,40 @@ fn positive() -> impl Strategy<Value = f64> {
 
 fn domain<const D: usize>() -> impl Strategy<Value = Domain<D>> {
     let side = prop_oneof![positive(), 1.0..1e3];
-    let sides = (prop::array::uniform::<_, D>(finite()), prop::array::uniform::<_, D>(side));
-    prop_oneof![Just(Domain::Open), sides.prop_map(|(corner, lengths)| Domain::Periodic { corner, lengths })]
+    let corner = prop_oneof![Just(0.0), Just(-0.0), -1e5..1e5];
+    let sides = (prop::array::uniform::<_, D>(corner), prop::array::uniform::<_, D>(side));
+    // A corner in sides of the box, at most a million of them.
+    let periodic = |(corner, lengths): (Vector<D>, Vector<D>)| Domain::Periodic {
+        corner: std::array::from_fn(|axis| corner[axis] * lengths[axis].min(1e300)),
+        lengths,
+    };
+    prop_oneof![Just(Domain::Open), sides.prop_map(periodic)]
 }
 
-/// Position, low part in units of 2⁻⁵⁴ of it, radius, held, label.
+/// Position over 10⁶ radii, low part in units of 2⁻⁵⁴ of it, radius over the largest, held, label.
 type Row<const D: usize> = (Vector<D>, Vector<D>, f64, bool, u64);
 
 fn row<const D: usize>() -> impl Strategy<Value = Row<D>> {
-    let coordinate = prop_oneof![finite(), -1e3..1e3];
+    // Down to subnormal numbers, up to what a file may hold.
+    let coordinate = prop_oneof![finite().prop_map(|x| if x.abs() < 1.0 { x } else { 1.0 / x }), -1e-3..1e-3];
     let low = prop_oneof![Just(0.0), -1.0..1.0];
     let label = prop_oneof![any::<u64>(), 0..4u64];
-    (
-        prop::array::uniform::<_, D>(coordinate),
-        prop::array::uniform::<_, D>(low),
-        prop_oneof![(-129.0..149.0f64).prop_map(|power| 10f64.powf(power)), 0.1..1.0],
-        any::<bool>(),
-        label,
-    )
+    (prop::array::uniform::<_, D>(coordinate), prop::array::uniform::<_, D>(low), 0.1..1.0, any::<bool>(), label)
 }
 
 fn packing<const D: usize>() -> impl Strategy<Value = Packing<D>> {
     let flags = (any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>());
-    (domain(), prop::collection::vec(row::<D>(), 1..12), flags).prop_map(
-        |(domain, rows, (corrected, held, labelled, tied))| {
+    let unit = prop_oneof![(-128.0..149.0f64).prop_map(|power| 10f64.powf(power)), 0.1..1.0];
+    (domain(), prop::collection::vec(row::<D>(), 1..12), unit, flags).prop_map(
+        |(domain, mut rows, unit, (corrected, held, labelled, tied))| {
+            let largest = rows.iter().map(|row| row.2).fold(0.0, f64::max);
+            for row in &mut rows {
+                row.2 *= unit;
+                row.0 = row.0.map(|x| x * 1e6 * (largest * unit));
+            }
             let positions: Vec<_> = rows.iter().map(|row| row.0).collect();
-            let mut packing =
-                Packing::new(domain, positions.clone(), rows.iter().map(|row| row.2).collect()).expect("valid disks");
+            let radii = rows.iter().map(|row| row.2).collect();
+            let mut packing = Packing::new(domain, positions, radii).expect("valid disks");
             if corrected {
                 let low = |d: usize, row: &Row<D>| row.0[d] * (-54f64).exp2() * row.1[d];
                 let corrections = rows.iter().map(|row| std::array::from_fn(|d| low(d, row))).collect();
