@@ -56,6 +56,7 @@ pub(crate) fn outcome_name(outcome: PhaseOutcome) -> &'static str {
         PhaseOutcome::Plastic => "plastic",
         PhaseOutcome::Quasielastic => "quasielastic",
         PhaseOutcome::Undecided => "undecided",
+        PhaseOutcome::NotAtRest => "not at rest",
     }
 }
 
