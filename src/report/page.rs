@@ -127,7 +127,10 @@ fn not_at_rest<'a>(verdicts: impl Iterator<Item = (&'a str, &'a RestVerdict)>) -
             continue;
         }
         let name = escaped(name);
-        let _ = write!(html, "<section class=\"sample failed\" aria-label=\"{name} is not at rest\">\n<h2>{name}: not at rest</h2>\n");
+        let _ = write!(
+            html,
+            "<section class=\"sample failed\" aria-label=\"{name} is not at rest\">\n<h2>{name}: not at rest</h2>\n"
+        );
         for paragraph in paragraphs {
             let _ = writeln!(html, "<p class=\"reason\">{}</p>", escaped(&paragraph));
         }

@@ -195,13 +195,12 @@ impl Response {
                 .as_ref()
                 .map(|settings| radial_dependence(&field, settings).into()),
             #[cfg(feature = "fit")]
-            elastic_modes: observables
-                .elastic_modes
-                .zip(multipoles.as_ref().and_then(Measurement::measured))
-                .map(|(settings, modes)| match &no_fit {
+            elastic_modes: observables.elastic_modes.zip(multipoles.as_ref().and_then(Measurement::measured)).map(
+                |(settings, modes)| match &no_fit {
                     Some(reason) => Measurement::Refused(reason.clone()),
                     None => fit_elastic_modes(modes, field.outer_radius, &settings).into(),
-                }),
+                },
+            ),
             multipoles,
             contact_changes: observables
                 .contact_changes

@@ -252,7 +252,11 @@ pub(crate) fn measure<L: PairLaw>(
 }
 
 /// An inflation as the observables see it.
-fn subject<'a, L: PairLaw>(inflated: &'a Inflated<2>, law: &L, verdict: RestVerdict) -> Result<Subject<'a>, PackingError> {
+fn subject<'a, L: PairLaw>(
+    inflated: &'a Inflated<2>,
+    law: &L,
+    verdict: RestVerdict,
+) -> Result<Subject<'a>, PackingError> {
     let state = |rest: &'a Rest<2>| State::new(rest.packing.get(), law);
     Ok(Subject {
         verdict,

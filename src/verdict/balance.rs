@@ -7,12 +7,18 @@ use crate::packing::Packing;
 use crate::relax::UNJAMMED_FORCE;
 use crate::vector::{larger, norm};
 
+/// Overlap over the smallest radius up to which contacts of a packing without backbone count as none \[1\]. Relaxers elsewhere leave
+/// 10⁻⁸ at a force limit of 10⁻⁷; no observable resolves 10⁻⁶ of a diameter.
+const LOOSE_OVERLAP: f64 = 1e-6;
+
 /// Net forces of the mobile disks of a state. Only [`Balance::of`] makes one, from the forces themselves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Balance {
     on_backbone: f64,
     off_backbone: f64,
     mean_contact_force: f64,
+    rigid: bool,
+    /// A force that counts as none.
     no_force: f64,
 }
 
@@ -32,12 +38,17 @@ impl Balance {
             total / network.contacts.len().max(1) as f64
         };
         let radius = packing.radii().iter().copied().fold(f64::INFINITY, f64::min);
-        let no_force = UNJAMMED_FORCE * law.force_scale(radius);
-        Balance { on_backbone: largest[0], off_backbone: largest[1], mean_contact_force, no_force }
+        let no_force = if rigid {
+            UNJAMMED_FORCE * law.force_scale(radius)
+        } else {
+            law.force(law.coefficient(radius, radius), LOOSE_OVERLAP * radius)
+        };
+        Balance { on_backbone: largest[0], off_backbone: largest[1], mean_contact_force, rigid, no_force }
     }
 
-    /// Largest net force on a mobile disk of the backbone over the mean contact force; 0 where it counts as none in the sense of
-    /// [`UNJAMMED_FORCE`] \[1\].
+    /// Largest net force on a mobile disk of the backbone over the mean contact force; 0 where both count as none in the sense of
+    /// [`UNJAMMED_FORCE`]. Without a backbone nothing balances a force, and one counts as none up to an overlap of 10⁻⁶ of a
+    /// radius \[1\].
     pub fn relative_residual(&self) -> f64 {
         self.over_mean(self.on_backbone)
     }
@@ -53,7 +64,8 @@ impl Balance {
     }
 
     fn over_mean(&self, force: f64) -> f64 {
-        if force <= self.no_force { 0.0 } else { force / self.mean_contact_force }
+        let none = force <= self.no_force && (!self.rigid || self.mean_contact_force <= self.no_force);
+        if none || force == 0.0 { 0.0 } else { force / self.mean_contact_force }
     }
 }
 

@@ -108,10 +108,9 @@ impl fmt::Display for Cause {
                      wall, with --outer-radius."
                 )
             }
-            Cause::OtherRadii { count, label } => write!(
-                formatter,
-                "the centre; {count} other disks changed their radius too, disk {label} among them."
-            ),
+            Cause::OtherRadii { count, label } => {
+                write!(formatter, "the centre; {count} other disks changed their radius too, disk {label} among them.")
+            }
             Cause::Centre { label, unbalanced_count } => write!(
                 formatter,
                 "the centre; the {unbalanced_count} unbalanced disks are neighbours of the inflated disk {label}, whose radius or \
@@ -127,9 +126,9 @@ impl fmt::Display for Cause {
                 formatter,
                 "a damaged line; {unbalanced_count} disks are unbalanced, all others at rest; disk {label} has the largest net force."
             ),
-            Cause::Unfinished => {
-                formatter.write_str("a relaxation that ended early; unbalanced disks are everywhere, and no other law is nearer to rest.")
-            }
+            Cause::Unfinished => formatter.write_str(
+                "a relaxation that ended early; unbalanced disks are everywhere, and no other law is nearer to rest.",
+            ),
         }
     }
 }

@@ -149,7 +149,8 @@ mod tests {
 
     #[test]
     fn a_correction_makes_a_coordinate_full() {
-        let corrected = packing([1.5, 2.5, 5.5, 6.5, 10.5, 11.5]).with_corrections(vec![[1e-17, -1e-17]; 3]).expect("valid");
+        let corrected =
+            packing([1.5, 2.5, 5.5, 6.5, 10.5, 11.5]).with_corrections(vec![[1e-17, -1e-17]; 3]).expect("valid");
         assert_eq!(Digits::of(&corrected), None);
     }
 }

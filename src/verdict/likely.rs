@@ -16,14 +16,13 @@ const MOST: f64 = 0.9;
 const FEW: usize = 14;
 
 /// The largest residual of the states under every law but the one they were weighed with.
-pub(super) fn other_laws<const D: usize>(states: &[(&'static str, &State<'_, D>)], choice: &LawChoice) -> Vec<OtherLaw> {
+pub(super) fn other_laws<const D: usize>(
+    states: &[(&'static str, &State<'_, D>)],
+    choice: &LawChoice,
+) -> Vec<OtherLaw> {
     let power = |exponent| LawChoice::PowerLaw(PowerLaw { energy_scale: 1.0, exponent });
-    let all = [
-        LawChoice::Hertzian(Hertzian::default()),
-        LawChoice::Hookean(Hookean::default()),
-        power(2.0),
-        power(2.5),
-    ];
+    let all =
+        [LawChoice::Hertzian(Hertzian::default()), LawChoice::Hookean(Hookean::default()), power(2.0), power(2.5)];
     let same = |law: &LawChoice| law.name() == choice.name() && law.exponent() == choice.exponent();
     let residual = |law: LawChoice| {
         let mut most = 0.0;
@@ -63,7 +62,7 @@ pub(super) fn causes<const D: usize, L: PairLaw>(
     // The state farthest from rest; a residual that is not a number is the farthest.
     let worst = (0..states.len()).max_by(|&a, &b| size(a).total_cmp(&size(b)));
     let Some(worst) = worst.filter(|&index| !verdict.states()[index].at_rest) else { return vec![Cause::Unfinished] };
-    let state = states[worst].1;
+    let (state, found) = (states[worst].1, &verdict.states()[worst]);
     let unbalanced = unbalanced(state, limit);
     let mut causes = Vec::new();
     let best = verdict.other_laws().iter().min_by(|a, b| a.relative_residual.total_cmp(&b.relative_residual));
@@ -79,7 +78,7 @@ pub(super) fn causes<const D: usize, L: PairLaw>(
     }
     if let Some(digits) = Digits::of(state.packing)
         && let Some(residual_bound) = digits.residual_bound(state.packing, &state.network, law)
-        && size(worst) <= residual_bound
+        && larger(found.relative_residual, found.relative_residual_off_backbone) <= residual_bound
     {
         causes.push(Cause::FewDigits { digits, residual_bound });
     }
@@ -90,10 +89,9 @@ pub(super) fn causes<const D: usize, L: PairLaw>(
         let few = unbalanced.len() <= larger(FEW as f64, 0.02 * state.packing.len() as f64) as usize;
         let largest = unbalanced.iter().max_by(|a, b| norm(a.force).total_cmp(&norm(b.force)));
         causes.push(match largest {
-            Some(largest) if few => Cause::FewDisks {
-                unbalanced_count: unbalanced.len(),
-                label: state.packing.labels()[largest.disk],
-            },
+            Some(largest) if few => {
+                Cause::FewDisks { unbalanced_count: unbalanced.len(), label: state.packing.labels()[largest.disk] }
+            }
             _ => Cause::Unfinished,
         });
     }

@@ -153,8 +153,7 @@ impl RestVerdict {
             Decision::NotAtRestButGiven => 1,
             Decision::NotAtRest => 2,
         };
-        let decision =
-            if weight(earlier.decision) > weight(self.decision) { earlier.decision } else { self.decision };
+        let decision = if weight(earlier.decision) > weight(self.decision) { earlier.decision } else { self.decision };
         RestVerdict {
             decision,
             residual_limit: self.residual_limit,
@@ -220,8 +219,12 @@ impl RestVerdict {
 
     /// The residuals of the states that are not at rest, against the limit.
     fn residuals(&self) -> String {
-        let restless: Vec<String> =
-            self.states.iter().filter(|state| !state.at_rest).map(|state| state.sentence(self.residual_limit)).collect();
+        let restless: Vec<String> = self
+            .states
+            .iter()
+            .filter(|state| !state.at_rest)
+            .map(|state| state.sentence(self.residual_limit))
+            .collect();
         format!(
             "Largest net force over mean contact force: {}; at rest it is at most {:e}.",
             restless.join(", "),
