@@ -177,6 +177,8 @@ mod book {
     mod linear_modes {}
     #[doc = include_str!("../book/src/certificate.md")]
     mod certificate {}
+    #[doc = include_str!("../book/src/verdict.md")]
+    mod verdict {}
     #[doc = include_str!("../book/src/relax/fire.md")]
     mod relax_fire {}
     #[doc = include_str!("../book/src/relax/damped.md")]
