@@ -96,11 +96,8 @@ impl Digits {
 fn decimal<const D: usize>(domain: &Domain<D>, value: f64, axis: usize) -> Decimal {
     let plain = shortest(value);
     let Domain::Periodic { corner, lengths } = domain else { return plain };
-    if plain.digits <= MOST {
-        return plain;
-    }
     let (start, side) = (corner[axis], lengths[axis]);
-    let scaled = (1..=MOST).find_map(|digits| {
+    let scaled = (1..plain.digits.min(MOST + 1)).find_map(|digits| {
         let text = format!("{:.*e}", digits - 1, (value - start) / side);
         let share: f64 = text.parse().ok()?;
         (start + share * side == value).then(|| shortest(share))
