@@ -165,6 +165,35 @@ fn a_disk_far_off_equilibrium_gives_no_phase() {
     assert_eq!((&states[0]["at_rest"], &states[1]["at_rest"]), (&Value::from(false), &Value::from(true)));
 }
 
+/// The ring after with these disks, by label, of another radius.
+fn with_radii(folder: &Path, radii: &[(usize, &str)]) -> PathBuf {
+    let whole = std::fs::read_to_string(fixture("verdict/ring.after.xyz")).expect("a fixture");
+    let mut lines: Vec<String> = whole.lines().map(Into::into).collect();
+    for &(label, radius) in radii {
+        // Two lines, then disk 1.
+        let line = &mut lines[label + 1];
+        let mut words: Vec<&str> = line.split_whitespace().collect();
+        assert_eq!(words[4], label.to_string(), "another fixture");
+        words[3] = radius;
+        *line = words.join(" ");
+    }
+    let path = folder.join("ring.after.xyz");
+    std::fs::write(&path, lines.join("\n") + "\n").expect("a temporary file");
+    path
+}
+
+#[test]
+fn radii_other_than_those_at_rest_are_named() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let before = fixture("verdict/ring.before.xyz");
+    let after = with_radii(folder.path(), &[(205, "0.62")]);
+    let found = analysed(&before, &after, &["--outer-radius", "11"]);
+    refused(&found, "centre", &["are neighbours of the inflated disk 205"]);
+    let after = with_radii(folder.path(), &[(5, "0.55"), (6, "0.75")]);
+    let found = analysed(&before, &after, &["--outer-radius", "11", "--centre", "205"]);
+    refused(&found, "other_radii", &["2 other disks changed their radius too, disk 5 among them"]);
+}
+
 #[test]
 fn one_flag_overrides_and_the_report_still_says_so_first() {
     let found = ring(&["--outer-radius", "12", "--not-at-rest"]);
