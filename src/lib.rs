@@ -71,6 +71,7 @@
 //! | [`reference`](mod@reference) | exact solutions, elastic and screened | [`Annulus`](reference::Annulus) |
 //! | `fit` (feature `fit`) | a profile against both solutions, with errors and a decision; slope and crossover of an angular spectrum; crossings, powers and collapses of ensembles | `fit::profile::fit_radial_profile`, `fit::angular::fit_slope`, `fit::ensemble` |
 //! | `protocol` (feature `linear`) | whether relaxers end in the same minimum | `protocol::ProtocolSensitivity` |
+//! | [`verdict`] | whether states are at rest, hence whether a phase and fits may be given | [`RestVerdict`](verdict::RestVerdict) |
 //! | [`scene`] | everything a run needs, as plain data | [`Scene`](scene::Scene) |
 //! | [`response`] | all observables of one inflation, and its phase | [`Response`](response::Response) |
 //! | [`analysis`] | the same of states relaxed elsewhere | [`Analysis`](analysis::Analysis) |
@@ -134,6 +135,7 @@ pub mod study;
 #[cfg(feature = "fit")]
 pub mod transition;
 pub mod vector;
+pub mod verdict;
 
 /// The README and the chapters of the book, so that `cargo test --doc` compiles and runs their snippets.
 #[cfg(doctest)]
@@ -175,6 +177,8 @@ mod book {
     mod linear_modes {}
     #[doc = include_str!("../book/src/certificate.md")]
     mod certificate {}
+    #[doc = include_str!("../book/src/verdict.md")]
+    mod verdict {}
     #[doc = include_str!("../book/src/relax/fire.md")]
     mod relax_fire {}
     #[doc = include_str!("../book/src/relax/damped.md")]

@@ -5,6 +5,8 @@ mod analyse;
 #[cfg(feature = "linear")]
 #[path = "cli/elasticity.rs"]
 mod elasticity;
+#[path = "cli/ending.rs"]
+mod ending;
 #[path = "cli/exact/mod.rs"]
 mod exact;
 #[path = "cli/inspect.rs"]
@@ -30,12 +32,13 @@ use jamscope::relax::RelaxerChoice;
 use jamscope::report;
 use jamscope::run::{SampleOutcome, run};
 use jamscope::scene::{Sample, Scene, Source};
+use jamscope::verdict::{AboveLimit, Decision, VerdictSettings};
 
 /// The mechanics of jammed packings: prepare, inflate, relax, and hold the response against exact solutions.
 ///
 /// Without a command, `run` with the built-in scene: the three phases side by side.
 #[derive(Parser)]
-#[command(version, about)]
+#[command(version, about, after_help = ending::HELP)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -78,6 +81,9 @@ struct RunArguments {
     /// Threads; without it one a core. Never changes a result.
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
+    /// Give a phase and fits, and end with 0, even if a state is not at rest.
+    #[arg(long)]
+    not_at_rest: bool,
 }
 
 #[derive(Args)]
@@ -94,6 +100,9 @@ struct InspectArguments {
     /// Dimension of the packing.
     #[arg(long, value_name = "D", default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
     dimension: u8,
+    /// End with 0 even if the packing is not at rest.
+    #[arg(long)]
+    not_at_rest: bool,
     /// Print JSON, every number at full precision.
     #[arg(long)]
     json: bool,
@@ -136,6 +145,7 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     if let Some(seed) = arguments.seed {
         scene.sample.iter_mut().for_each(|sample| sample.seed = seed);
     }
+    override_limit(&mut scene.verdict, arguments.not_at_rest);
     set_threads(arguments.threads)?;
     let bars = progress::Bars::new(scene.sample.iter().map(|sample| sample.name.as_str()));
     let report = run(&scene, &bars)?;
@@ -146,10 +156,26 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     print(&format!("\n{} files in {}, start from {}\n", files.len(), arguments.out.display(), shown.display()))?;
     let failed = report.samples.iter().filter(|sample| matches!(sample.result, SampleOutcome::Failed(_))).count();
     if failed == 0 {
-        return Ok(ExitCode::SUCCESS);
+        let not_at_rest = report.samples.iter().filter(|sample| is_refused(&sample.result));
+        return Ok(ending::of_states(&not_at_rest.map(|sample| sample.name.clone()).collect::<Vec<_>>()));
     }
     let scene_name = arguments.scene.as_ref().map_or("the built-in scene".into(), |path| path.display().to_string());
     Err(format!("{scene_name}: {failed} of {} samples failed, see above", report.samples.len()).into())
+}
+
+/// With the flag `--not-at-rest` a phase and fits are given whatever the residual.
+fn override_limit(settings: &mut VerdictSettings, given: bool) {
+    if given {
+        settings.above_limit = AboveLimit::Given;
+    }
+}
+
+/// Whether a sample has no phase because a state of it is not at rest.
+fn is_refused(result: &SampleOutcome) -> bool {
+    match result {
+        SampleOutcome::Done(result) => result.response.verdict.decision() == Decision::NotAtRest,
+        SampleOutcome::Failed(_) => false,
+    }
 }
 
 /// The sample of `--packing`: the file, relaxed after the inflation as the first sample of the scene.
@@ -191,12 +217,18 @@ fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
     let mode_count = arguments.modes;
     #[cfg(not(feature = "linear"))]
     let mode_count = 0;
-    let inspection = inspect::inspect(&arguments.packing, law, usize::from(arguments.dimension), mode_count)?;
+    let mut settings = VerdictSettings::default();
+    override_limit(&mut settings, arguments.not_at_rest);
+    let dimension = usize::from(arguments.dimension);
+    let inspection = inspect::inspect(&arguments.packing, law, dimension, mode_count, &settings)?;
     if arguments.json {
-        print(&format!("{}\n", serde_json::to_string_pretty(&inspection)?))
+        print(&format!("{}\n", serde_json::to_string_pretty(&inspection)?))?;
     } else {
-        print(&inspection.to_string())
+        print(&inspection.to_string())?;
     }
+    let refused = inspection.verdict.decision() == Decision::NotAtRest;
+    let name = refused.then(|| arguments.packing.display().to_string());
+    Ok(ending::of_states(&name.into_iter().collect::<Vec<_>>()))
 }
 
 /// Prints to the standard output; a reader that has gone away (`| head`) is no failure.

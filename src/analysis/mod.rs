@@ -4,7 +4,8 @@
 //! before, after  →  disks matched by label, the inflated one found  →  d_i = r_i(after) − r_i(before)  →  Response
 //! ```
 //!
-//! Whether the states are at rest is not taken on trust: each has a [`Certificate`] with its residual. The inflated disk is
+//! Whether the states are at rest is not taken on trust: each has a [`Certificate`] with its residual, and a [`RestVerdict`] says
+//! whether there may be a phase and fits. The inflated disk is
 //! the one whose radius changed, unless it is named. A state is unjammed by the rule of the relaxers: its contact forces are those
 //! of rounding. Disks beyond R are held, and so is the centre, where either R is given
 //! or the file says which disks are held; otherwise the box is periodic and R half its shortest side.
@@ -25,6 +26,7 @@ use crate::packing::{PackingError, ball_volume};
 use crate::relax::UNJAMMED_FORCE;
 use crate::response::{Response, Subject};
 use crate::scene::Observables;
+use crate::verdict::{Place, RestVerdict, VerdictSettings};
 
 /// Two states and what is measured on them.
 #[derive(Debug, Clone, Serialize)]
@@ -79,24 +81,30 @@ pub struct StateAnalysis {
 }
 
 impl Analysis {
-    /// Measures a pair of states.
+    /// Measures a pair of states; with a phase and fits if they are at rest by `verdict`, or these settings want both all the same.
     ///
     /// # Errors
     /// Two disks with the same centre. Settings are expected to have been [checked](Observables::check).
-    pub fn of(name: &str, pair: Pair, law: &LawChoice, observables: &Observables) -> Result<Self, PackingError> {
+    pub fn of(
+        name: &str,
+        pair: Pair,
+        law: &LawChoice,
+        observables: &Observables,
+        verdict: &VerdictSettings,
+    ) -> Result<Self, PackingError> {
         match law {
-            LawChoice::Hertzian(of) => Self::with_law(name, pair, law, of, observables),
-            LawChoice::Hookean(of) => Self::with_law(name, pair, law, of, observables),
-            LawChoice::PowerLaw(of) => Self::with_law(name, pair, law, of, observables),
+            LawChoice::Hertzian(of) => Self::with_law(name, pair, (law, of), observables, verdict),
+            LawChoice::Hookean(of) => Self::with_law(name, pair, (law, of), observables, verdict),
+            LawChoice::PowerLaw(of) => Self::with_law(name, pair, (law, of), observables, verdict),
         }
     }
 
     fn with_law<L: PairLaw>(
         name: &str,
         pair: Pair,
-        choice: &LawChoice,
-        law: &L,
+        (choice, law): (&LawChoice, &L),
         observables: &Observables,
+        verdict: &VerdictSettings,
     ) -> Result<Self, PackingError> {
         let (centre, outer_radius) = (pair.centre, pair.outer_radius);
         let state = |packing| State::new(packing, law);
@@ -110,7 +118,12 @@ impl Analysis {
         let unjammed = [&before, &after].iter().any(|state| is_unjammed(state, law));
         let states = [(before.packing, before.network.backbone.as_slice()), (after.packing, &after.network.backbone)];
         let field = DisplacementField::of_states(states, unjammed, centre, inner_radius, outer_radius);
-        let subject = Subject { field, before, after, deflated, centre, pressure_change: pressure.change };
+        let held = matches!(pair.boundary, Boundary::HeldRim { .. });
+        let place = Place { centre, outer_radius: held.then_some(outer_radius) };
+        let mut named = vec![("before", &before), ("after", &after)];
+        named.extend(deflated.as_ref().map(|state| ("after the deflation", state)));
+        let verdict = RestVerdict::of(&named, law, choice, Some(place), verdict);
+        let subject = Subject { verdict, field, before, after, deflated, centre, pressure_change: pressure.change };
         let response = Response::of(subject, observables);
         Ok(Analysis {
             name: name.into(),

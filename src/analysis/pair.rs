@@ -53,7 +53,7 @@ pub enum AnalysisError {
         state: &'static str,
     },
     /// No radius changed.
-    #[error("no disk changed its radius: name the inflated one by its label")]
+    #[error("no disk changed its radius, so none was inflated")]
     NoCentre,
     /// Several radii changed.
     #[error("{count} disks changed their radius, disks {first} and {second} among them: one is inflated")]
@@ -72,6 +72,16 @@ pub enum AnalysisError {
         label: u64,
         /// How many have it.
         count: usize,
+    },
+    /// The disk named as the inflated one has one radius in both states.
+    #[error("disk {label} is named as the inflated one, but its radius is {radius} before and after{}", grown_instead(*grown))]
+    CentreUnchanged {
+        /// Its label.
+        label: u64,
+        /// Its radius.
+        radius: f64,
+        /// Label of a disk whose radius changed.
+        grown: Option<u64>,
     },
     /// R makes no sense.
     #[error("the outer radius is {outer_radius}, not above the radius of the inflated disk, {inner_radius}")]
@@ -93,6 +103,11 @@ pub enum AnalysisError {
     /// The disks themselves are at fault.
     #[error(transparent)]
     Packing(#[from] PackingError),
+}
+
+/// What else may have been meant.
+fn grown_instead(label: Option<u64>) -> String {
+    label.map_or(String::new(), |label| format!("; that of disk {label} changed"))
 }
 
 /// States of the same disks in one order.
@@ -128,7 +143,7 @@ impl Pair {
         let after = matched(&before, after, "after")?;
         let deflated = deflated.map(|deflated| matched(&before, deflated, "after the deflation")).transpose()?;
         let centre = match settings.centre_label {
-            Some(label) => labelled(&before, label)?,
+            Some(label) => changed(&before, &after, labelled(&before, label)?)?,
             None => grown(&before, &after)?,
         };
         let (outer_radius, boundary) = outer(&before, centre, settings.outer_radius)?;
@@ -203,10 +218,24 @@ fn labelled(packing: &Packing<2>, label: u64) -> Result<usize, AnalysisError> {
     }
 }
 
+/// The disk itself, if its radius changed.
+fn changed(before: &Packing<2>, after: &Packing<2>, centre: usize) -> Result<usize, AnalysisError> {
+    let radius = before.radii()[centre];
+    if radius != after.radii()[centre] {
+        return Ok(centre);
+    }
+    let grown = all_grown(before, after).first().map(|&disk| before.labels()[disk]);
+    Err(AnalysisError::CentreUnchanged { label: before.labels()[centre], radius, grown })
+}
+
+fn all_grown(before: &Packing<2>, after: &Packing<2>) -> Vec<usize> {
+    let radii = before.radii().iter().zip(after.radii()).enumerate();
+    radii.filter(|(_, (a, b))| a != b).map(|(disk, _)| disk).collect()
+}
+
 /// The disk whose radius changed.
 fn grown(before: &Packing<2>, after: &Packing<2>) -> Result<usize, AnalysisError> {
-    let radii = before.radii().iter().zip(after.radii()).enumerate();
-    let changed: Vec<usize> = radii.filter(|(_, (a, b))| a != b).map(|(disk, _)| disk).collect();
+    let changed = all_grown(before, after);
     match changed[..] {
         [] => Err(AnalysisError::NoCentre),
         [centre] => Ok(centre),

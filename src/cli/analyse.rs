@@ -8,9 +8,10 @@ use jamscope::analysis::{Analysis, Pair, PairSettings};
 use jamscope::io::{read_packing, read_properties};
 use jamscope::report;
 use jamscope::scene::Observables;
+use jamscope::verdict::{Decision, VerdictSettings};
 
 use crate::law_of_file::{self, LawName};
-use crate::{Failure, print, scene_file};
+use crate::{Failure, ending, override_limit, print, scene_file};
 
 /// What `analyse` is asked for.
 #[derive(Args)]
@@ -31,9 +32,12 @@ pub struct AnalyseArguments {
     /// k' of the Hertzian and Hookean law, energy scale of the power law, where the files do not say.
     #[arg(long, value_name = "K")]
     stiffness: Option<f64>,
-    /// Measure what the observables of this scene name (TOML); without it all.
+    /// Measure what the observables of this scene name, with the limit of its verdict (TOML); without it all.
     #[arg(long, value_name = "SCENE")]
     scene: Option<PathBuf>,
+    /// Give a phase and fits, and end with 0, even if a state is not at rest.
+    #[arg(long)]
+    not_at_rest: bool,
     /// Folder for the results.
     #[arg(long, value_name = "DIR", default_value = "jamscope-analysis")]
     out: PathBuf,
@@ -49,10 +53,14 @@ struct Files {
 
 /// Analyses all pairs; fails if one of them could not be, after the others.
 pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
-    let observables = match &arguments.scene {
-        Some(path) => scene_file::read_scene(path)?.observables,
-        None => Observables::default(),
+    let (observables, mut verdict) = match &arguments.scene {
+        Some(path) => {
+            let scene = scene_file::read_scene(path)?;
+            (scene.observables, scene.verdict)
+        }
+        None => (Observables::default(), VerdictSettings::default()),
     };
+    override_limit(&mut verdict, arguments.not_at_rest);
     let all = match &arguments.states[..] {
         [folder] => pairs_in(folder)?,
         [before, after, deflated @ ..] => vec![Files {
@@ -66,7 +74,7 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
     let mut analyses = Vec::new();
     let mut failures = Vec::new();
     for files in &all {
-        match analyse(files, arguments, &observables) {
+        match analyse(files, arguments, &observables, &verdict) {
             Ok(analysis) => analyses.push(analysis),
             Err(error) => failures.push(format!("{} and {}: {error}", files.before.display(), files.after.display())),
         }
@@ -78,10 +86,19 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
         let shown = page.unwrap_or(&arguments.out).display();
         print(&format!("\n{} files in {}, start from {shown}\n", written.len(), arguments.out.display()))?;
     }
-    if failures.is_empty() { Ok(ExitCode::SUCCESS) } else { Err(failures.join("\n").into()) }
+    if !failures.is_empty() {
+        return Err(failures.join("\n").into());
+    }
+    let refused = analyses.iter().filter(|analysis| analysis.response.verdict.decision() == Decision::NotAtRest);
+    Ok(ending::of_states(&refused.map(|analysis| analysis.name.clone()).collect::<Vec<_>>()))
 }
 
-fn analyse(files: &Files, arguments: &AnalyseArguments, observables: &Observables) -> Result<Analysis, Failure> {
+fn analyse(
+    files: &Files,
+    arguments: &AnalyseArguments,
+    observables: &Observables,
+    verdict: &VerdictSettings,
+) -> Result<Analysis, Failure> {
     let law = |path: &Path| law_of_file::law_of(path, arguments.law, arguments.stiffness);
     let (first, second) = (law(&files.before)?, law(&files.after)?);
     // A file that says nothing has the law of the one that does.
@@ -101,7 +118,7 @@ fn analyse(files: &Files, arguments: &AnalyseArguments, observables: &Observable
     let (before, after) = (read_packing(&files.before)?, read_packing(&files.after)?);
     let pair = Pair::new(before, &after, deflated.as_ref(), &settings)?;
     law.check()?;
-    Ok(Analysis::of(&files.name, pair, &law, observables)?)
+    Ok(Analysis::of(&files.name, pair, &law, observables, verdict)?)
 }
 
 fn says_law(path: &Path) -> Result<bool, Failure> {

@@ -5,11 +5,13 @@ use std::path::Path;
 use jamscope::certificate::Certificate;
 #[cfg(feature = "linear")]
 use jamscope::certificate::Stability;
-use jamscope::contact::{ContactNetwork, LawChoice, PairLaw};
+use jamscope::contact::{LawChoice, PairLaw};
 use jamscope::io::read_packing;
 use jamscope::observe::ForceDistribution;
 use jamscope::observe::force_distribution::PERCENTILES;
+use jamscope::observe::state::State;
 use jamscope::packing::{Domain, Packing};
+use jamscope::verdict::{RestVerdict, VerdictSettings};
 use serde::Serialize;
 
 #[cfg(feature = "linear")]
@@ -18,6 +20,8 @@ use crate::elasticity::{Elasticity, Vibrations};
 /// What `inspect` says of a packing.
 #[derive(Debug, Serialize)]
 pub struct Inspection {
+    /// Whether it is at rest, and if not, what is likely.
+    pub verdict: RestVerdict,
     /// The contact law it was looked at with.
     law: LawChoice,
     /// Dimension of space.
@@ -80,12 +84,13 @@ pub fn inspect(
     law: LawChoice,
     dimension: usize,
     mode_count: usize,
+    settings: &VerdictSettings,
 ) -> Result<Inspection, Box<dyn std::error::Error>> {
     law.check()?;
     let inspection = if dimension == 3 {
-        with_law(&read_packing::<3>(path)?, law, mode_count)
+        with_law(&read_packing::<3>(path)?, law, mode_count, settings)
     } else {
-        with_law(&read_packing::<2>(path)?, law, mode_count)
+        with_law(&read_packing::<2>(path)?, law, mode_count, settings)
     };
     inspection.map_err(|error| format!("{}: {error}", path.display()).into())
 }
@@ -94,11 +99,12 @@ fn with_law<const D: usize>(
     packing: &Packing<D>,
     choice: LawChoice,
     mode_count: usize,
+    settings: &VerdictSettings,
 ) -> Result<Inspection, Box<dyn std::error::Error>> {
     match choice {
-        LawChoice::Hertzian(law) => of(packing, &law, choice, mode_count),
-        LawChoice::Hookean(law) => of(packing, &law, choice, mode_count),
-        LawChoice::PowerLaw(law) => of(packing, &law, choice, mode_count),
+        LawChoice::Hertzian(law) => of(packing, &law, choice, mode_count, settings),
+        LawChoice::Hookean(law) => of(packing, &law, choice, mode_count, settings),
+        LawChoice::PowerLaw(law) => of(packing, &law, choice, mode_count, settings),
     }
 }
 
@@ -108,12 +114,16 @@ fn of<const D: usize, L: PairLaw>(
     law: &L,
     choice: LawChoice,
     mode_count: usize,
+    settings: &VerdictSettings,
 ) -> Result<Inspection, Box<dyn std::error::Error>> {
-    let network = ContactNetwork::new(packing, law)?;
+    let state = State::new(packing, law)?;
+    let verdict = RestVerdict::of(&[("in the file", &state)], law, &choice, None, settings);
+    let network = state.network;
     let volume = packing.domain().volume();
     let contacts = &network.contacts;
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, jamscope::vector::larger);
     Ok(Inspection {
+        verdict,
         law: choice,
         dimension: D,
         disk_count: packing.len(),
@@ -193,6 +203,9 @@ fn write_certificate(f: &mut std::fmt::Formatter<'_>, certificate: &Certificate)
 
 impl std::fmt::Display for Inspection {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for paragraph in self.verdict.paragraphs() {
+            writeln!(f, "{paragraph}")?;
+        }
         let disks = if self.dimension == 2 { "disks" } else { "balls" };
         writeln!(f, "{disks:<28} {}", self.disk_count)?;
         let law = match self.law {

@@ -13,6 +13,7 @@ use crate::report::rows::{Section, Times, done, law, sections, settings};
 use crate::response::Response;
 use crate::run::{Report, SampleOutcome, SampleReport, SampleResult};
 use crate::scene::Source;
+use crate::verdict::RestVerdict;
 
 pub(crate) const STYLE: &str = include_str!("page.css");
 
@@ -26,6 +27,7 @@ const HEADING: &str = "Response of a packing to the inflation of one disk";
 /// A figure whose numbers are not finite.
 pub fn page(report: &Report) -> Result<String, FigureError> {
     let mut html = head(TITLE, HEADING, &introduction(report));
+    html.push_str(&not_at_rest(crate::report::rows::verdicts(&report.samples)));
     for sample in &report.samples {
         html.push_str(&section(report, sample)?);
     }
@@ -52,6 +54,7 @@ pub fn analysis_page(analyses: &[Analysis]) -> Result<String, FigureError> {
         response_page::legend(&responses, true).trim_end()
     );
     let mut html = head(TITLE, HEADING, &introduction);
+    html.push_str(&not_at_rest(analyses.iter().map(|analysis| (analysis.name.as_str(), &analysis.response.verdict))));
     for analysis in analyses {
         let name = escaped(&analysis.name);
         let facts = [
@@ -113,6 +116,27 @@ pub(crate) fn pictures(figures: Vec<Figure>) -> String {
 fn links(files: impl Iterator<Item = String>) -> String {
     let each = files.map(|file| escaped(&file)).map(|file| format!(" <a href=\"{file}\">{file}</a>"));
     format!("<p class=\"files\">Data:{}</p>\n", each.collect::<Vec<_>>().join(","))
+}
+
+/// What has to be known first: which states are not at rest, and what is likely; nothing where all are.
+fn not_at_rest<'a>(verdicts: impl Iterator<Item = (&'a str, &'a RestVerdict)>) -> String {
+    let mut html = String::new();
+    for (name, verdict) in verdicts {
+        let paragraphs = verdict.paragraphs();
+        if paragraphs.is_empty() {
+            continue;
+        }
+        let name = escaped(name);
+        let _ = write!(
+            html,
+            "<section class=\"sample failed\" aria-label=\"{name} is not at rest\">\n<h2>{name}: not at rest</h2>\n"
+        );
+        for paragraph in paragraphs {
+            let _ = writeln!(html, "<p class=\"reason\">{}</p>", escaped(&paragraph));
+        }
+        html.push_str("</section>\n");
+    }
+    html
 }
 
 /// The largest radius \[length\].

@@ -3,6 +3,7 @@
 use crate::analysis::Analysis;
 use crate::report::rows::{Section, Times, failures, refusals, sections};
 use crate::run::{Report, SampleReport};
+use crate::verdict::RestVerdict;
 
 /// Characters in a line, at most.
 pub const WIDTH: usize = 100;
@@ -20,8 +21,8 @@ const CELL_WIDTH: usize = (WIDTH - LABEL_WIDTH) / SAMPLES_ABREAST;
 ///
 /// Samples stand side by side, three at a time. Those that failed are told below, with the reason.
 pub fn terminal_table(report: &Report) -> String {
-    let mut lines =
-        vec![format!("jamscope {}, {}", report.jamscope_version, crate::report::rows::law(&report.scene.law))];
+    let mut lines = not_at_rest(crate::report::rows::verdicts(&report.samples));
+    lines.push(format!("jamscope {}, {}", report.jamscope_version, crate::report::rows::law(&report.scene.law)));
     for samples in report.samples.chunks(SAMPLES_ABREAST) {
         let names = samples.iter().map(|sample| sample.name.as_str());
         columns(names, &sections(report, samples, Times::Shown), &mut lines);
@@ -38,7 +39,8 @@ pub fn terminal_table(report: &Report) -> String {
 /// The numbers of analyses, as those of a report.
 pub fn analysis_table(analyses: &[Analysis]) -> String {
     let law = analyses.first().map_or(String::new(), |first| format!(", {}", crate::report::rows::law(&first.law)));
-    let mut lines = vec![format!("jamscope {}{law}", env!("CARGO_PKG_VERSION"))];
+    let mut lines = not_at_rest(analyses.iter().map(|analysis| (analysis.name.as_str(), &analysis.response.verdict)));
+    lines.push(format!("jamscope {}{law}", env!("CARGO_PKG_VERSION")));
     for analyses in analyses.chunks(SAMPLES_ABREAST) {
         let names = analyses.iter().map(|analysis| analysis.name.as_str());
         columns(names, &crate::report::rows::analysis::sections(analyses), &mut lines);
@@ -50,6 +52,19 @@ pub fn analysis_table(analyses: &[Analysis]) -> String {
         }
     }
     text(&lines)
+}
+
+/// What has to be known first: which states are not at rest, and what is likely.
+fn not_at_rest<'a>(verdicts: impl Iterator<Item = (&'a str, &'a RestVerdict)>) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (name, verdict) in verdicts {
+        let paragraphs = verdict.paragraphs();
+        lines.extend(paragraphs.iter().flat_map(|paragraph| wrapped(&format!("{name}: {paragraph}"))));
+        if !paragraphs.is_empty() {
+            lines.push(String::new());
+        }
+    }
+    lines
 }
 
 fn text(lines: &[String]) -> String {

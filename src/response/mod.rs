@@ -2,7 +2,7 @@
 //!
 //! A response is measured on two states, before and after, wherever they come from: a run makes them, an
 //! [`analysis`](crate::analysis) reads them from files. What [`Observables`] does not name is not computed; what cannot be had
-//! says why, [`Measurement::Refused`].
+//! says why, [`Measurement::Refused`]. A phase and fits are given only with the leave of a [`RestVerdict`].
 
 mod contacts;
 mod phase;
@@ -32,6 +32,7 @@ use crate::observe::{AngularProfile, Multipoles, RadialProfile};
 #[cfg(feature = "fit")]
 use crate::reference::Annulus;
 use crate::scene::{AngularCorrelationSettings, Observables};
+use crate::verdict::RestVerdict;
 
 /// Something measured, or why there is none.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -69,6 +70,8 @@ impl<T, E: Display> From<Result<T, E>> for Measurement<T> {
 
 /// The states a response is measured on.
 pub struct Subject<'a> {
+    /// Whether they are at rest.
+    pub verdict: RestVerdict,
     /// The displacement from the first to the second.
     pub field: DisplacementField<2>,
     /// Before the inflation.
@@ -86,6 +89,8 @@ pub struct Subject<'a> {
 /// All that is measured on a response; what was not asked for is absent.
 #[derive(Debug, Clone, Serialize)]
 pub struct Response {
+    /// Whether the states are at rest, hence whether there may be a phase and fits.
+    pub verdict: RestVerdict,
     /// Which disks the observables are measured on.
     pub measured_on: MeasuredOn,
     /// Which phase the packing shows.
@@ -152,15 +157,21 @@ pub struct RingResponse {
 impl Response {
     /// Measures what `observables` names; settings are expected to have been [checked](Observables::check).
     pub fn of(subject: Subject<'_>, observables: &Observables) -> Self {
-        let Subject { field, before, after, deflated, centre, pressure_change } = subject;
+        let Subject { verdict, field, before, after, deflated, centre, pressure_change } = subject;
+        let increase = after.packing.radii()[centre] - before.packing.radii()[centre];
+        let no_fit = no_fit(&verdict, increase);
         let radial_profile = observables.radial_profile.map(|settings| RadialProfile::of(&field, settings.ring_width));
         let multipoles: Option<Measurement<Multipoles>> =
             observables.multipoles.map(|settings| Multipoles::of(&field, &settings).into());
         let mut response = Response {
+            verdict,
             measured_on: field.measured_on,
             phase: PhaseDecision::default(),
             #[cfg(feature = "fit")]
             profile_fit: observables.profile_fit.zip(radial_profile.as_ref()).map(|(settings, profile)| {
+                if let Some(reason) = &no_fit {
+                    return Measurement::Refused(reason.clone());
+                }
                 match Annulus::new(field.inner_radius, field.outer_radius) {
                     Ok(annulus) => fit_radial_profile(profile, annulus, &settings).into(),
                     Err(error) => Measurement::Refused(error.to_string()),
@@ -178,16 +189,18 @@ impl Response {
             angular_correlation: observables
                 .angular_correlation
                 .as_ref()
-                .map(|settings| RingResponse::of(&field, settings, observables).into()),
+                .map(|settings| RingResponse::of(&field, settings, observables, no_fit.as_deref()).into()),
             radial_dependence: observables
                 .radial_dependence
                 .as_ref()
                 .map(|settings| radial_dependence(&field, settings).into()),
             #[cfg(feature = "fit")]
-            elastic_modes: observables
-                .elastic_modes
-                .zip(multipoles.as_ref().and_then(Measurement::measured))
-                .map(|(settings, modes)| fit_elastic_modes(modes, field.outer_radius, &settings).into()),
+            elastic_modes: observables.elastic_modes.zip(multipoles.as_ref().and_then(Measurement::measured)).map(
+                |(settings, modes)| match &no_fit {
+                    Some(reason) => Measurement::Refused(reason.clone()),
+                    None => fit_elastic_modes(modes, field.outer_radius, &settings).into(),
+                },
+            ),
             multipoles,
             contact_changes: observables
                 .contact_changes
@@ -200,9 +213,17 @@ impl Response {
                 .map(|settings| BondChanges::between(&before, &after, centre, settings.bonds)),
             field,
         };
-        response.phase = PhaseDecision::of(&response, pressure_change);
+        response.phase = PhaseDecision::of(&response, pressure_change, increase);
         response
     }
+}
+
+/// Why nothing is fitted, if so.
+fn no_fit(verdict: &RestVerdict, increase: f64) -> Option<String> {
+    if increase == 0.0 {
+        return Some("the radius of the inflated disk did not change: there is no response".into());
+    }
+    verdict.refusal()
 }
 
 impl RingResponse {
@@ -210,20 +231,25 @@ impl RingResponse {
         field: &DisplacementField<2>,
         settings: &AngularCorrelationSettings,
         observables: &Observables,
+        no_fit: Option<&str>,
     ) -> Result<Self, AngularError> {
         #[cfg(not(feature = "fit"))]
-        let _ = observables;
+        let _ = (observables, no_fit);
         let ring = RingSample::of_field(field, &settings.ring)?;
         Ok(RingResponse {
             relative_radius: settings.ring.relative_radius,
             spectrum: PowerSpectrum::of(&ring, &settings.spectrum)?,
             correlation: AngularCorrelation::of(&ring, &settings.correlation)?,
             #[cfg(feature = "fit")]
-            slope: observables.spectrum_fit.map(|fit| fit_slope(std::slice::from_ref(&ring), &fit.slope).into()),
+            slope: observables.spectrum_fit.map(|fit| match no_fit {
+                Some(reason) => Measurement::Refused(reason.into()),
+                None => fit_slope(std::slice::from_ref(&ring), &fit.slope).into(),
+            }),
             #[cfg(feature = "fit")]
-            crossover: observables
-                .spectrum_fit
-                .map(|fit| fit_crossover(std::slice::from_ref(&ring), &fit.crossover).into()),
+            crossover: observables.spectrum_fit.map(|fit| match no_fit {
+                Some(reason) => Measurement::Refused(reason.into()),
+                None => fit_crossover(std::slice::from_ref(&ring), &fit.crossover).into(),
+            }),
         })
     }
 }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use crate::certificate::Certificate;
 use crate::contact::{ContactNetwork, LawChoice, OnSite, PairLaw};
 use crate::displacement::DisplacementField;
-use crate::inflation::{Inflated, InflationError, Rest, inflate};
+use crate::inflation::{Boundary, Inflated, InflationError, Rest, inflate};
 use crate::io::{ReadError, read_packing};
 use crate::observe::PressureChange;
 use crate::observe::state::State;
@@ -20,6 +20,7 @@ use crate::protocol::{Compared, Protocol, ProtocolSensitivity, ProtocolSettings,
 use crate::relax::{Criterion, Look, Outcome, Relaxer, RelaxerChoice, Stop, Trace};
 use crate::response::{Response, Subject};
 use crate::scene::{Sample, Scene, SceneError, Source};
+use crate::verdict::{Place, RestVerdict};
 
 #[cfg(feature = "linear")]
 pub use report_data::PlasticSummary;
@@ -221,7 +222,12 @@ pub(crate) fn measure<L: PairLaw>(
     let trace = &mut watch("inflation", &sample.relaxer);
     let inflated = inflate(&scene.inflation, &prepared, law, &sample.relaxer, sample.seed, trace)?;
     let observables = &scene.observables;
-    let response = Response::of(subject(&inflated, law)?, observables);
+    let verdict = verdict(scene, &inflated, law)?;
+    let verdict = match &packing.as_read {
+        Some(read) => verdict.after(read),
+        None => verdict,
+    };
+    let response = Response::of(subject(&inflated, law, verdict)?, observables);
     #[cfg(feature = "linear")]
     let plastic_part = observables
         .plastic_part
@@ -229,7 +235,7 @@ pub(crate) fn measure<L: PairLaw>(
     #[cfg(feature = "linear")]
     let protocol = observables.protocol.filter(|settings| takes(scene, sample, settings)).map(|settings| {
         let trace = &mut watch("protocols", &sample.relaxer);
-        protocol_of(scene, sample, &inflated, law, &settings, trace).map(Box::new).into()
+        protocol_of(scene, sample, (&inflated, &response.verdict), law, &settings, trace).map(Box::new).into()
     });
     Ok(SampleResult {
         packing,
@@ -246,9 +252,14 @@ pub(crate) fn measure<L: PairLaw>(
 }
 
 /// An inflation as the observables see it.
-fn subject<'a, L: PairLaw>(inflated: &'a Inflated<2>, law: &L) -> Result<Subject<'a>, PackingError> {
+fn subject<'a, L: PairLaw>(
+    inflated: &'a Inflated<2>,
+    law: &L,
+    verdict: RestVerdict,
+) -> Result<Subject<'a>, PackingError> {
     let state = |rest: &'a Rest<2>| State::new(rest.packing.get(), law);
     Ok(Subject {
+        verdict,
         field: DisplacementField::of_inflation(inflated),
         before: state(&inflated.before)?,
         after: state(&inflated.after)?,
@@ -256,6 +267,27 @@ fn subject<'a, L: PairLaw>(inflated: &'a Inflated<2>, law: &L) -> Result<Subject
         centre: inflated.centre,
         pressure_change: inflated.after.pressure - inflated.before.pressure,
     })
+}
+
+/// Whether the states of an inflation are at rest, under the pushes from sites too where there are some.
+fn verdict<L: PairLaw>(scene: &Scene, inflated: &Inflated<2>, law: &L) -> Result<RestVerdict, PackingError> {
+    match scene.inflation.on_site_coupling {
+        None => verdict_under(scene, inflated, law),
+        Some(coupling) => verdict_under(scene, inflated, &OnSite { law: *law, coupling }),
+    }
+}
+
+fn verdict_under<L: PairLaw>(scene: &Scene, inflated: &Inflated<2>, law: &L) -> Result<RestVerdict, PackingError> {
+    fn state<'a, L: PairLaw>(rest: &'a Rest<2>, law: &L) -> Result<State<'a, 2>, PackingError> {
+        State::new(rest.packing.get(), law)
+    }
+    let (before, after) = (state(&inflated.before, law)?, state(&inflated.after, law)?);
+    let deflated = inflated.deflated.as_ref().map(|rest| state(rest, law)).transpose()?;
+    let mut named = vec![("before", &before), ("after", &after)];
+    named.extend(deflated.as_ref().map(|state| ("after the deflation", state)));
+    let held = matches!(scene.inflation.boundary, Boundary::HeldRim { .. });
+    let place = Place { centre: inflated.centre, outer_radius: held.then_some(inflated.outer_radius) };
+    Ok(RestVerdict::of(&named, law, &scene.law, Some(place), &scene.verdict))
 }
 
 /// Whether the sample is one of the fraction whose protocols are compared.
@@ -270,16 +302,20 @@ fn takes(scene: &Scene, sample: &Sample, settings: &ProtocolSettings) -> bool {
 fn protocol_of<L: PairLaw>(
     scene: &Scene,
     sample: &Sample,
-    inflated: &Inflated<2>,
+    (inflated, verdict): (&Inflated<2>, &RestVerdict),
     law: &L,
     settings: &ProtocolSettings,
     trace: &mut impl Trace,
 ) -> Result<ProtocolSensitivity, PackingError> {
     let protocols = Protocol::all(&sample.relaxer);
+    #[cfg(not(feature = "fit"))]
+    let _ = verdict;
     let mut compared = Compared::of_inflation(inflated, &scene.inflation, law, &protocols, settings, trace)?;
     compared.measure_responses(inflated, law)?;
     #[cfg(feature = "fit")]
-    if let (Some(profile), Some(fit)) = (scene.observables.radial_profile, scene.observables.profile_fit) {
+    if let (Some(profile), Some(fit), Some(_)) =
+        (scene.observables.radial_profile, scene.observables.profile_fit, verdict.permit())
+    {
         compared.fit(inflated, profile.ring_width, &fit);
     }
     Ok(compared.sensitivity)
@@ -293,7 +329,7 @@ pub(crate) fn packing_of<L: PairLaw>(
     trace: &mut impl Trace,
 ) -> Result<(Packing<2>, PackingSummary), RunError> {
     let target = match &sample.source {
-        Source::File(path) => return packing_from(path, &scene.preparation.relaxer, law, trace),
+        Source::File(path) => return packing_from(path, scene, law, trace),
         Source::PackingFraction(fraction) => Target::PackingFraction(*fraction),
         Source::Pressure(pressure) => Target::Pressure(*pressure),
     };
@@ -321,15 +357,20 @@ pub(crate) fn packing_of<L: PairLaw>(
     Ok((packing, summary))
 }
 
-/// A packing from outside, relaxed if it is not at rest already.
+/// A packing from outside, relaxed if it is not at rest already; how far from rest it was is kept.
 fn packing_from<L: PairLaw>(
     path: &Path,
-    relaxer: &RelaxerChoice,
+    scene: &Scene,
     law: &L,
     trace: &mut impl Trace,
 ) -> Result<(Packing<2>, PackingSummary), RunError> {
     let named = |source| RunError::PackingOfFile { path: path.into(), source };
-    let outcome = relaxer.relax(read_packing(path)?, law, trace).map_err(named)?;
+    let read = read_packing(path)?;
+    let as_read = {
+        let state = State::new(&read, law).map_err(named)?;
+        RestVerdict::of(&[("as read", &state)], law, &scene.law, None, &scene.verdict)
+    };
+    let outcome = scene.preparation.relaxer.relax(read, law, trace).map_err(named)?;
     let Outcome { stop, residual, rounding_floor, cost, .. } = outcome;
     let (Stop::Converged(criterion), Ok(packing)) = (stop, outcome.converged()) else {
         let (step_count, residual) = (cost.step_count, residual.relative());
@@ -343,7 +384,7 @@ fn packing_from<L: PairLaw>(
         cost,
     };
     let packing = packing.into_inner();
-    let summary = packing_summary(&packing, law, rest)?;
+    let summary = PackingSummary { as_read: Some(as_read), ..packing_summary(&packing, law, rest)? };
     Ok((packing, summary))
 }
 
@@ -356,6 +397,7 @@ fn packing_summary<L: PairLaw>(packing: &Packing<2>, law: &L, rest: RestSummary)
         box_sides: packing.domain().lengths().ok_or(InflationError::NotPeriodic)?,
         packing_fraction: packing.packing_fraction().ok_or(InflationError::NotPeriodic)?,
         quench_packing_fraction: None,
+        as_read: None,
         pressure: if jammed { network.pressure(volume) } else { 0.0 },
         energy: network.energy(),
         contact_count: network.contacts.len(),

@@ -15,6 +15,7 @@ use crate::relax::{Cost, Criterion};
 use crate::response::Measurement;
 use crate::response::Response;
 use crate::scene::Scene;
+use crate::verdict::RestVerdict;
 
 /// What a run gives.
 #[derive(Debug, Clone, Serialize)]
@@ -117,6 +118,9 @@ pub struct PackingSummary {
     /// Packing fraction at which random points were quenched; absent for a packing from a file \[1\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quench_packing_fraction: Option<f64>,
+    /// Whether a packing from a file was at rest as it was read; absent for a packing made here.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub as_read: Option<RestVerdict>,
     /// Pressure \[force / length\].
     pub pressure: f64,
     /// Elastic energy \[energy\].

@@ -43,6 +43,19 @@ pub enum SceneError {
         /// What it must be.
         range: &'static str,
     },
+    /// A force limit that counts states far from rest as at rest.
+    #[error(
+        "{field} = {value}: must be at most {limit:.3e}, as a residual above {} of the mean contact force is not rest",
+        crate::verdict::LARGEST_RESIDUAL
+    )]
+    LimitTooLoose {
+        /// The field, with its tables.
+        field: String,
+        /// The value found.
+        value: f64,
+        /// The largest that is possible.
+        limit: f64,
+    },
     /// A setting of an observable, in its own words.
     #[error("observables.{observable}: {reason}")]
     Observable {
@@ -93,6 +106,7 @@ impl Scene {
         if self.sample.is_empty() {
             return Err(SceneError::NoSample);
         }
+        self.check_rest()?;
         for (index, sample) in self.sample.iter().enumerate() {
             sample.check()?;
             if self.sample[..index].iter().any(|other| other.name == sample.name) {

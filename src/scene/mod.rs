@@ -4,6 +4,7 @@
 //! What an observable needs and the scene does not name is not computed.
 
 mod check;
+mod loose_limit;
 mod observables;
 
 use serde::{Deserialize, Serialize};
@@ -22,6 +23,7 @@ use crate::contact::law::LawChoice;
 use crate::inflation::Inflation;
 use crate::packing::Mixture;
 use crate::relax::{DampedDynamics, Fire, RelaxerChoice};
+use crate::verdict::VerdictSettings;
 
 /// Everything a run needs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -39,6 +41,8 @@ pub struct Scene {
     pub inflation: Inflation,
     /// What is measured.
     pub observables: Observables,
+    /// When a phase and fits are given.
+    pub verdict: VerdictSettings,
     /// The packings.
     pub sample: Vec<Sample>,
 }
@@ -109,6 +113,7 @@ impl Default for Scene {
             preparation: PreparationSettings::default(),
             inflation: Inflation::default(),
             observables: Observables::default(),
+            verdict: VerdictSettings::default(),
             sample: vec![
                 Sample {
                     name: "unjammed".into(),

@@ -135,6 +135,7 @@ impl CellSamples {
             PhaseOutcome::Plastic => &mut phases.plastic,
             PhaseOutcome::Quasielastic => &mut phases.quasielastic,
             PhaseOutcome::Undecided => &mut phases.undecided,
+            PhaseOutcome::NotAtRest => &mut phases.not_at_rest,
         } += 1;
         for (name, &value) in numbers {
             self.numbers.entry(name.clone()).or_default().push(value);

@@ -58,6 +58,13 @@ pub struct PhaseCounts {
     pub quasielastic: usize,
     /// Undecided.
     pub undecided: usize,
+    /// Not at rest, so without a phase; not written where there are none.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub not_at_rest: usize,
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 impl NumberStatistics {

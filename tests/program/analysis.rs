@@ -13,6 +13,7 @@ use jamscope::report::write;
 use jamscope::run::{Report, SampleOutcome, SampleResult, run};
 use jamscope::scene::{Observables, Sample, Scene, Source};
 use jamscope::vector::{larger, norm};
+use jamscope::verdict::VerdictSettings;
 
 /// Two jammed packings of 600 disks, one in a circle with a held rim and one in its periodic box, both deflated again.
 fn report(boundary: Boundary) -> Report {
@@ -50,7 +51,8 @@ fn read(folder: &Path, ending: &str) -> Packing<2> {
 }
 
 fn analysed(pair: Pair) -> Analysis {
-    Analysis::of("dense", pair, &LawChoice::default(), &Observables::default()).expect("no coincidence")
+    let (law, observables, verdict) = (LawChoice::default(), Observables::default(), VerdictSettings::default());
+    Analysis::of("dense", pair, &law, &observables, &verdict).expect("no coincidence")
 }
 
 /// States of a result, as packings.
@@ -190,6 +192,13 @@ fn what_does_not_fit_together_is_named() {
     assert!(matches!(new(&before, &other, plain), AnalysisError::SeveralCentres { count: 2, .. }));
     let settings = PairSettings { centre_label: Some(u64::MAX), ..plain };
     assert_eq!(new(&before, &after, settings), AnalysisError::CentreNotOne { label: u64::MAX, count: 0 });
+    let other = before.labels()[(centre + 1) % 600];
+    let settings = PairSettings { centre_label: Some(other), ..plain };
+    let radius = before.radii()[(centre + 1) % 600];
+    let unchanged = AnalysisError::CentreUnchanged { label: other, radius, grown: Some(label) };
+    assert_eq!(new(&before, &after, settings), unchanged);
+    let unchanged = AnalysisError::CentreUnchanged { label: other, radius, grown: None };
+    assert_eq!(new(&before, &before, settings), unchanged);
     let settings = PairSettings { centre_label: Some(label), outer_radius: Some(0.1) };
     assert!(matches!(new(&before, &after, settings), AnalysisError::OuterRadiusOutOfRange { .. }));
     let settings = PairSettings { centre_label: Some(label), outer_radius: Some(0.51) };
@@ -219,8 +228,9 @@ fn what_does_not_fit_together_is_named() {
 fn what_is_not_named_is_not_measured() {
     let [before, after, _] = states(result(periodic()));
     let pair = Pair::new(before, &after, None, &PairSettings::default()).expect("one experiment");
-    let analysis = Analysis::of("dense", pair, &LawChoice::default(), &Observables::none()).expect("no coincidence");
+    let (law, observables, verdict) = (LawChoice::default(), Observables::none(), VerdictSettings::default());
+    let analysis = Analysis::of("dense", pair, &law, &observables, &verdict).expect("no coincidence");
     let json = serde_json::to_value(&analysis.response).expect("serialisable");
     let names: Vec<&String> = json.as_object().expect("an object").keys().collect();
-    assert_eq!(names, ["measured_on", "phase"]);
+    assert_eq!(names, ["measured_on", "phase", "verdict"]);
 }

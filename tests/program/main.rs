@@ -16,3 +16,5 @@ mod study;
 mod study_command;
 #[cfg(feature = "fit")]
 mod transition;
+#[cfg(feature = "cli")]
+mod verdict;

@@ -9,6 +9,10 @@
 //! ρ, what the spectrum has above f_max and of single disks, is a peak at θ = 0. With ρ = 0 both are a Fourier pair
 //! (Wiener, Khinchin): P_f/Σ P = (2/π) ∫_0^π G cos fθ dθ; with ρ the peak counts too. Pairs in bins are not: their number varies with
 //! the angle, and a bin is wide.
+//!
+//! No correlation lies outside \[−1, 1\]. An estimate may: of powers of which some came out negative, or of a bin with few pairs. It is
+//! then no correlation, [`CorrelationOutcome::OutOfRange`]. A slightly negative ρ, down to −0.05 Σ P, is noise of its estimate and
+//! counts as 0: G would begin above 1 next to θ = 0.
 
 use std::f64::consts::PI;
 
@@ -64,13 +68,34 @@ impl Default for CorrelationSettings {
     }
 }
 
-/// G(θ), normalised to G(0) = 1; NaN throughout where the values have no variance.
+/// Whether there is a correlation function.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CorrelationOutcome {
+    /// There is.
+    #[default]
+    Found,
+    /// The values have no variance.
+    NoVariance,
+    /// The estimate leaves \[−1, 1\], so it is none.
+    OutOfRange {
+        /// Where it is farthest out \[rad\].
+        angle: f64,
+        /// Its value there \[1\].
+        value: f64,
+    },
+}
+
+/// G(θ), normalised to G(0) = 1; NaN throughout where `outcome` says that there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AngularCorrelation {
     /// How it was estimated.
     pub estimator: CorrelationEstimator,
     /// Number of disks.
     pub disk_count: usize,
+    /// Whether there is a correlation function.
+    #[serde(default)]
+    pub outcome: CorrelationOutcome,
     /// θ \[rad\], ascending from 0; bins stand at their middles.
     pub angles: Vec<f64>,
     /// G(θ) \[1\].
@@ -118,7 +143,8 @@ impl AngularCorrelation {
             frequency_limit: FrequencyLimit::Fixed(spectrum.frequency_limit()),
         });
         let (disk_count, anticorrelation) = (spectrum.disk_count, -values[steps]);
-        Ok(AngularCorrelation { estimator, disk_count, angles, values, anticorrelation, crossings })
+        let outcome = CorrelationOutcome::Found;
+        Ok(AngularCorrelation { estimator, disk_count, outcome, angles, values, anticorrelation, crossings }.judged())
     }
 
     fn of_pairs(ring: &RingSample, bin_count: usize, settings: &CorrelationSettings) -> Self {
@@ -131,7 +157,29 @@ impl AngularCorrelation {
         let crossings = settings.crossings(|threshold| CrossingOutcome::in_table(&angles, &values, threshold));
         let anticorrelation = -values[bin_count];
         let (estimator, disk_count) = (settings.estimator, ring.disk_count());
-        AngularCorrelation { estimator, disk_count, angles, values, anticorrelation, crossings }
+        let outcome = CorrelationOutcome::Found;
+        AngularCorrelation { estimator, disk_count, outcome, angles, values, anticorrelation, crossings }.judged()
+    }
+
+    /// With its outcome, and without values where there is no correlation function.
+    fn judged(mut self) -> Self {
+        if self.values[0].is_nan() {
+            return AngularCorrelation { outcome: CorrelationOutcome::NoVariance, ..self };
+        }
+        let beyond = self.values.iter().zip(&self.angles).filter(|(value, _)| value.abs() > 1.0 + ROUNDING);
+        if let Some((&value, &angle)) = beyond.max_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs())) {
+            self.outcome = CorrelationOutcome::OutOfRange { angle, value };
+            self.values.fill(f64::NAN);
+            self.anticorrelation = f64::NAN;
+            for crossing in &mut self.crossings {
+                crossing.outcome = CrossingOutcome::OutOfRange { farthest: value };
+            }
+            return self;
+        }
+        for value in self.values.iter_mut().chain([&mut self.anticorrelation]) {
+            *value = value.clamp(-1.0, 1.0);
+        }
+        self
     }
 
     /// θ* of a threshold \[rad\], if it was asked for and met.
@@ -140,12 +188,20 @@ impl AngularCorrelation {
     }
 }
 
+/// What rounding may bring G beyond 1: sums of up to 10⁴ powers, 10⁴ · 2⁻⁵³ with a margin of a thousand \[1\].
+const ROUNDING: f64 = 1e-9;
+
+/// A negative ρ up to this share of Σ P counts as 0 \[1\]. Larger ones leave an estimate that is far out of range.
+const NOISE: f64 = 0.05;
+
 /// Frequencies between two settings of the rotation.
 const RESTART: usize = 64;
 
-/// Σ P_f cos fθ/(Σ P_f + ρ), by one rotation a frequency.
+/// Σ P_f cos fθ/(Σ P_f + ρ), a ρ of noise being 0, by one rotation a frequency.
 fn spectrum_correlation(spectrum: &PowerSpectrum, angle: f64) -> f64 {
-    let total: f64 = spectrum.power[1..].iter().sum::<f64>() + spectrum.unresolved;
+    let resolved: f64 = spectrum.power[1..].iter().sum();
+    let noise = spectrum.unresolved < 0.0 && -spectrum.unresolved <= NOISE * resolved;
+    let total = if noise { resolved } else { resolved + spectrum.unresolved };
     if total.is_nan() || total <= 0.0 {
         return f64::NAN;
     }

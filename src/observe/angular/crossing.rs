@@ -27,6 +27,11 @@ pub enum CrossingOutcome {
     },
     /// There is no G: the values have no variance.
     NoCorrelation,
+    /// There is no G: its estimate leaves \[−1, 1\].
+    OutOfRange {
+        /// The value farthest out \[1\].
+        farthest: f64,
+    },
 }
 
 impl CrossingOutcome {
@@ -34,7 +39,7 @@ impl CrossingOutcome {
     pub fn angle(self) -> Option<f64> {
         match self {
             CrossingOutcome::At { angle } => Some(angle),
-            CrossingOutcome::Never { .. } | CrossingOutcome::NoCorrelation => None,
+            CrossingOutcome::Never { .. } | CrossingOutcome::NoCorrelation | CrossingOutcome::OutOfRange { .. } => None,
         }
     }
 

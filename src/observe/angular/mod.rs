@@ -29,7 +29,7 @@ mod window;
 use thiserror::Error;
 
 pub use block_errors::{BlockErrors, block_errors};
-pub use correlation::{AngularCorrelation, CorrelationEstimator, CorrelationSettings};
+pub use correlation::{AngularCorrelation, CorrelationEstimator, CorrelationOutcome, CorrelationSettings};
 pub use crossing::{CrossingOutcome, ThresholdCrossing};
 pub use dependence::dependence;
 pub use fourier::{Route, fourier_sums, fourier_sums_by};

@@ -1,12 +1,12 @@
 //! Means and standard errors over samples: [`correlation_statistics`], [`spectrum_statistics`].
 //!
-//! G is averaged as it is, each sample normalised to G(0) = 1. S is averaged over samples of one variance and then normalised to
+//! G is averaged as it is, each sample normalised to G(0) = 1, samples without one left out. S is averaged over samples of one variance and then normalised to
 //! S(1) = 1: the mean of S(f)/S(1) itself does not exist, because 1/S(1) of a random field has no mean.
 
 use serde::Serialize;
 
 use crate::observe::angular::crossing::CrossingOutcome;
-use crate::observe::angular::{AngularCorrelation, AngularError, PowerSpectrum};
+use crate::observe::angular::{AngularCorrelation, AngularError, CorrelationOutcome, PowerSpectrum};
 
 /// A mean over samples.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -32,6 +32,8 @@ impl Mean {
 pub struct CorrelationStatistics {
     /// Number of samples.
     pub sample_count: usize,
+    /// Samples left out, as they have no G.
+    pub left_out_count: usize,
     /// θ \[rad\].
     pub angles: Vec<f64>,
     /// G(θ) \[1\].
@@ -78,7 +80,10 @@ pub fn correlation_statistics(samples: &[AngularCorrelation]) -> Result<Correlat
         let thresholds = |sample: &AngularCorrelation| sample.crossings.iter().map(|c| c.threshold).collect::<Vec<_>>();
         (thresholds(a) != thresholds(b)).then_some("thresholds")
     })?;
-    let over = |of: &dyn Fn(&AngularCorrelation) -> f64| Mean::of(&samples.iter().map(of).collect::<Vec<_>>());
+    let found = |sample: &&AngularCorrelation| sample.outcome == CorrelationOutcome::Found;
+    let kept: Vec<&AngularCorrelation> = samples.iter().filter(found).collect();
+    let over =
+        |of: &dyn Fn(&AngularCorrelation) -> f64| Mean::of(&kept.iter().map(|sample| of(sample)).collect::<Vec<_>>());
     let values: Vec<Mean> = (0..first.angles.len()).map(|i| over(&|sample| sample.values[i])).collect();
     let curve: Vec<f64> = values.iter().map(|mean| mean.value).collect();
     let crossings = first.crossings.iter().enumerate().map(|(i, crossing)| {
@@ -95,6 +100,7 @@ pub fn correlation_statistics(samples: &[AngularCorrelation]) -> Result<Correlat
     });
     Ok(CorrelationStatistics {
         sample_count: samples.len(),
+        left_out_count: samples.len() - kept.len(),
         angles: first.angles.clone(),
         anticorrelation: over(&|sample| sample.anticorrelation),
         crossings: crossings.collect(),

@@ -8,6 +8,7 @@ use crate::contact::LawChoice;
 use crate::response::Measurement;
 use crate::run::{Report, SampleOutcome, SampleReport, SampleResult};
 use crate::scene::Sample;
+use crate::verdict::RestVerdict;
 
 /// Rows under one heading.
 pub(crate) struct Section {
@@ -84,6 +85,11 @@ pub(crate) fn failures(samples: &[SampleReport]) -> impl Iterator<Item = (&str, 
         SampleOutcome::Failed(reason) => Some((sample.name.as_str(), reason.as_str())),
         SampleOutcome::Done(_) => None,
     })
+}
+
+/// Whether the states of samples that came to a result are at rest.
+pub(crate) fn verdicts(samples: &[SampleReport]) -> impl Iterator<Item = (&str, &RestVerdict)> {
+    samples.iter().filter_map(|sample| Some((sample.name.as_str(), &done(sample)?.response.verdict)))
 }
 
 /// What samples were refused, with the reason: sample, what there is not, why.

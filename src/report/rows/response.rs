@@ -56,6 +56,7 @@ pub(crate) fn outcome_name(outcome: PhaseOutcome) -> &'static str {
         PhaseOutcome::Plastic => "plastic",
         PhaseOutcome::Quasielastic => "quasielastic",
         PhaseOutcome::Undecided => "undecided",
+        PhaseOutcome::NotAtRest => "not at rest",
     }
 }
 
@@ -124,6 +125,7 @@ fn angular(responses: Vec<Option<&Response>>) -> Section {
                 CrossingOutcome::At { angle } => significant(angle / std::f64::consts::PI, 3),
                 CrossingOutcome::Never { .. } => "never".into(),
                 CrossingOutcome::NoCorrelation => "no variance".into(),
+                CrossingOutcome::OutOfRange { farthest } => format!("none: G {}", significant(farthest, 2)),
             })
         });
     }

@@ -37,6 +37,10 @@ pub(super) fn preparation(report: &Report, samples: &[SampleReport], times: Time
     let mut rows = Rows::of_samples(samples);
     rows.add("relaxer", |_| Some(report.scene.preparation.relaxer.name().into()))
         .add("relaxations", |it| Some(count(it.packing.relaxation_count)))
+        .add("residual as read", |it| {
+            let read = it.packing.as_read.as_ref()?.states().first()?.relative_residual;
+            Some(significant(read, 2))
+        })
         .add("at rest by", |it| Some(criterion(&it.packing.rest).into()))
         .add("residual / rounding floor", |it| Some(residual(&it.packing.rest)))
         .add("force evaluations", |it| Some(count(it.packing.rest.cost.force_evaluation_count)))

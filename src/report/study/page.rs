@@ -8,7 +8,7 @@ use crate::report::number::{count, significant};
 use crate::report::page::{head, pictures};
 use crate::report::study::order::Abscissa;
 use crate::report::study::{Subject, angular, lengths, order, radial, scaling};
-use crate::study::{CellStatistics, Merged, NumberStatistics};
+use crate::study::{CellStatistics, Merged, NumberStatistics, PhaseCounts};
 use crate::transition::{Comparison, ExponentOutcome, Transition, TransitionPressure, Verdict, words};
 
 /// The page of a study. Two merges of the same samples give the same bytes.
@@ -254,6 +254,15 @@ fn verdict(one: &Comparison) -> String {
     }
 }
 
+/// Samples of every phase, in the order of the head of their column; those not at rest where there are some.
+fn phase_counts(phases: &PhaseCounts) -> String {
+    let mut text = format!("{}, {}, {}, {}", phases.unjammed, phases.plastic, phases.quasielastic, phases.undecided);
+    if phases.not_at_rest > 0 {
+        let _ = write!(text, ", not at rest {}", phases.not_at_rest);
+    }
+    text
+}
+
 /// Samples of every cell, with what failed, and a few numbers.
 fn cells(merged: &Merged) -> String {
     let row = |statistics: &CellStatistics| {
@@ -268,7 +277,7 @@ fn cells(merged: &Merged) -> String {
             format!("{} {}", name.replace('_', " "), significant(value, 3)),
             statistics.done_count.to_string(),
             failures.join(", "),
-            format!("{}, {}, {}, {}", phases.unjammed, phases.plastic, phases.quasielastic, phases.undecided),
+            phase_counts(phases),
             number("pressure"),
             number("scaled_pressure_change"),
             number("anticorrelation"),

@@ -2,8 +2,8 @@
 
 use jamscope::displacement::{DisplacementField, MeasuredOn, Moved};
 use jamscope::observe::angular::{
-    AngularCorrelation, AngularError, CorrelationEstimator, CorrelationSettings, CrossingOutcome, FrequencyLimit,
-    PowerSpectrum, RadialDependenceSettings, RingOutcome, RingSample, RingSettings, SpectrumEstimator,
+    AngularCorrelation, AngularError, CorrelationEstimator, CorrelationOutcome, CorrelationSettings, CrossingOutcome,
+    FrequencyLimit, PowerSpectrum, RadialDependenceSettings, RingOutcome, RingSample, RingSettings, SpectrumEstimator,
     SpectrumSettings, block_errors, correlation_statistics, radial_dependence, spectrum_statistics,
 };
 
@@ -82,6 +82,46 @@ fn values_without_variance_have_no_correlation() {
             assert!(found.crossings.iter().all(|crossing| crossing.outcome == CrossingOutcome::NoCorrelation));
         }
     }
+}
+
+#[test]
+fn an_estimate_beyond_one_is_no_correlation() {
+    let even = ring(&even_angles(64), |angle| angle.cos() + (2.0 * angle).cos());
+    let mut spectrum = PowerSpectrum::of(&even, &SpectrumSettings::default()).expect("in range");
+    let settings = CorrelationSettings::default();
+    let found = AngularCorrelation::of_spectrum(&spectrum, &settings).expect("in range");
+    assert_eq!(found.outcome, CorrelationOutcome::Found);
+    // Unmixing may leave negative powers: G(π) = (−1 − 0.8)/(1 − 0.8).
+    spectrum.power = vec![0.0, 1.0, -0.8];
+    spectrum.unresolved = 0.0;
+    let beyond = AngularCorrelation::of_spectrum(&spectrum, &settings).expect("in range");
+    let CorrelationOutcome::OutOfRange { angle, value } = beyond.outcome else { panic!("{beyond:?}") };
+    // A division by 0.2 of numbers rounded at 1.
+    assert!((value + 9.0).abs() < 1e-14 && angle == std::f64::consts::PI, "{value} at {angle}");
+    assert!(beyond.anticorrelation.is_nan() && beyond.values.iter().all(|value| value.is_nan()));
+    let of_crossing = CrossingOutcome::OutOfRange { farthest: value };
+    assert!(beyond.crossings.iter().all(|crossing| crossing.outcome == of_crossing));
+    // A slightly negative ρ is noise, and 0: G begins at 1. One of a third of the powers is not.
+    (spectrum.power, spectrum.unresolved) = (vec![0.0, 1.0, 0.5], -0.03);
+    let noisy = AngularCorrelation::of_spectrum(&spectrum, &settings).expect("in range");
+    assert_eq!(noisy.outcome, CorrelationOutcome::Found);
+    assert!((noisy.anticorrelation - 0.5 / 1.5).abs() < 1e-15);
+    spectrum.unresolved = -0.5;
+    let negative = AngularCorrelation::of_spectrum(&spectrum, &settings).expect("in range");
+    assert!(matches!(negative.outcome, CorrelationOutcome::OutOfRange { value, .. } if value > 1.4));
+    // A bin with one pair, of two disks with 3 times the variance: (10 − 2.5)²/18.75.
+    let angles = [0.0, 0.01, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+    let two = RingSample::new(&angles, &[10.0, 10.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]).expect("finite");
+    let pairs = CorrelationSettings { estimator: CorrelationEstimator::Pairs { bin_count: 60 }, ..settings };
+    let few = AngularCorrelation::of(&two, &pairs).expect("in range");
+    assert!(
+        matches!(few.outcome, CorrelationOutcome::OutOfRange { value, .. } if (value - 3.0).abs() < 1e-14),
+        "{few:?}"
+    );
+    // Means are those of the samples that have one.
+    let statistics = correlation_statistics(&[found.clone(), beyond]).expect("alike");
+    assert_eq!((statistics.sample_count, statistics.left_out_count), (2, 1));
+    assert_eq!(statistics.anticorrelation.value, found.anticorrelation);
 }
 
 #[test]

@@ -1,0 +1,29 @@
+//! How the program ends: every exit code, and what it means.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Exit codes, for the help; 2 is that of the parser of the command line.
+pub const HELP: &str = "\
+Exit codes:
+  0  all that was asked for is in the output
+  1  a file, a scene or an argument made no sense, or a sample failed
+  2  the command line cannot be parsed
+  3  a state is not at rest: all is measured, but there is no phase and no fit";
+
+/// Exit code where states are not at rest.
+const NOT_AT_REST: u8 = 3;
+
+/// Ends a command that came to results, `not_at_rest` of which (named) have no phase and no fit.
+pub fn of_states(not_at_rest: &[String]) -> ExitCode {
+    if not_at_rest.is_empty() {
+        return ExitCode::SUCCESS;
+    }
+    // Nobody may be there to read it: the exit code tells as well.
+    let _ = writeln!(
+        std::io::stderr(),
+        "jamscope: not at rest, so without phase and fit: {}; --not-at-rest gives both all the same",
+        not_at_rest.join(", ")
+    );
+    ExitCode::from(NOT_AT_REST)
+}

@@ -1,0 +1,143 @@
+//! [`Cause`]: what may have kept states from being at rest, in numbers and in a sentence.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::contact::LawChoice;
+use crate::verdict::Digits;
+
+/// The residual under another law.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct OtherLaw {
+    /// The law, with the stiffness of the model: forces of all contacts scale with it, their ratios do not.
+    pub law: LawChoice,
+    /// The largest relative residual of the states \[1\].
+    pub relative_residual: f64,
+}
+
+/// What may have kept states from being at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Cause {
+    /// Another law leaves next to no residual.
+    Law {
+        /// That law.
+        law: LawChoice,
+        /// The largest residual under it \[1\].
+        relative_residual: f64,
+    },
+    /// No disk lies beyond R.
+    NothingHeld {
+        /// R \[length\].
+        outer_radius: f64,
+        /// Distance of the farthest disk \[length\].
+        farthest: f64,
+    },
+    /// The unbalanced disks are those near R.
+    Boundary {
+        /// R \[length\].
+        outer_radius: f64,
+        /// How many are unbalanced.
+        unbalanced_count: usize,
+        /// How many of them are pushed outwards.
+        outward_count: usize,
+        /// Disks held within a contact of R.
+        held_count: usize,
+        /// As many as the density of the mobile disks says.
+        expected_count: usize,
+    },
+    /// Other disks than the inflated one changed their radius.
+    OtherRadii {
+        /// How many.
+        count: usize,
+        /// Label of the first.
+        label: u64,
+    },
+    /// The unbalanced disks are neighbours of the inflated one.
+    Centre {
+        /// Label of the inflated disk.
+        label: u64,
+        /// How many are unbalanced.
+        unbalanced_count: usize,
+    },
+    /// Coordinates with few digits.
+    FewDigits {
+        /// How few.
+        digits: Digits,
+        /// What that alone makes of the residual, at most \[1\].
+        residual_bound: f64,
+    },
+    /// The packing has sites, whose pushes this law does not know.
+    Sites,
+    /// A few disks carry it all.
+    FewDisks {
+        /// How many are unbalanced.
+        unbalanced_count: usize,
+        /// Label of the disk with the largest net force.
+        label: u64,
+    },
+    /// None of the others.
+    Unfinished,
+}
+
+impl fmt::Display for OtherLaw {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{} {:.1e}", argument(&self.law), self.relative_residual)
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Cause::Law { law, relative_residual } => {
+                let law = argument(&law);
+                write!(formatter, "the contact law; under the law {law} the residual is {relative_residual:.1e}.")
+            }
+            Cause::NothingHeld { outer_radius, farthest } => write!(
+                formatter,
+                "R beyond the data; R is {outer_radius}, but the farthest disk is at {farthest}, so nothing holds the packing."
+            ),
+            Cause::Boundary { outer_radius, unbalanced_count, outward_count, held_count, expected_count } => {
+                let side = if 2 * outward_count > unbalanced_count { "outwards" } else { "inwards" };
+                write!(
+                    formatter,
+                    "a wall or a rim inside R; the {unbalanced_count} unbalanced disks lie within a contact of R = {outer_radius}, \
+                     pushed {side}. Beyond R {held_count} disks hold them, the density says {expected_count}. Give an R inside the \
+                     wall, with --outer-radius."
+                )
+            }
+            Cause::OtherRadii { count, label } => {
+                write!(formatter, "the centre; {count} other disks changed their radius too, disk {label} among them.")
+            }
+            Cause::Centre { label, unbalanced_count } => write!(
+                formatter,
+                "the centre; the {unbalanced_count} unbalanced disks are neighbours of the inflated disk {label}, whose radius or \
+                 place was another when they came to rest."
+            ),
+            Cause::FewDigits { digits: Digits { significant, spacing }, residual_bound } => write!(
+                formatter,
+                "the digits of the coordinates; they were written with {significant}, known to {spacing:.0e}, which alone leaves a \
+                 residual of up to {residual_bound:.0e}. In LAMMPS: dump_modify ID format float %.17g"
+            ),
+            Cause::Sites => formatter.write_str("the sites; their pushes are in the file's forces, but not in these."),
+            Cause::FewDisks { unbalanced_count, label } => write!(
+                formatter,
+                "a damaged line; {unbalanced_count} disks are unbalanced, all others at rest; disk {label} has the largest net force."
+            ),
+            Cause::Unfinished => formatter.write_str(
+                "a relaxation that ended early; unbalanced disks are everywhere, and no other law is nearer to rest.",
+            ),
+        }
+    }
+}
+
+/// A law as the command line takes it.
+fn argument(law: &LawChoice) -> String {
+    match law {
+        LawChoice::Hertzian(_) => "hertzian".into(),
+        LawChoice::Hookean(_) => "hookean".into(),
+        LawChoice::PowerLaw(law) => format!("power:{}", law.exponent),
+    }
+}

@@ -1,0 +1,234 @@
+//! [`RestVerdict`]: whether states are at rest, hence whether a phase and fits may be given, and if not, what is likely.
+//!
+//! ```text
+//! at rest   max |f_i| ≤ ε ⟨F⟩  on the backbone,   max |f_i| ≤ √ε ⟨F⟩  off it        ε = 10⁻³, a setting
+//! ```
+//!
+//! Everything can be measured on a state far from equilibrium, but it answers no question about the response: its disks move because
+//! forces were left, not because a disk grew. A phase and every fit of a [`Response`](crate::response::Response) take a
+//! [`VerdictPermit`], and only a verdict gives one. The relaxers have the same rule for disks off the backbone.
+
+mod balance;
+mod cause;
+mod digits;
+mod likely;
+
+use serde::{Deserialize, Serialize};
+
+pub use balance::{Balance, StateBalance};
+pub use cause::{Cause, OtherLaw};
+pub use digits::Digits;
+
+use crate::contact::{LawChoice, PairLaw};
+use crate::observe::state::State;
+
+/// A residual above this counts as rest nowhere: neither by a limit of a relaxer nor by that of a verdict \[1\].
+pub const LARGEST_RESIDUAL: f64 = 1e-2;
+
+/// When a phase and fits are given.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct VerdictSettings {
+    /// ε, the largest net force on the backbone over the mean contact force at rest, at most [`LARGEST_RESIDUAL`] \[1\].
+    pub residual_limit: f64,
+    /// What happens above it.
+    pub above_limit: AboveLimit,
+}
+
+impl Default for VerdictSettings {
+    /// 10⁻³: relaxers end five decades below, coordinates with six digits a decade or more above.
+    fn default() -> Self {
+        VerdictSettings { residual_limit: 1e-3, above_limit: AboveLimit::default() }
+    }
+}
+
+/// What happens to states above the limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AboveLimit {
+    /// They are given no phase and no fit.
+    #[default]
+    Refused,
+    /// They are given both, and the report says that they are not at rest.
+    Given,
+}
+
+/// Leave to give a phase and fits: the states are at rest, or whoever asked wants both all the same. Only
+/// [`RestVerdict::permit`] makes one.
+#[derive(Debug, Clone, Copy)]
+pub struct VerdictPermit(());
+
+/// Where an experiment takes place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// Index of the inflated disk.
+    pub centre: usize,
+    /// R, beyond which disks are held; absent where nothing is held \[length\].
+    pub outer_radius: Option<f64>,
+}
+
+/// What was decided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Decision {
+    /// All states are at rest.
+    AtRest,
+    /// A state is not, and there is no phase and no fit.
+    NotAtRest,
+    /// A state is not, and the settings want a phase and fits all the same.
+    NotAtRestButGiven,
+}
+
+/// Whether states are at rest, by their residuals; if not, what is likely.
+///
+/// # Example
+/// ```
+/// use jamscope::contact::{Hookean, LawChoice};
+/// use jamscope::io::read_packing;
+/// use jamscope::observe::state::State;
+/// use jamscope::verdict::{Cause, RestVerdict, VerdictSettings};
+///
+/// // Hertzian disks under the Hookean law.
+/// let packing = read_packing::<2>("fixtures/packings/hertz_N1000_p100.xyz")?;
+/// let law = Hookean::default();
+/// let state = State::new(&packing, &law)?;
+/// let verdict = RestVerdict::of(&[("packing", &state)], &law, &LawChoice::Hookean(law), None, &VerdictSettings::default());
+/// assert!(verdict.permit().is_none());
+/// assert!(matches!(verdict.likely()[0], Cause::Law { law: LawChoice::Hertzian(_), .. }));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RestVerdict {
+    decision: Decision,
+    residual_limit: f64,
+    states: Vec<StateBalance>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    likely: Vec<Cause>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    other_laws: Vec<OtherLaw>,
+}
+
+impl RestVerdict {
+    /// Weighs states whose contacts are those of `law`, which `choice` names. States are named as a reader knows them.
+    ///
+    /// # Cost
+    /// A pass over the contacts; where a state is not at rest, a contact network a state for each of some four other laws.
+    pub fn of<const D: usize, L: PairLaw>(
+        states: &[(&'static str, &State<'_, D>)],
+        law: &L,
+        choice: &LawChoice,
+        place: Option<Place>,
+        settings: &VerdictSettings,
+    ) -> Self {
+        let limit = settings.residual_limit;
+        let weigh = |&(name, state): &(&'static str, &State<'_, D>)| {
+            StateBalance::new(name, Balance::of(state.packing, &state.network, law), limit)
+        };
+        let balances: Vec<StateBalance> = states.iter().map(weigh).collect();
+        let mut verdict = RestVerdict {
+            decision: Decision::AtRest,
+            residual_limit: limit,
+            states: balances,
+            likely: Vec::new(),
+            other_laws: Vec::new(),
+        };
+        if verdict.states.iter().all(|state| state.at_rest) {
+            return verdict;
+        }
+        verdict.decision = match settings.above_limit {
+            AboveLimit::Refused => Decision::NotAtRest,
+            AboveLimit::Given => Decision::NotAtRestButGiven,
+        };
+        verdict.other_laws = likely::other_laws(states, choice);
+        verdict.likely = likely::causes(states, law, place, &verdict);
+        verdict
+    }
+
+    /// The same with what was decided before of the states these come from.
+    #[must_use]
+    pub fn after(self, earlier: &RestVerdict) -> Self {
+        // Of two decisions the one that says least stands.
+        let weight = |decision| match decision {
+            Decision::AtRest => 0,
+            Decision::NotAtRestButGiven => 1,
+            Decision::NotAtRest => 2,
+        };
+        let decision = if weight(earlier.decision) > weight(self.decision) { earlier.decision } else { self.decision };
+        RestVerdict {
+            decision,
+            residual_limit: self.residual_limit,
+            states: [earlier.states.clone(), self.states].concat(),
+            likely: [earlier.likely.clone(), self.likely].concat(),
+            other_laws: if earlier.other_laws.is_empty() { self.other_laws } else { earlier.other_laws.clone() },
+        }
+    }
+
+    /// Leave to give a phase and fits.
+    pub fn permit(&self) -> Option<VerdictPermit> {
+        (self.decision != Decision::NotAtRest).then_some(VerdictPermit(()))
+    }
+
+    /// What was decided.
+    pub fn decision(&self) -> Decision {
+        self.decision
+    }
+
+    /// ε \[1\].
+    pub fn residual_limit(&self) -> f64 {
+        self.residual_limit
+    }
+
+    /// The residuals of all states.
+    pub fn states(&self) -> &[StateBalance] {
+        &self.states
+    }
+
+    /// What is likely, the likeliest first; something, if a state is not at rest.
+    pub fn likely(&self) -> &[Cause] {
+        &self.likely
+    }
+
+    /// The largest residual of the states under other laws; none, if they are at rest.
+    pub fn other_laws(&self) -> &[OtherLaw] {
+        &self.other_laws
+    }
+
+    /// Why there is no fit, in a sentence; none where there may be one.
+    pub fn refusal(&self) -> Option<String> {
+        (self.decision == Decision::NotAtRest).then(|| self.residuals())
+    }
+
+    /// What a reader has to know first, a paragraph each; nothing if all states are at rest.
+    pub fn paragraphs(&self) -> Vec<String> {
+        let consequence = match self.decision {
+            Decision::AtRest => return Vec::new(),
+            Decision::NotAtRest => "no phase and no fit",
+            Decision::NotAtRestButGiven => "phase and fits only because they were asked for",
+        };
+        let mut all = vec![format!("NOT AT REST: {consequence}. {}", self.residuals())];
+        all.extend(self.likely.iter().map(|cause| format!("Likely: {cause}")));
+        if !self.other_laws.is_empty() {
+            let others: Vec<String> = self.other_laws.iter().map(OtherLaw::to_string).collect();
+            all.push(format!(
+                "Residual under other laws: {}. The stiffness scales all contact forces alike and changes none of these.",
+                others.join(", ")
+            ));
+        }
+        all
+    }
+
+    /// The residuals of the states that are not at rest, against the limit.
+    fn residuals(&self) -> String {
+        let restless: Vec<String> = self
+            .states
+            .iter()
+            .filter(|state| !state.at_rest)
+            .map(|state| state.sentence(self.residual_limit))
+            .collect();
+        format!(
+            "Largest net force over mean contact force: {}; at rest it is at most {:e}.",
+            restless.join(", "),
+            self.residual_limit
+        )
+    }
+}
