@@ -2,10 +2,13 @@
 
 use crate::contact::law::LawError;
 use crate::inflation::Boundary;
+use crate::memory::TooLarge;
 use crate::packing::PackingError;
 #[cfg(feature = "linear")]
 use crate::relax::implicit::Finish;
 use crate::relax::{ForceLimit, RelaxerChoice, TimeStep};
+use crate::scene::finite::{self, NotWritable};
+use crate::scene::size::{BYTES_A_DISK, DISK_INDEX};
 use crate::scene::{Observables, Sample, Scene, Source};
 
 /// A number of a scene that makes no sense.
@@ -30,6 +33,12 @@ pub enum SceneError {
     /// The law.
     #[error("law: {0}")]
     Law(#[from] LawError),
+    /// A number that cannot be written to a file and read back.
+    #[error(transparent)]
+    NotWritable(#[from] NotWritable),
+    /// A count beyond memory or index types.
+    #[error(transparent)]
+    TooLarge(#[from] TooLarge),
     /// The mixture or the number of disks.
     #[error("disk_count or mixture: {0}")]
     Mixture(PackingError),
@@ -76,7 +85,8 @@ impl Scene {
     /// [`SceneError`] names the field and the value.
     pub fn check(&self) -> Result<(), SceneError> {
         self.law.check()?;
-        self.mixture.radii(self.disk_count).map_err(SceneError::Mixture)?;
+        DISK_INDEX.check("disk_count", self.disk_count, BYTES_A_DISK)?;
+        self.mixture.check(self.disk_count).map_err(SceneError::Mixture)?;
         let tolerance = self.preparation.pressure_tolerance;
         within("preparation.pressure_tolerance", tolerance, "between 0 and 1", tolerance > 0.0 && tolerance < 1.0)?;
         check_relaxer("preparation.relaxer", &self.preparation.relaxer)?;
@@ -99,7 +109,8 @@ impl Scene {
                 return Err(SceneError::NameTwice { name: sample.name.clone() });
             }
         }
-        Ok(())
+        // What no rule above has named: a field that is only written, or a new one.
+        Ok(finite::check(self)?)
     }
 }
 
@@ -113,8 +124,12 @@ impl Observables {
             positive("observables.radial_profile.ring_width", profile.ring_width)?;
         }
         #[cfg(feature = "fit")]
-        if self.profile_fit.is_some() && self.radial_profile.is_none() {
-            return Err(SceneError::ObservableMissing { observable: "profile_fit", needed: "radial_profile" });
+        if let Some(fit) = &self.profile_fit {
+            if self.radial_profile.is_none() {
+                return Err(SceneError::ObservableMissing { observable: "profile_fit", needed: "radial_profile" });
+            }
+            let wrong = |reason: String| SceneError::Observable { observable: "profile_fit", reason };
+            fit.check().map_err(|error| wrong(error.to_string()))?;
         }
         self.check_response()?;
         #[cfg(feature = "linear")]
@@ -136,7 +151,7 @@ impl Observables {
                 relative_radius("observables.angular_profiles.relative_radii", radius)?;
             }
         }
-        Ok(())
+        Ok(finite::check_at("observables", self)?)
     }
 
     /// Those of penetration, correlation, modes and isostatic length.

@@ -4,11 +4,14 @@
 //! What an observable needs and the scene does not name is not computed.
 
 mod check;
+pub mod finite;
 mod observables;
+mod size;
 
 use serde::{Deserialize, Serialize};
 
 pub use check::SceneError;
+pub use finite::NotWritable;
 pub use observables::{
     AngularCorrelationSettings, AngularProfileSettings, BondChangeSettings, ContactChangeSettings,
     DisplacementFieldSettings, Observables, RadialProfileSettings,

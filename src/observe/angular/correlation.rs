@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use crate::observe::angular::AngularError;
+use crate::observe::angular::{AngularError, MOST_STEPS, at_most};
 use crate::observe::angular::crossing::{CrossingOutcome, ThresholdCrossing};
 use crate::observe::angular::pairs::PairSums;
 use crate::observe::angular::power_spectrum::{FrequencyLimit, PowerSpectrum, SpectrumSettings};
@@ -140,6 +140,9 @@ impl AngularCorrelation {
     }
 }
 
+/// Memory of a step or bin: its angle, its value, and both as text \[bytes\].
+const STEP_BYTES: f64 = 64.0;
+
 /// Frequencies between two settings of the rotation.
 const RESTART: usize = 64;
 
@@ -171,10 +174,11 @@ impl CorrelationSettings {
                 1
             }
         };
-        for (setting, count) in [("steps", self.step_count), ("bins", bin_count)] {
+        for (setting, field, count) in [("steps", "step_count", self.step_count), ("bins", "bin_count", bin_count)] {
             if count == 0 {
                 return Err(AngularError::NotPositive { setting, value: 0.0 });
             }
+            at_most(MOST_STEPS).check(field, count, STEP_BYTES)?;
         }
         match self.thresholds.iter().find(|&&threshold| threshold.is_nan() || threshold >= 1.0) {
             Some(&threshold) => Err(AngularError::ThresholdNotBelowOne { threshold }),
