@@ -20,6 +20,8 @@ mod progress;
 mod scene_file;
 #[path = "cli/study.rs"]
 mod study;
+#[path = "cli/threads.rs"]
+mod threads;
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -136,7 +138,7 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     if let Some(seed) = arguments.seed {
         scene.sample.iter_mut().for_each(|sample| sample.seed = seed);
     }
-    set_threads(arguments.threads)?;
+    threads::set_threads(arguments.threads)?;
     let bars = progress::Bars::new(scene.sample.iter().map(|sample| sample.name.as_str()));
     let report = run(&scene, &bars)?;
     print(&report::table::terminal_table(&report))?;
@@ -165,24 +167,6 @@ fn sample_of_file(path: &std::path::Path, scene: &Scene) -> Sample {
     let (seed, relaxer) =
         scene.sample.first().map_or((1, RelaxerChoice::default()), |first| (first.seed, first.relaxer));
     Sample { name, seed, source: Source::File(path.to_path_buf()), relaxer }
-}
-
-#[cfg(feature = "parallel")]
-fn set_threads(threads: Option<usize>) -> Result<(), Failure> {
-    let Some(count) = threads else { return Ok(()) };
-    if count == 0 {
-        return Err("--threads 0: at least one thread is needed".into());
-    }
-    rayon::ThreadPoolBuilder::new().num_threads(count).build_global()?;
-    Ok(())
-}
-
-#[cfg(not(feature = "parallel"))]
-fn set_threads(threads: Option<usize>) -> Result<(), Failure> {
-    match threads {
-        None | Some(1) => Ok(()),
-        Some(count) => Err(format!("--threads {count}: built without the feature `parallel`, one thread only").into()),
-    }
 }
 
 fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {

@@ -101,13 +101,24 @@ fn installed(text: &str) -> Option<u64> {
     line.split_whitespace().nth(1)?.parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// The least `memory.max` of the control group (version 2) and those above it.
+/// The least memory limit of the control group and those above it, version 2 or 1.
 fn control_group(text: &str) -> Option<u64> {
-    let group = text.lines().find_map(|line| line.strip_prefix("0::"))?;
-    let limit = |folder: &Path| std::fs::read_to_string(folder.join("memory.max")).ok()?.trim().parse::<u64>().ok();
-    let root = Path::new("/sys/fs/cgroup");
-    let own = root.join(group.trim_start_matches('/'));
-    own.ancestors().take_while(|folder| folder.starts_with(root)).filter_map(limit).min()
+    let least = |root: &str, file: &str, group: &str| {
+        let limit = |folder: &Path| std::fs::read_to_string(folder.join(file)).ok()?.trim().parse::<u64>().ok();
+        let root = Path::new(root);
+        let own = root.join(group.trim_start_matches('/'));
+        own.ancestors().take_while(|folder| folder.starts_with(root)).filter_map(limit).min()
+    };
+    // A line is `number:controllers:group`; version 2 has number 0 and names no controllers.
+    let of_line = |line: &str| {
+        let (controllers, group) = line.split_once(':')?.1.split_once(':')?;
+        match controllers {
+            "" => least("/sys/fs/cgroup", "memory.max", group),
+            "memory" => least("/sys/fs/cgroup/memory", "memory.limit_in_bytes", group),
+            _ => None,
+        }
+    };
+    text.lines().filter_map(of_line).min()
 }
 
 /// `Max address space` of /proc/self/limits, unless it is unlimited.

@@ -10,7 +10,7 @@ use jamscope::precision::table::terminal_table;
 use jamscope::precision::{PrecisionSettings, Progress, measure, write};
 use jamscope::scene::Scene;
 
-use crate::{Failure, print, sample_of_file, scene_file};
+use crate::{Failure, print, sample_of_file, scene_file, threads};
 
 #[derive(Args)]
 pub struct PrecisionArguments {
@@ -49,6 +49,7 @@ pub fn run(arguments: &PrecisionArguments) -> Result<ExitCode, Failure> {
     if arguments.steps == 0 {
         return Err("--steps 0: at least one step is needed".into());
     }
+    threads::set_threads(None)?;
     let settings = PrecisionSettings { explicit_step_limit: arguments.steps, ..PrecisionSettings::default() };
     let bar = Bar::new();
     let measured = measure(&scene, &settings, &bar);

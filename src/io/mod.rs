@@ -19,6 +19,7 @@ pub mod lammps_data;
 pub mod lammps_dump;
 mod read_error;
 mod source;
+mod unfinished;
 mod write_lammps_data;
 mod write_packing;
 
@@ -26,6 +27,7 @@ use std::path::Path;
 
 pub use atomic::{WriteError, write_atomically};
 pub use read_error::ReadError;
+pub use unfinished::remove_unfinished;
 pub use write_lammps_data::write_lammps_data;
 pub use write_packing::{Column, write_packing};
 

@@ -52,6 +52,30 @@ pub enum SceneError {
         /// What it must be.
         range: &'static str,
     },
+    /// Radii of which the small ones are lost in the rounding of the large ones.
+    #[error("mixture: radii from {smallest:e} to {largest:e} are {:.1e} apart: at most {limit:e}, beyond which forces on small disks are below the rounding of those on large ones", largest / smallest)]
+    RadiiTooFarApart {
+        /// The smallest \[length\].
+        smallest: f64,
+        /// The largest \[length\].
+        largest: f64,
+        /// The largest ratio \[1\].
+        limit: f64,
+    },
+    /// A pressure that rounding hides.
+    #[error("sample \"{name}\": source.pressure = {pressure:?}: disks of radius {radius:?} would overlap by some {overlap:.1e} of it: at least {limit:e}, below which overlaps are rounding; are pressure, stiffness and radii in one unit?")]
+    PressureBelowRounding {
+        /// The sample.
+        name: String,
+        /// The pressure asked for \[force / length\].
+        pressure: f64,
+        /// About the overlap over the radius \[1\].
+        overlap: f64,
+        /// The radius \[length\].
+        radius: f64,
+        /// The smallest such overlap \[1\].
+        limit: f64,
+    },
     /// A setting of an observable, in its own words.
     #[error("observables.{observable}: {reason}")]
     Observable {
@@ -109,6 +133,7 @@ impl Scene {
                 return Err(SceneError::NameTwice { name: sample.name.clone() });
             }
         }
+        self.check_scales()?;
         // What no rule above has named: a field that is only written, or a new one.
         Ok(finite::check(self)?)
     }

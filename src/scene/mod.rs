@@ -6,6 +6,7 @@
 mod check;
 pub mod finite;
 mod observables;
+mod scale;
 mod size;
 
 use serde::{Deserialize, Serialize};
