@@ -139,10 +139,12 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         scene.sample.iter_mut().for_each(|sample| sample.seed = seed);
     }
     threads::set_threads(arguments.threads)?;
+    let output = report::OutputFolder::open(&arguments.out, report::Kind::Report)?;
+    output.try_samples("sample.name", scene.sample.iter().map(|sample| sample.name.as_str()))?;
     let bars = progress::Bars::new(scene.sample.iter().map(|sample| sample.name.as_str()));
     let report = run(&scene, &bars)?;
     print(&report::table::terminal_table(&report))?;
-    let files = report::write(&report, &arguments.out)?;
+    let files = report::write_into(&report, output)?;
     let page = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
     let shown = page.unwrap_or(&arguments.out);
     print(&format!("\n{} files in {}, start from {}\n", files.len(), arguments.out.display(), shown.display()))?;

@@ -27,7 +27,7 @@ use std::path::Path;
 
 pub use atomic::{WriteError, write_atomically};
 pub use read_error::ReadError;
-pub use unfinished::remove_unfinished;
+pub use unfinished::{remove_unfinished, try_name};
 pub use write_lammps_data::write_lammps_data;
 pub use write_packing::{Column, write_packing};
 

@@ -45,6 +45,14 @@ pub(super) fn temporary(folder: &Path, name: &std::ffi::OsStr) -> std::io::Resul
     }
 }
 
+/// Whether [`write_atomically`](crate::io::write_atomically) could make a file of this name; leaves nothing behind.
+///
+/// # Errors
+/// What the system says: no permission, no room, a name too long.
+pub fn try_name(folder: &Path, name: &std::ffi::OsStr) -> std::io::Result<()> {
+    temporary(folder, name)?.close()
+}
+
 /// Removes the temporary files in `folder` that belong to no process; `known` tells whether the file that one was to become is a
 /// file of the caller's.
 ///

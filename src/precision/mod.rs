@@ -33,7 +33,7 @@ use crate::packing::Packing;
 use crate::run::{RunError, packing_of, thread_count};
 use crate::scene::{Sample, Scene, SceneError};
 
-pub use files::write;
+pub use files::{write, write_into};
 pub use results::{PrecisionReport, Run, SamplePrecision};
 pub use settings::{PrecisionError, PrecisionSettings};
 
