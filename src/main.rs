@@ -108,7 +108,17 @@ struct InspectArguments {
 type Failure = Box<dyn std::error::Error>;
 
 fn main() -> ExitCode {
-    let result = match Cli::parse().command {
+    let command = Cli::parse().command;
+    let result = threads::check_environment().and_then(|()| run_command(command));
+    result.unwrap_or_else(|error| {
+        // Nobody may be there to read it: the exit code tells as well.
+        let _ = writeln!(std::io::stderr(), "jamscope: {error}");
+        ExitCode::FAILURE
+    })
+}
+
+fn run_command(command: Option<Command>) -> Result<ExitCode, Failure> {
+    match command {
         None => run_scene(&RunArguments { out: "jamscope-report".into(), ..RunArguments::default() }),
         Some(Command::Run(arguments)) => run_scene(&arguments),
         Some(Command::Scene) => print(&scene_file::commented_scene()),
@@ -119,12 +129,7 @@ fn main() -> ExitCode {
         Some(Command::Exact(arguments)) => exact::print(&arguments).map(|()| ExitCode::SUCCESS),
         #[cfg(feature = "linear")]
         Some(Command::Precision(arguments)) => precision::run(&arguments),
-    };
-    result.unwrap_or_else(|error| {
-        // Nobody may be there to read it: the exit code tells as well.
-        let _ = writeln!(std::io::stderr(), "jamscope: {error}");
-        ExitCode::FAILURE
-    })
+    }
 }
 
 fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {

@@ -7,6 +7,7 @@ use jamscope::certificate::Certificate;
 use jamscope::certificate::Stability;
 use jamscope::contact::{ContactNetwork, LawChoice, PairLaw};
 use jamscope::io::read_packing;
+use jamscope::memory::Limit;
 use jamscope::observe::ForceDistribution;
 use jamscope::observe::force_distribution::PERCENTILES;
 use jamscope::packing::{Domain, Packing};
@@ -109,6 +110,8 @@ fn of<const D: usize, L: PairLaw>(
     choice: LawChoice,
     mode_count: usize,
 ) -> Result<Inspection, Box<dyn std::error::Error>> {
+    let largest = Limit { largest: (D * packing.len()) as u64, reason: "as many as coordinates of disks" };
+    largest.check("--modes", mode_count, 8.0 * (D * packing.len()) as f64)?;
     let network = ContactNetwork::new(packing, law)?;
     let volume = packing.domain().volume();
     let contacts = &network.contacts;

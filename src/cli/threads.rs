@@ -16,18 +16,30 @@ fn limit() -> Limit {
 #[cfg(feature = "parallel")]
 const STACK: f64 = 2.0 * 1024.0 * 1024.0;
 
-/// Starts the threads: as many as asked for, or as `RAYON_NUM_THREADS` says, or one a processor.
+/// The variable that says how many threads there are where no argument does; zero and what is no number mean one a processor.
+#[cfg(feature = "parallel")]
+const VARIABLE: &str = "RAYON_NUM_THREADS";
+
+#[cfg(feature = "parallel")]
+fn of_environment() -> usize {
+    std::env::var(VARIABLE).ok().and_then(|text| text.parse().ok()).unwrap_or(0)
+}
+
+/// Whether the environment asks for a number of threads that can be had, for commands that have no argument for it.
+pub fn check_environment() -> Result<(), Failure> {
+    #[cfg(feature = "parallel")]
+    limit().check(VARIABLE, of_environment(), STACK)?;
+    Ok(())
+}
+
+/// Starts the threads: as many as asked for, or as the environment says, or one a processor.
 #[cfg(feature = "parallel")]
 pub fn set_threads(threads: Option<usize>) -> Result<(), Failure> {
     let (field, count) = match threads {
-        Some(count) => ("--threads", Some(count)),
-        // Zero and what is not a number mean one a processor.
-        None => ("RAYON_NUM_THREADS", std::env::var("RAYON_NUM_THREADS").ok().and_then(|text| text.parse().ok())),
+        Some(0) => return Err("--threads 0: at least one thread is needed".into()),
+        Some(count) => ("--threads", count),
+        None => (VARIABLE, of_environment()),
     };
-    if threads == Some(0) {
-        return Err("--threads 0: at least one thread is needed".into());
-    }
-    let count: usize = count.unwrap_or(0);
     limit().check(field, count, STACK)?;
     let started = rayon::ThreadPoolBuilder::new().num_threads(count).build_global();
     started.map_err(|error| format!("{field} {count}: the threads could not be started: {error}").into())

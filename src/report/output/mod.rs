@@ -135,20 +135,21 @@ impl OutputFolder {
 
     /// Puts the files in their place; gives their paths, in the order of `names`.
     pub(crate) fn commit(mut self, names: Vec<String>) -> Result<Vec<PathBuf>, ReportError> {
-        let manifest = Manifest::of(self.inside(), &names)?;
-        manifest.write(&self.inside().join(self.kind.manifest()))?;
-        let Some(part) = self.part.take() else { return Ok(Vec::new()) };
-        let part = part.keep();
-        let mut ready = part.clone().into_os_string();
-        ready.push(READY);
-        let failed = |path: &Path| {
-            let path = path.to_path_buf();
-            move |source| ReportError::Place { path, source }
-        };
-        std::fs::rename(&part, &ready).map_err(failed(&part))?;
-        self.made.clear();
+        self.make_ready(&names)?;
         complete(&self.folder, self.kind)?;
         Ok(names.iter().map(|name| self.folder.join(name)).collect())
+    }
+
+    /// Lists the files and says that all are there: from here on the report is complete. Gives the folder that is ready.
+    fn make_ready(&mut self, names: &[String]) -> Result<PathBuf, ReportError> {
+        let manifest = Manifest::of(self.inside(), names)?;
+        manifest.write(&self.inside().join(self.kind.manifest()))?;
+        let part = self.part.take().map(tempfile::TempDir::keep).unwrap_or_default();
+        let mut ready = part.clone().into_os_string();
+        ready.push(READY);
+        std::fs::rename(&part, &ready).map_err(|source| ReportError::Place { path: part, source })?;
+        self.made.clear();
+        Ok(ready.into())
     }
 
     /// Removes what processes that were killed had begun.

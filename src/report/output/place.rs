@@ -22,8 +22,13 @@ pub fn complete(folder: &Path, kind: Kind) -> Result<(), ReportError> {
     }
     let _lock = lock(folder)?;
     for one in ready(folder, kind)? {
-        place(folder, &one, kind)?;
+        for step in steps(folder, &one, kind)? {
+            step.take()?;
+        }
     }
+    // The names reach the disk with their folder. Not every system can do that, and the content is safe already.
+    #[cfg(unix)]
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
     Ok(())
 }
 
@@ -39,7 +44,7 @@ pub fn is_of_the_last_report(folder: &Path, name: &str) -> bool {
 }
 
 /// Complete reports that wait to be moved, the oldest first.
-fn ready(folder: &Path, kind: Kind) -> Result<Vec<PathBuf>, ReportError> {
+pub(super) fn ready(folder: &Path, kind: Kind) -> Result<Vec<PathBuf>, ReportError> {
     let failed = |source| ReportError::Place { path: folder.into(), source };
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
@@ -71,60 +76,165 @@ fn lock(folder: &Path) -> Result<Option<File>, ReportError> {
     }
 }
 
-/// Moves one complete report. Every step may be the last one: done again from the start, it goes on where it was.
-fn place(folder: &Path, ready: &Path, kind: Kind) -> Result<(), ReportError> {
+/// One change of the folder.
+#[derive(Debug)]
+pub(super) enum Step {
+    /// A file of the last report goes.
+    Remove(PathBuf),
+    /// A file that no report wrote, of the name of one of this report, is renamed.
+    SetAside(PathBuf),
+    /// A file of this report comes.
+    Move { from: PathBuf, to: PathBuf },
+    /// The folder that was ready is empty.
+    RemoveFolder(PathBuf),
+}
+
+impl Step {
+    pub(super) fn take(self) -> Result<(), ReportError> {
+        let (path, result) = match self {
+            Step::Remove(path) => (path.clone(), std::fs::remove_file(path)),
+            Step::SetAside(path) => (path.clone(), set_aside(&path)),
+            Step::Move { from, to } => (to.clone(), std::fs::rename(from, to)),
+            Step::RemoveFolder(path) => (path.clone(), std::fs::remove_dir(path)),
+        };
+        result.map_err(|source| ReportError::Place { path, source })
+    }
+}
+
+/// What is left to do for a complete report. Any step may be the last one: asked again, it is what is left then.
+pub(super) fn steps(folder: &Path, ready: &Path, kind: Kind) -> Result<Vec<Step>, ReportError> {
     let (document, list) = (kind.document(), kind.manifest());
-    let failed = |path: PathBuf| move |source| ReportError::Place { path, source };
-    // The list is moved after all that comes before it, so without it there is nothing old to remove.
-    if ready.join(&list).exists() {
-        let there = folder.join(&list);
-        if let Some(old) = Manifest::read(&there) {
-            let mut names: Vec<&str> = old.unchanged(folder).collect();
-            names.sort_by_key(|name| *name != document);
-            for name in names {
-                remove(&folder.join(name))?;
-            }
-            remove(&there)?;
-        }
+    let failed = |source| ReportError::Place { path: ready.into(), source };
+    let mut steps = Vec::new();
+    let mut removed = Vec::new();
+    // Of this report the list is moved when all but the document is there: from then on nothing old is left.
+    let old = if ready.join(&list).exists() { Manifest::read(&folder.join(&list)) } else { None };
+    if let Some(old) = old {
+        removed.extend(old.unchanged(folder).map(str::to_string));
+        removed.sort_by_key(|name| *name != document);
+        removed.push(list.clone());
+        steps.extend(removed.iter().map(|name| Step::Remove(folder.join(name))));
     }
     let mut names = Vec::new();
-    for entry in std::fs::read_dir(ready).map_err(failed(ready.into()))? {
-        names.push(entry.map_err(failed(ready.into()))?.file_name());
+    for entry in std::fs::read_dir(ready).map_err(failed)? {
+        names.push(entry.map_err(failed)?.file_name());
     }
     names.sort_by_key(|name| (*name == *document.as_str(), *name == *list.as_str(), name.clone()));
     for name in names {
         let to = folder.join(&name);
-        set_aside(&to)?;
-        std::fs::rename(ready.join(&name), &to).map_err(failed(to))?;
-    }
-    std::fs::remove_dir(ready).map_err(failed(ready.into()))?;
-    // The names reach the disk with their folder. Not every system can do that, and the content is safe already.
-    #[cfg(unix)]
-    let _ = File::open(folder).and_then(|folder| folder.sync_all());
-    Ok(())
-}
-
-fn remove(path: &Path) -> Result<(), ReportError> {
-    match std::fs::remove_file(path) {
-        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-            Err(ReportError::Place { path: path.into(), source })
+        if to.symlink_metadata().is_ok() && !removed.iter().any(|removed| name == *removed.as_str()) {
+            steps.push(Step::SetAside(to.clone()));
         }
-        _ => Ok(()),
+        steps.push(Step::Move { from: ready.join(&name), to });
     }
+    steps.push(Step::RemoveFolder(ready.into()));
+    Ok(steps)
 }
 
-/// Renames a file that no report wrote and that has the name of one of this report.
-fn set_aside(path: &Path) -> Result<(), ReportError> {
-    if path.symlink_metadata().is_err() {
-        return Ok(());
-    }
+/// Renames a file to `NAME.~N~` with the first N that is free.
+fn set_aside(path: &Path) -> std::io::Result<()> {
     let mut number = 1u32;
     loop {
         let mut aside = path.as_os_str().to_os_string();
         aside.push(format!(".~{number}~"));
         if Path::new(&aside).symlink_metadata().is_err() {
-            return std::fs::rename(path, &aside).map_err(|source| ReportError::Place { path: path.into(), source });
+            return std::fs::rename(path, &aside);
         }
         number += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::report::OutputFolder;
+
+    /// Files and what is in them, hidden ones and folders left out.
+    fn visible(folder: &Path) -> BTreeMap<String, String> {
+        let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry"));
+        let files = entries.filter(|entry| entry.file_type().expect("a type").is_file());
+        let pair = |path: PathBuf| {
+            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+            (name, std::fs::read_to_string(path).expect("text"))
+        };
+        files.map(|entry| pair(entry.path())).filter(|(name, _)| !name.starts_with('.')).collect()
+    }
+
+    /// A report of these files, each with its own text in it, left ready; gives the folder that is.
+    fn made_ready(folder: &Path, names: &[&str], text: &str) -> PathBuf {
+        let mut output = OutputFolder::open(folder, Kind::Report).expect("a folder");
+        names.iter().for_each(|name| std::fs::write(output.inside().join(name), text).expect("written"));
+        output.make_ready(&names.iter().map(|name| name.to_string()).collect::<Vec<_>>()).expect("ready")
+    }
+
+    #[test]
+    fn interrupted_after_any_step_files_are_of_one_report_and_the_next_command_goes_on() {
+        let old = ["report.json", "timings.json", "a.packing.xyz", "b.packing.xyz"];
+        let new = ["report.json", "timings.json", "a.packing.xyz", "c.packing.xyz"];
+        let mine = ["notes.txt", "c.packing.xyz"];
+        let mut interruptions = 0;
+        for step_count in 0.. {
+            let folder = tempfile::tempdir().expect("a temporary folder");
+            made_ready(folder.path(), &old, "old");
+            complete(folder.path(), Kind::Report).expect("placed");
+            mine.iter().for_each(|name| std::fs::write(folder.path().join(name), "mine").expect("written"));
+            let ready = made_ready(folder.path(), &new, "new");
+            let steps = steps(folder.path(), &ready, Kind::Report).expect("a plan");
+            let all = steps.len();
+            steps.into_iter().take(step_count).for_each(|step| step.take().expect("taken"));
+            let found = visible(folder.path());
+            let has = |text: &str| found.values().any(|it| it == text);
+            assert!(!(has("old") && has("new")), "after {step_count} steps: {found:?}");
+            // Where the report is, all its files are.
+            if let Some(text) = found.get("report.json") {
+                let names = if text == "old" { old } else { new };
+                assert!(names.iter().all(|name| found[*name] == *text), "after {step_count} steps: {found:?}");
+            }
+            complete(folder.path(), Kind::Report).expect("completed");
+            let expected = BTreeMap::from(new.map(|name| (name.to_string(), "new".to_string())))
+                .into_iter()
+                .chain([("notes.txt", "mine"), ("c.packing.xyz.~1~", "mine")].map(|(a, b)| (a.into(), b.into())))
+                .collect();
+            assert_eq!(visible(folder.path()), expected, "after {step_count} steps");
+            if step_count == all {
+                break;
+            }
+            interruptions += 1;
+        }
+        // Five old files and lists are removed, five new ones moved, one set aside, a folder removed.
+        assert_eq!(interruptions, 12);
+    }
+
+    #[test]
+    fn files_that_were_changed_are_not_removed() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        made_ready(folder.path(), &["report.json", "a.csv", "b.csv"], "old");
+        complete(folder.path(), Kind::Report).expect("placed");
+        std::fs::write(folder.path().join("a.csv"), "with my remarks").expect("written");
+        made_ready(folder.path(), &["report.json"], "new");
+        complete(folder.path(), Kind::Report).expect("placed");
+        let expected = [("a.csv", "with my remarks"), ("report.json", "new")];
+        assert_eq!(visible(folder.path()), expected.map(|(a, b)| (a.to_string(), b.to_string())).into());
+    }
+
+    #[test]
+    fn folders_of_dead_processes_go_and_those_of_live_ones_stay() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let dead = folder.path().join(".report-Ab3dEf.part");
+        std::fs::create_dir(&dead).expect("made");
+        std::fs::write(dead.join("a.csv"), "half").expect("written");
+        let live = OutputFolder::open(folder.path(), Kind::Report).expect("a folder");
+        assert!(!dead.exists());
+        let other = OutputFolder::open(folder.path(), Kind::Report).expect("a folder");
+        assert!(live.inside().exists() && other.inside() != live.inside());
+        let inside = live.inside().to_path_buf();
+        drop((live, other));
+        assert!(!inside.exists() && folder.path().exists());
+        // What was made for nothing goes too.
+        let deep = folder.path().join("not/there");
+        drop(OutputFolder::open(&deep, Kind::Analysis).expect("a folder"));
+        assert!(!folder.path().join("not").exists());
     }
 }
