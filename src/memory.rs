@@ -133,7 +133,10 @@ mod tests {
     #[test]
     fn the_limits_of_linux_are_read() {
         assert_eq!(installed("MemTotal:       16000 kB\nMemFree: 1 kB\n"), Some(16_384_000));
-        assert_eq!(address_space("Max address space         4096                 unlimited            bytes\n"), Some(4096));
+        assert_eq!(
+            address_space("Max address space         4096                 unlimited            bytes\n"),
+            Some(4096)
+        );
         assert_eq!(address_space("Max address space         unlimited            unlimited            bytes\n"), None);
         assert_eq!(control_group("no such line"), None);
         assert!(Memory::of_machine().bytes > 0);

@@ -144,7 +144,11 @@ fn pairs_in(folder: &Path) -> Result<Vec<Files>, Failure> {
         .partition(|name| report::output::is_of_the_last_report(folder, name));
     names = left;
     if !earlier.is_empty() {
-        print(&format!("left out, of an earlier run than the report in {}: {}\n", folder.display(), earlier.join(", ")))?;
+        print(&format!(
+            "left out, of an earlier run than the report in {}: {}\n",
+            folder.display(),
+            earlier.join(", ")
+        ))?;
     }
     // NAME.STATE.ENDING, or STATE.ENDING alone.
     let state_of = |name: &str, state: &str| -> Option<String> {

@@ -144,7 +144,8 @@ impl<const D: usize> VibrationalModes<D> {
 /// otherwise two vectors a mode, a lower bound.
 fn check_memory(dimension: usize, count: usize) -> Result<(), LinearError> {
     let column = 8.0 * dimension as f64;
-    let bytes = if DENSE_SHARE * count >= dimension { 3.0 * dimension as f64 * column } else { 2.0 * count as f64 * column };
+    let bytes =
+        if DENSE_SHARE * count >= dimension { 3.0 * dimension as f64 * column } else { 2.0 * count as f64 * column };
     // By count, since all else follows from the packing.
     Ok(Memory::of_machine().check("modes", count, bytes / count.max(1) as f64)?)
 }

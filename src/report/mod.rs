@@ -32,8 +32,8 @@ mod data_file;
 #[cfg(feature = "plot")]
 pub mod figures;
 mod files;
-pub mod output;
 pub(crate) mod number;
+pub mod output;
 #[cfg(feature = "plot")]
 pub mod page;
 #[cfg(feature = "linear")]
@@ -91,7 +91,9 @@ pub enum ReportError {
         source: std::io::Error,
     },
     /// A complete report could not be put in its place; it stays complete, and the next command on the folder tries again.
-    #[error("{path}: {source}; the report is complete in a hidden folder beside it, and the next run or analysis of the folder moves it")]
+    #[error(
+        "{path}: {source}; the report is complete in a hidden folder beside it, and the next run or analysis of the folder moves it"
+    )]
     Place {
         /// The file or folder.
         path: PathBuf,
@@ -99,7 +101,9 @@ pub enum ReportError {
         source: std::io::Error,
     },
     /// Another process puts a report into the same folder and does not end.
-    #[error("{folder}: locked by another process; the report is complete in a hidden folder in it, and the next run or analysis of the folder moves it")]
+    #[error(
+        "{folder}: locked by another process; the report is complete in a hidden folder in it, and the next run or analysis of the folder moves it"
+    )]
     Busy {
         /// The folder.
         folder: PathBuf,

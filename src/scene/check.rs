@@ -63,7 +63,9 @@ pub enum SceneError {
         limit: f64,
     },
     /// A pressure that rounding hides.
-    #[error("sample \"{name}\": source.pressure = {pressure:?}: disks of radius {radius:?} would overlap by some {overlap:.1e} of it: at least {limit:e}, below which overlaps are rounding; are pressure, stiffness and radii in one unit?")]
+    #[error(
+        "sample \"{name}\": source.pressure = {pressure:?}: disks of radius {radius:?} would overlap by some {overlap:.1e} of it: at least {limit:e}, below which overlaps are rounding; are pressure, stiffness and radii in one unit?"
+    )]
     PressureBelowRounding {
         /// The sample.
         name: String,

@@ -15,10 +15,10 @@ use crate::study::plan::Shard;
 use crate::study::store::StoreError;
 
 /// A study.json is written in less time; whoever holds its lock longer has been stopped.
-const PATIENCE: Duration = Duration::from_secs(5);
+pub(super) const PATIENCE: Duration = Duration::from_secs(3);
 
 /// Time between two tries.
-const PAUSE: Duration = Duration::from_millis(10);
+pub(super) const PAUSE: Duration = Duration::from_millis(10);
 
 /// Opens the file of a lock, made if it is not there.
 fn open(path: &Path) -> Result<File, StoreError> {

@@ -172,7 +172,8 @@ pub enum StudyError {
 }
 
 /// Packings of a study: each is a file of one folder, and the plan of all is held in memory.
-const MOST_PACKINGS: Limit = Limit { largest: 1_000_000, reason: "a study has at most a million packings, a file each" };
+const MOST_PACKINGS: Limit =
+    Limit { largest: 1_000_000, reason: "a study has at most a million packings, a file each" };
 
 /// A task of the plan, and the name of its file while those of the folder are compared \[bytes\].
 const BYTES_A_PACKING: f64 = 256.0;

@@ -8,11 +8,12 @@
 use std::fs::File;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
 use crate::io::{WriteError, remove_unfinished, write_atomically};
-use crate::study::lock::{self, StudyLock};
+use crate::study::lock::{self, PATIENCE, PAUSE, StudyLock};
 use crate::study::plan::{Shard, Task, hash};
 use crate::study::record::Record;
 use crate::study::settings::Study;
@@ -120,19 +121,27 @@ impl Store {
         let store = Store { folder: folder.into() };
         let samples = store.samples();
         std::fs::create_dir_all(&samples).map_err(|source| StoreError::Io { path: samples, source })?;
-        let lock = StudyLock::shared(folder)?;
-        if store.has(study, replace)? {
-            return store.ready(lock);
+        let start = Instant::now();
+        loop {
+            // A file is replaced at once, so it can be read without a lock; what was read may have changed before the lock is had.
+            if store.has(study, replace)? {
+                let lock = StudyLock::shared(folder)?;
+                if store.has(study, replace)? {
+                    return store.ready(lock);
+                }
+            } else {
+                match StudyLock::exclusive(folder) {
+                    Ok(_lock) => {
+                        if !store.has(study, replace)? {
+                            store.take_over(study)?;
+                        }
+                    }
+                    // Perhaps another part of this very study, started at the same time, is writing it.
+                    Err(StoreError::Locked { .. }) if start.elapsed() < PATIENCE => std::thread::sleep(PAUSE),
+                    Err(error) => return Err(error),
+                }
+            }
         }
-        drop(lock);
-        let lock = StudyLock::exclusive(folder)?;
-        // Another process may have written its own meanwhile.
-        if !store.has(study, replace)? {
-            store.take_over(study)?;
-        }
-        drop(lock);
-        let lock = StudyLock::shared(folder)?;
-        if store.has(study, false)? { store.ready(lock) } else { Err(StoreError::NoStudy { path: store.study_path() }) }
     }
 
     /// Whether the folder has this very study; not, where it has none or may be replaced.

@@ -27,7 +27,8 @@ fn refused(command: &mut Command) -> String {
 
 /// A scene of samples with these names, all of one seed, in a file.
 fn scene(folder: &Path, names: &[&str], seed: u64) -> PathBuf {
-    let sample = |name: &&str| format!("[[sample]]\nname = \"{name}\"\nseed = {seed}\nsource = {{ pressure = 800.0 }}\n");
+    let sample =
+        |name: &&str| format!("[[sample]]\nname = \"{name}\"\nseed = {seed}\nsource = {{ pressure = 800.0 }}\n");
     let samples: String = names.iter().map(sample).collect();
     let observables = "[observables.radial_profile]\n[observables.displacement_field]\n";
     let path = folder.join(format!("seed_{seed}.toml"));

@@ -75,12 +75,36 @@ fn parts_of_one_study_run_side_by_side() {
 }
 
 #[test]
+fn parts_that_start_at_once_in_an_empty_folder_all_run() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let b = fixture("studies/b.toml");
+    // The second time the study takes the place of another one, as where samples are added.
+    for out in [folder.path().join("new"), folder.path().join("new")] {
+        if out.exists() {
+            let other = std::fs::read_to_string(out.join("study.json")).expect("there").replace("800.0", "700.0");
+            std::fs::write(out.join("study.json"), other).expect("written");
+        }
+        let part = |index: usize| {
+            let shard = format!("{index}/8");
+            let mut command = study(&b, &out, &["--replace", "--threads", "1", "--shard", &shard]);
+            command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts")
+        };
+        let parts: Vec<Child> = (1..=8).map(part).collect();
+        for part in parts {
+            let output = part.wait_with_output().expect("it ends");
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        }
+    }
+}
+
+#[test]
 fn a_killed_study_that_is_replaced_keeps_no_results_of_the_first() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (out, b) = (folder.path().join("s"), fixture("studies/b.toml"));
     finished(study(&b, &out, &[]).stdout(Stdio::piped()).spawn().expect("it starts"));
     let plan = std::fs::read(out.join("study.json")).expect("there");
-    let mut second = study(&fixture("studies/a.toml"), &out, &["--replace"]).stdout(Stdio::null()).spawn().expect("it starts");
+    let mut second =
+        study(&fixture("studies/a.toml"), &out, &["--replace"]).stdout(Stdio::null()).spawn().expect("it starts");
     let start = Instant::now();
     while std::fs::read(out.join("study.json")).expect("there") == plan && start.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(1));

@@ -53,8 +53,8 @@ impl Manifest {
 
     /// Writes the list.
     pub(super) fn write(&self, path: &Path) -> Result<(), ReportError> {
-        let text = serde_json::to_string_pretty(self)
-            .map_err(|source| ReportError::Json { path: path.into(), source })?;
+        let text =
+            serde_json::to_string_pretty(self).map_err(|source| ReportError::Json { path: path.into(), source })?;
         Ok(write_atomically(path, |writer| writer.write_all((text + "\n").as_bytes()))?)
     }
 
