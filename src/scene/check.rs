@@ -64,7 +64,7 @@ pub enum SceneError {
     },
     /// A pressure that rounding hides.
     #[error(
-        "sample \"{name}\": source.pressure = {pressure:?}: disks of radius {radius:?} would overlap by some {overlap:.1e} of it: at least {limit:e}, below which overlaps are rounding; are pressure, stiffness and radii in one unit?"
+        "sample \"{name}\": source.pressure = {pressure:?}: disks of radius {radius:e} would overlap by some {overlap:.1e} of it: at least {limit:e}, below which overlaps are rounding; are pressure, stiffness and radii in one unit?"
     )]
     PressureBelowRounding {
         /// The sample.

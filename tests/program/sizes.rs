@@ -77,7 +77,7 @@ fn radii_that_rounding_hides_are_refused() {
     let said = complaint("{ radius = 0.5, share = 1.0 }, { radius = 1e15, share = 1.0 }");
     assert_says(&said, &["scene.toml", "mixture", "1e15", "at most 1e8"]);
     let said = complaint("{ radius = 1e15, share = 1.0 }");
-    assert_says(&said, &["scene.toml", "\"one\"", "source.pressure = 1", "1e15", "at least 1e-12"]);
+    assert_says(&said, &["scene.toml", "\"one\"", "source.pressure = 1", "radius 1e15", "at least 1e-12"]);
     assert!(!out.exists());
 }
 
