@@ -161,7 +161,9 @@ impl Store {
         let path = self.study_path();
         let text = serde_json::to_string_pretty(study)
             .map_err(|error| StoreError::Unreadable { path: path.clone(), reason: error.to_string() })?;
-        for name in RESULTS {
+        // Without a study there are no results of one: files of these names are somebody's.
+        let results = if path.exists() { &RESULTS[..] } else { &[] };
+        for name in results {
             let path = self.folder.join(name);
             match std::fs::remove_file(&path) {
                 Err(source) if source.kind() != std::io::ErrorKind::NotFound => {

@@ -101,6 +101,11 @@ fn parts_that_start_at_once_in_an_empty_folder_all_run() {
 fn a_killed_study_that_is_replaced_keeps_no_results_of_the_first() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (out, b) = (folder.path().join("s"), fixture("studies/b.toml"));
+    // Where there is no study, a file of this name is none of a study.
+    std::fs::create_dir(&out).expect("made");
+    std::fs::write(out.join("transition.csv"), "mine").expect("written");
+    finished(study(&b, &out, &["--shard", "1/5"]).stdout(Stdio::piped()).spawn().expect("it starts"));
+    assert_eq!(std::fs::read_to_string(out.join("transition.csv")).expect("there"), "mine");
     finished(study(&b, &out, &[]).stdout(Stdio::piped()).spawn().expect("it starts"));
     let plan = std::fs::read(out.join("study.json")).expect("there");
     let mut second =
