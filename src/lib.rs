@@ -56,6 +56,7 @@
 //! |---|---|---|
 //! | [`vector`] | vectors of D = 2 or 3 components, error-free sums | [`Vector`](vector::Vector) |
 //! | `sparse` (feature `linear`) | one triangle of a symmetric matrix in compressed columns | `sparse::SymmetricMatrix` |
+//! | [`memory`] | how much of it a count may take | [`Memory`](memory::Memory) |
 //! | [`packing`] | centres, radii, domain, which disks are held | [`Packing`](packing::Packing) |
 //! | [`io`] | packings in files | [`read_packing`](io::read_packing) |
 //! | [`contact`] | laws, damping, sites, neighbour list, hot loop, contact network, Hessian | [`ContactNetwork`](contact::ContactNetwork) |
@@ -112,6 +113,7 @@ pub mod io;
 pub mod lattice;
 #[cfg(feature = "linear")]
 pub mod linear;
+pub mod memory;
 pub mod observe;
 pub mod packing;
 #[cfg(feature = "linear")]

@@ -22,6 +22,8 @@ mod progress;
 mod scene_file;
 #[path = "cli/study.rs"]
 mod study;
+#[path = "cli/threads.rs"]
+mod threads;
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -115,7 +117,17 @@ struct InspectArguments {
 type Failure = Box<dyn std::error::Error>;
 
 fn main() -> ExitCode {
-    let result = match Cli::parse().command {
+    let command = Cli::parse().command;
+    let result = threads::check_environment().and_then(|()| run_command(command));
+    result.unwrap_or_else(|error| {
+        // Nobody may be there to read it: the exit code tells as well.
+        let _ = writeln!(std::io::stderr(), "jamscope: {error}");
+        ExitCode::FAILURE
+    })
+}
+
+fn run_command(command: Option<Command>) -> Result<ExitCode, Failure> {
+    match command {
         None => run_scene(&RunArguments { out: "jamscope-report".into(), ..RunArguments::default() }),
         Some(Command::Run(arguments)) => run_scene(&arguments),
         Some(Command::Scene) => print(&scene_file::commented_scene()),
@@ -126,12 +138,7 @@ fn main() -> ExitCode {
         Some(Command::Exact(arguments)) => exact::print(&arguments).map(|()| ExitCode::SUCCESS),
         #[cfg(feature = "linear")]
         Some(Command::Precision(arguments)) => precision::run(&arguments),
-    };
-    result.unwrap_or_else(|error| {
-        // Nobody may be there to read it: the exit code tells as well.
-        let _ = writeln!(std::io::stderr(), "jamscope: {error}");
-        ExitCode::FAILURE
-    })
+    }
 }
 
 fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
@@ -146,11 +153,13 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         scene.sample.iter_mut().for_each(|sample| sample.seed = seed);
     }
     override_limit(&mut scene.verdict, arguments.not_at_rest);
-    set_threads(arguments.threads)?;
+    threads::set_threads(arguments.threads)?;
+    let output = report::OutputFolder::open(&arguments.out, report::Kind::Report)?;
+    output.try_samples("sample.name", scene.sample.iter().map(|sample| sample.name.as_str()))?;
     let bars = progress::Bars::new(scene.sample.iter().map(|sample| sample.name.as_str()));
     let report = run(&scene, &bars)?;
     print(&report::table::terminal_table(&report))?;
-    let files = report::write(&report, &arguments.out)?;
+    let files = report::write_into(&report, output)?;
     let page = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
     let shown = page.unwrap_or(&arguments.out);
     print(&format!("\n{} files in {}, start from {}\n", files.len(), arguments.out.display(), shown.display()))?;
@@ -191,24 +200,6 @@ fn sample_of_file(path: &std::path::Path, scene: &Scene) -> Sample {
     let (seed, relaxer) =
         scene.sample.first().map_or((1, RelaxerChoice::default()), |first| (first.seed, first.relaxer));
     Sample { name, seed, source: Source::File(path.to_path_buf()), relaxer }
-}
-
-#[cfg(feature = "parallel")]
-fn set_threads(threads: Option<usize>) -> Result<(), Failure> {
-    let Some(count) = threads else { return Ok(()) };
-    if count == 0 {
-        return Err("--threads 0: at least one thread is needed".into());
-    }
-    rayon::ThreadPoolBuilder::new().num_threads(count).build_global()?;
-    Ok(())
-}
-
-#[cfg(not(feature = "parallel"))]
-fn set_threads(threads: Option<usize>) -> Result<(), Failure> {
-    match threads {
-        None | Some(1) => Ok(()),
-        Some(count) => Err(format!("--threads {count}: built without the feature `parallel`, one thread only").into()),
-    }
 }
 
 fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {

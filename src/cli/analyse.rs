@@ -71,6 +71,8 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
         }],
         [] => Vec::new(),
     };
+    let output = report::OutputFolder::open(&arguments.out, report::Kind::Analysis)?;
+    output.try_samples("name of a pair", all.iter().map(|files| files.name.as_str()))?;
     let mut analyses = Vec::new();
     let mut failures = Vec::new();
     for files in &all {
@@ -81,7 +83,7 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
     }
     if !analyses.is_empty() {
         print(&report::table::analysis_table(&analyses))?;
-        let written = report::write_analyses(&analyses, &arguments.out)?;
+        let written = report::write_analyses_into(&analyses, output)?;
         let page = written.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
         let shown = page.unwrap_or(&arguments.out).display();
         print(&format!("\n{} files in {}, start from {shown}\n", written.len(), arguments.out.display()))?;
@@ -145,11 +147,26 @@ fn name_of(path: &Path) -> String {
 /// The pairs of a folder by the names of its files, in their order.
 fn pairs_in(folder: &Path) -> Result<Vec<Files>, Failure> {
     let named = |error: std::io::Error| format!("{}: {error}", folder.display());
+    // A run that was killed while it put its files in their place is completed first.
+    report::output::complete(folder, report::Kind::Report)?;
     let mut names: Vec<String> = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(named)? {
         names.push(entry.map_err(named)?.file_name().to_string_lossy().into_owned());
     }
     names.sort();
+    let is_state = |name: &str| ["before.", "after.", "displacement.", "deflated."].iter().any(|it| name.contains(it));
+    let (left, earlier): (Vec<String>, Vec<String>) = names
+        .into_iter()
+        .filter(|name| is_state(name))
+        .partition(|name| report::output::is_of_the_last_report(folder, name));
+    names = left;
+    if !earlier.is_empty() {
+        print(&format!(
+            "left out, of an earlier run than the report in {}: {}\n",
+            folder.display(),
+            earlier.join(", ")
+        ))?;
+    }
     // NAME.STATE.ENDING, or STATE.ENDING alone.
     let state_of = |name: &str, state: &str| -> Option<String> {
         let at = name.find(&format!("{state}."))?;

@@ -7,6 +7,7 @@ use jamscope::certificate::Certificate;
 use jamscope::certificate::Stability;
 use jamscope::contact::{LawChoice, PairLaw};
 use jamscope::io::read_packing;
+use jamscope::memory::Limit;
 use jamscope::observe::ForceDistribution;
 use jamscope::observe::force_distribution::PERCENTILES;
 use jamscope::observe::state::State;
@@ -116,6 +117,8 @@ fn of<const D: usize, L: PairLaw>(
     mode_count: usize,
     settings: &VerdictSettings,
 ) -> Result<Inspection, Box<dyn std::error::Error>> {
+    let largest = Limit { largest: (D * packing.len()) as u64, reason: "as many as coordinates of disks" };
+    largest.check("--modes", mode_count, 8.0 * (D * packing.len()) as f64)?;
     let state = State::new(packing, law)?;
     let verdict = RestVerdict::of(&[("in the file", &state)], law, &choice, None, settings);
     let network = state.network;

@@ -7,10 +7,11 @@ use std::time::Duration;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use jamscope::precision::table::terminal_table;
-use jamscope::precision::{PrecisionSettings, Progress, measure, write};
+use jamscope::precision::{PrecisionSettings, Progress, measure, write_into};
+use jamscope::report::{Kind, OutputFolder};
 use jamscope::scene::Scene;
 
-use crate::{Failure, print, sample_of_file, scene_file};
+use crate::{Failure, print, sample_of_file, scene_file, threads};
 
 #[derive(Args)]
 pub struct PrecisionArguments {
@@ -49,13 +50,16 @@ pub fn run(arguments: &PrecisionArguments) -> Result<ExitCode, Failure> {
     if arguments.steps == 0 {
         return Err("--steps 0: at least one step is needed".into());
     }
+    threads::set_threads(None)?;
     let settings = PrecisionSettings { explicit_step_limit: arguments.steps, ..PrecisionSettings::default() };
+    let output = OutputFolder::open(&arguments.out, Kind::Precision)?;
+    output.try_samples("sample.name", scene.sample.iter().map(|sample| sample.name.as_str()))?;
     let bar = Bar::new();
     let measured = measure(&scene, &settings, &bar);
     bar.0.finish_and_clear();
     let report = measured?;
     print(&terminal_table(&report))?;
-    let files = write(&report, &arguments.out)?;
+    let files = write_into(&report, output)?;
     let page = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
     let shown = page.unwrap_or(&arguments.out);
     print(&format!("{} files in {}, start from {}\n", files.len(), arguments.out.display(), shown.display()))

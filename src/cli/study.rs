@@ -14,7 +14,8 @@ use jamscope::study::{
 };
 
 use crate::scene_file::refuse_cut;
-use crate::{Failure, print, set_threads};
+use crate::threads::set_threads;
+use crate::{Failure, print};
 
 /// What `study` is asked for.
 #[derive(Args)]
@@ -96,6 +97,10 @@ fn shard_of_environment() -> Result<Shard, Failure> {
 
 fn read_study(path: &Path) -> Result<Study, Failure> {
     let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    if text.trim().is_empty() {
+        let how = "`jamscope study --recipe NAME --print` prints a study";
+        return Err(format!("{}: the file is empty; {how}", path.display()).into());
+    }
     // A scene without samples is the default of a study, but not of a scene.
     let mut table: toml::Table = toml::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?;
     let scene = table.entry("scene").or_insert_with(|| toml::Value::Table(toml::Table::new()));
@@ -136,9 +141,17 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
         print(&format!("{}: {}\n{}", recipe.name(), recipe.title(), cost::summary(&plan, &arguments.out, shard)))?;
     }
     let bar = Bar::new(plan.tasks.iter().filter(|task| shard.has(task.index)).count());
-    let executed = study::execute(&study, &arguments.out, shard, arguments.replace, &bar);
+    let executed = match shard == Shard::default() {
+        true => study::execute_and_merge(&study, &arguments.out, arguments.replace, &bar)
+            .map(|whole| (whole.execution, whole.merged, Some(whole.lock)))
+            .map_err(|error| error.to_string()),
+        false => study::execute(&study, &arguments.out, shard, arguments.replace, &bar)
+            .map(|execution| (execution, None, None))
+            .map_err(|error| error.to_string()),
+    };
     bar.bar.finish_and_clear();
-    let done = executed.map_err(|error| error.to_string())?;
+    // The lock is held until the report is written, so that it is of this study.
+    let (done, merged, _lock) = executed?;
     let mut text = format!(
         "{} samples: {} run, {} there before, in {}\n",
         done.sample_count,
@@ -154,11 +167,10 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
             .trim_end()
             .into());
     }
-    if shard == Shard::default() {
-        let merged = study::merge(&arguments.out).map_err(|error| error.to_string())?;
-        return print(&results(&merged, &arguments.out)?);
+    match merged {
+        Some(merged) => print(&results(&merged, &arguments.out)?),
+        None => Ok(ExitCode::SUCCESS),
     }
-    Ok(ExitCode::SUCCESS)
 }
 
 /// Merges the folder and prints what is in it.
@@ -368,9 +380,12 @@ mod cost {
             let of = |task: &Task| (task.law, task.disk_count, task.boundary());
             a.target == b.target && of(a) == of(b)
         };
+        // A name is a hash of its scene: where there are no samples none is computed.
+        let samples = folder.join("samples").is_dir();
+        let measured = |task: &&Task| if samples { measured_seconds(folder, task) } else { None };
         let cell = |tasks: &'a [Task]| {
             let own: Vec<&Task> = tasks.iter().filter(|task| shard.has(task.index)).collect();
-            let seconds: Vec<f64> = own.iter().filter_map(|task| measured_seconds(folder, task)).collect();
+            let seconds: Vec<f64> = own.iter().filter_map(measured).collect();
             let each = match seconds.len() {
                 0 => tasks[0].expected_seconds(),
                 done => seconds.iter().sum::<f64>() / done as f64,

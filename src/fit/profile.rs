@@ -217,8 +217,8 @@ pub fn fit_radial_profile(
 }
 
 impl ProfileFitSettings {
-    /// Checks the settings; the range of radii they leave of `annulus`.
-    fn range(&self, annulus: Annulus) -> Result<[f64; 2], FitError> {
+    /// Whether every number makes sense, whatever the profile.
+    pub(crate) fn check(&self) -> Result<(), FitError> {
         let margin = |margin: f64| margin.is_finite() && margin >= 0.0;
         if !(margin(self.inner_margin) && margin(self.rim_margin)) {
             return Err(FitError::MarginNegative { inner: self.inner_margin, rim: self.rim_margin });
@@ -231,6 +231,12 @@ impl ProfileFitSettings {
             let (significance, least_share) = (self.significance, self.least_share);
             return Err(FitError::LevelOutOfRange { significance, least_share });
         }
+        Ok(())
+    }
+
+    /// The range of radii that checked settings leave of `annulus`.
+    fn range(&self, annulus: Annulus) -> Result<[f64; 2], FitError> {
+        self.check()?;
         let diameter = 2.0 * annulus.inner_radius();
         let from = annulus.inner_radius() + self.inner_margin * diameter;
         let to = annulus.outer_radius() - self.rim_margin * diameter;

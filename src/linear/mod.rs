@@ -44,6 +44,7 @@ pub use response::LinearResponse;
 pub use solution::{Factorisation, Solution};
 
 use crate::contact::ContactNetwork;
+use crate::memory::TooLarge;
 use crate::packing::{Packing, PackingError};
 
 /// The packing with the first disk of its backbone held, where nothing holds it: no rigid motion is left, and since
@@ -63,6 +64,9 @@ pub(crate) fn pinned<const D: usize>(
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LinearError {
+    /// More modes than memory holds.
+    #[error(transparent)]
+    TooLarge(#[from] TooLarge),
     /// The disks themselves are at fault.
     #[error(transparent)]
     Packing(#[from] PackingError),

@@ -19,6 +19,7 @@ use crate::contact::PairLaw;
 use crate::contact::hessian::{Hessian, Members, Prestress};
 use crate::linear::lanczos::{dot, largest, norm};
 use crate::linear::{Analysis, LinearError};
+use crate::memory::Memory;
 use crate::packing::Packing;
 use crate::sparse::SymmetricMatrix;
 use crate::vector::{Vector, larger};
@@ -112,6 +113,7 @@ impl<const D: usize> VibrationalModes<D> {
         let floating = !packing.held().contains(&true) && law.on_site_coupling() == 0.0;
         let translations = if floating { translations::<D>(matrix.dimension()) } else { Vec::new() };
         let count = count.min(matrix.dimension() - translations.len());
+        check_memory(matrix.dimension(), count)?;
         let mut search = Search::new(matrix, translations);
         if DENSE_SHARE * count >= matrix.dimension() {
             search.all()?
@@ -136,6 +138,16 @@ impl<const D: usize> VibrationalModes<D> {
             solution_count: search.solution_count,
         })
     }
+}
+
+/// Whether so many modes of so many components fit into memory: by dense algebra the matrix, its vectors and as much room,
+/// otherwise two vectors a mode, a lower bound.
+fn check_memory(dimension: usize, count: usize) -> Result<(), LinearError> {
+    let column = 8.0 * dimension as f64;
+    let bytes =
+        if DENSE_SHARE * count >= dimension { 3.0 * dimension as f64 * column } else { 2.0 * count as f64 * column };
+    // By count, since all else follows from the packing.
+    Ok(Memory::of_machine().check("modes", count, bytes / count.max(1) as f64)?)
 }
 
 /// An eigenpair of K.

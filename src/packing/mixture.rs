@@ -41,20 +41,9 @@ impl Mixture {
     /// proportions by less than one disk a kind.
     ///
     /// # Errors
-    /// No component, a radius outside [`SMALLEST_RADIUS`] to [`LARGEST_RADIUS`], a share that is not positive and finite, or
-    /// no disk.
+    /// As [`check`](Self::check).
     pub fn radii(&self, count: usize) -> Result<Vec<f64>, PackingError> {
-        if count == 0 || self.components.is_empty() {
-            return Err(PackingError::NoDisks);
-        }
-        for (component, kind) in self.components.iter().enumerate() {
-            if !(SMALLEST_RADIUS..=LARGEST_RADIUS).contains(&kind.radius) {
-                return Err(PackingError::MixtureRadiusOutOfRange { component, radius: kind.radius });
-            }
-            if !(kind.share.is_finite() && kind.share > 0.0) {
-                return Err(PackingError::MixtureShareNotPositive { component, share: kind.share });
-            }
-        }
+        self.check(count)?;
         let total: f64 = self.components.iter().map(|kind| kind.share).sum();
         let exact: Vec<f64> = self.components.iter().map(|kind| kind.share / total * count as f64).collect();
         let mut counts: Vec<usize> = exact.iter().map(|&number| number.floor() as usize).collect();
@@ -70,6 +59,33 @@ impl Mixture {
             .zip(counts)
             .flat_map(|(kind, number)| std::iter::repeat_n(kind.radius, number))
             .collect())
+    }
+
+    /// Whether so many disks of this mixture can be made; nothing is allocated.
+    ///
+    /// # Errors
+    /// No component, a radius outside [`SMALLEST_RADIUS`] to [`LARGEST_RADIUS`], a share or a sum of shares that is not positive
+    /// and finite, no disk, or more disks than an index holds.
+    pub fn check(&self, count: usize) -> Result<(), PackingError> {
+        if count == 0 || self.components.is_empty() {
+            return Err(PackingError::NoDisks);
+        }
+        for (component, kind) in self.components.iter().enumerate() {
+            if !(SMALLEST_RADIUS..=LARGEST_RADIUS).contains(&kind.radius) {
+                return Err(PackingError::MixtureRadiusOutOfRange { component, radius: kind.radius });
+            }
+            if !(kind.share.is_finite() && kind.share > 0.0) {
+                return Err(PackingError::MixtureShareNotPositive { component, share: kind.share });
+            }
+        }
+        let total: f64 = self.components.iter().map(|kind| kind.share).sum();
+        if !total.is_finite() {
+            return Err(PackingError::MixtureShareNotPositive { component: self.components.len() - 1, share: total });
+        }
+        if count > u32::MAX as usize {
+            return Err(PackingError::TooManyDisks { count });
+        }
+        Ok(())
     }
 
     /// The smallest radius \[length\].

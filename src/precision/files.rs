@@ -6,16 +6,24 @@ use std::path::{Path, PathBuf};
 use crate::io::write_atomically;
 use crate::precision::csv;
 use crate::precision::results::PrecisionReport;
-use crate::report::ReportError;
+use crate::report::{Kind, OutputFolder, ReportError};
 
 /// Writes a report into `folder`, made if it is not there, and names the files written in that order.
 ///
-/// Each file is there whole or not at all. Files of an earlier report with the same names are replaced, others left.
+/// The files of an earlier report are replaced by those of this one, all together; other files are left.
 ///
 /// # Errors
 /// [`ReportError`] names the file and what is wrong.
 pub fn write(report: &PrecisionReport, folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
-    std::fs::create_dir_all(folder).map_err(|source| ReportError::Folder { folder: folder.into(), source })?;
+    write_into(report, OutputFolder::open(folder, Kind::Precision)?)
+}
+
+/// As [`write()`], into a folder that was opened before the measurement.
+///
+/// # Errors
+/// [`ReportError`] names the file and what is wrong.
+pub fn write_into(report: &PrecisionReport, output: OutputFolder) -> Result<Vec<PathBuf>, ReportError> {
+    let folder = output.inside();
     let json_path = folder.join("precision.json");
     let json = serde_json::to_string_pretty(report).map_err(|source| ReportError::Json { path: json_path, source })?;
     #[cfg_attr(not(feature = "plot"), allow(unused_mut, reason = "figures are of the feature `plot`"))]
@@ -35,9 +43,8 @@ pub fn write(report: &PrecisionReport, folder: &Path) -> Result<Vec<PathBuf>, Re
     }
     let mut written = Vec::new();
     for (name, text) in texts {
-        let path = folder.join(name);
-        write_atomically(&path, |writer| writer.write_all(text.as_bytes()))?;
-        written.push(path);
+        write_atomically(folder.join(&name), |writer| writer.write_all(text.as_bytes()))?;
+        written.push(name);
     }
-    Ok(written)
+    output.commit(written)
 }

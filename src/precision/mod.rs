@@ -28,11 +28,12 @@ pub mod state;
 pub mod table;
 
 use crate::contact::{LawChoice, PairLaw};
+use crate::memory::Memory;
 use crate::packing::Packing;
-use crate::run::{RunError, packing_of};
-use crate::scene::{Sample, Scene};
+use crate::run::{RunError, packing_of, thread_count};
+use crate::scene::{Sample, Scene, SceneError};
 
-pub use files::write;
+pub use files::{write, write_into};
 pub use results::{PrecisionReport, Run, SamplePrecision};
 pub use settings::{PrecisionError, PrecisionSettings};
 
@@ -67,6 +68,7 @@ pub fn measure(
 ) -> Result<PrecisionReport, PrecisionError> {
     scene.check()?;
     settings.check()?;
+    scene.check_memory(Memory::of_machine(), thread_count()).map_err(SceneError::from)?;
     let samples = match &scene.law {
         LawChoice::Hertzian(law) => of_scene(scene, law, settings, progress),
         LawChoice::Hookean(law) => of_scene(scene, law, settings, progress),

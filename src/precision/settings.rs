@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::run::RunError;
-use crate::scene::SceneError;
+use crate::scene::{SceneError, finite};
 
 /// The ladders.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -101,6 +101,7 @@ impl PrecisionSettings {
         if !(value.is_finite() && value > 0.0) {
             return Err(PrecisionError::NotPositive { field: "reference_limit", value });
         }
-        Ok(())
+        // What no rule above has named: a new field.
+        Ok(finite::check(self).map_err(SceneError::from)?)
     }
 }

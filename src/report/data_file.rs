@@ -1,6 +1,6 @@
 //! [`DataFile`]: which files a sample writes, and their names.
 
-use crate::report::csv::response::{ResponseFile, files};
+use crate::report::csv::response::{ResponseFile, every_ending, files};
 use crate::run::{Report, SampleResult};
 
 /// The data files of a sample.
@@ -35,9 +35,22 @@ impl DataFile {
         all
     }
 
+    /// The longest of all endings.
+    pub(crate) fn longest_ending() -> &'static str {
+        let all = [DataFile::Packing, DataFile::Before, DataFile::Displacement, DataFile::Deflated];
+        #[cfg(feature = "linear")]
+        let all = [&all[..], &[DataFile::PlasticProfile, DataFile::Protocol]].concat();
+        let endings = all.into_iter().map(DataFile::ending).chain(every_ending());
+        endings.max_by_key(|ending| ending.len()).unwrap_or_default()
+    }
+
     /// Its name for this sample.
     pub(crate) fn name(self, sample: &str) -> String {
-        let ending = match self {
+        format!("{sample}.{}", self.ending())
+    }
+
+    fn ending(self) -> &'static str {
+        match self {
             DataFile::Packing => "packing.xyz",
             DataFile::Before => "before.xyz",
             DataFile::Displacement => "displacement.xyz",
@@ -47,7 +60,6 @@ impl DataFile {
             DataFile::PlasticProfile => "plastic_profile.csv",
             #[cfg(feature = "linear")]
             DataFile::Protocol => "protocol.csv",
-        };
-        format!("{sample}.{ending}")
+        }
     }
 }

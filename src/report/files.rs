@@ -12,6 +12,7 @@ use crate::displacement::DisplacementField;
 use crate::io::{Column, write_atomically, write_packing};
 use crate::packing::Packing;
 use crate::report::data_file::DataFile;
+use crate::report::output::{Kind, OutputFolder};
 use crate::report::rows::{done, law};
 use crate::report::{ReportError, csv};
 use crate::run::{Report, SampleReport, SampleResult};
@@ -19,13 +20,21 @@ use crate::vector::Vector;
 
 /// Writes a report into `folder`, made if it is not there, and names the files written in that order.
 ///
-/// Each file is there whole or not at all. Files of an earlier report with the same names are replaced, others left.
+/// The files of an earlier report are replaced by those of this one, all together; other files are left
+/// ([`output`](crate::report::output)).
 ///
 /// # Errors
 /// [`ReportError`] names the file and what is wrong.
 pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
-    std::fs::create_dir_all(folder).map_err(|source| ReportError::Folder { folder: folder.into(), source })?;
-    let mut files = Files { folder, written: Vec::new() };
+    write_into(report, OutputFolder::open(folder, Kind::Report)?)
+}
+
+/// As [`write()`], into a folder that was opened before the run.
+///
+/// # Errors
+/// [`ReportError`] names the file and what is wrong.
+pub fn write_into(report: &Report, output: OutputFolder) -> Result<Vec<PathBuf>, ReportError> {
+    let mut files = Files { folder: output.inside(), written: Vec::new() };
     files.json("report.json", report)?;
     files.json("timings.json", &timings(report))?;
     for sample in &report.samples {
@@ -35,7 +44,8 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, ReportError
     }
     #[cfg(feature = "plot")]
     files.text("report.html", &crate::report::page::page(report)?)?;
-    Ok(files.written)
+    let written = files.written;
+    output.commit(written)
 }
 
 /// Writes analyses into `folder` as [`write()`] does a report: `analysis.json`, the tables of each, and with the feature `plot`
@@ -44,8 +54,15 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, ReportError
 /// # Errors
 /// [`ReportError`] names the file and what is wrong.
 pub fn write_analyses(analyses: &[Analysis], folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
-    std::fs::create_dir_all(folder).map_err(|source| ReportError::Folder { folder: folder.into(), source })?;
-    let mut files = Files { folder, written: Vec::new() };
+    write_analyses_into(analyses, OutputFolder::open(folder, Kind::Analysis)?)
+}
+
+/// As [`write_analyses()`], into a folder that was opened before the work.
+///
+/// # Errors
+/// [`ReportError`] names the file and what is wrong.
+pub fn write_analyses_into(analyses: &[Analysis], output: OutputFolder) -> Result<Vec<PathBuf>, ReportError> {
+    let mut files = Files { folder: output.inside(), written: Vec::new() };
     let document = Analyses { jamscope_version: env!("CARGO_PKG_VERSION"), analyses };
     files.json("analysis.json", &document)?;
     for analysis in analyses {
@@ -57,7 +74,8 @@ pub fn write_analyses(analyses: &[Analysis], folder: &Path) -> Result<Vec<PathBu
     }
     #[cfg(feature = "plot")]
     files.text("analysis.html", &crate::report::page::analysis_page(analyses)?)?;
-    Ok(files.written)
+    let written = files.written;
+    output.commit(written)
 }
 
 /// Writes what a merged study says of the transition beside its records: `transition.json`, `transition.csv`, and with the
@@ -78,7 +96,7 @@ pub fn write_study(
     files.text("report.html", &crate::report::study::study_page(merged, transition))?;
     #[cfg(not(feature = "plot"))]
     let _ = merged;
-    Ok(files.written)
+    Ok(files.written.iter().map(|name| folder.join(name)).collect())
 }
 
 /// What `analysis.json` holds.
@@ -91,14 +109,14 @@ struct Analyses<'a> {
 /// A folder being filled.
 struct Files<'a> {
     folder: &'a Path,
-    written: Vec<PathBuf>,
+    /// Names.
+    written: Vec<String>,
 }
 
 impl Files<'_> {
     fn text(&mut self, name: &str, text: &str) -> Result<(), ReportError> {
-        let path = self.folder.join(name);
-        write_atomically(&path, |writer| writer.write_all(text.as_bytes()))?;
-        self.written.push(path);
+        write_atomically(self.folder.join(name), |writer| writer.write_all(text.as_bytes()))?;
+        self.written.push(name.into());
         Ok(())
     }
 
@@ -188,7 +206,7 @@ impl Files<'_> {
         }
         properties.extend(numbers.iter().map(|(key, value)| (*key, value.as_str())));
         write_packing(&path, packing, columns, &properties)?;
-        self.written.push(path);
+        self.written.push(name.into());
         Ok(())
     }
 

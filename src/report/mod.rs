@@ -33,6 +33,7 @@ mod data_file;
 pub mod figures;
 mod files;
 pub(crate) mod number;
+pub mod output;
 #[cfg(feature = "plot")]
 pub mod page;
 #[cfg(feature = "linear")]
@@ -48,13 +49,14 @@ use std::path::PathBuf;
 
 #[cfg(feature = "fit")]
 pub use files::write_study;
-pub use files::{write, write_analyses};
+pub use files::{write, write_analyses, write_analyses_into, write_into};
+pub use output::{Kind, OutputFolder};
 
 use crate::io::WriteError;
 #[cfg(doc)]
 use crate::run::Report;
 
-/// Why a report was not written, or only in part: files named before the one at fault are complete.
+/// Why a report was not written; the files of an earlier one are then untouched, unless the error says otherwise.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {
@@ -65,6 +67,46 @@ pub enum ReportError {
         folder: PathBuf,
         /// What the system says.
         source: std::io::Error,
+    },
+    /// Nothing can be written into the folder.
+    #[error("{folder}: nothing can be written into the folder: {source}")]
+    NotWritable {
+        /// The folder.
+        folder: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A file of this name cannot be made.
+    #[error("{field} = \"{value}\": no file `{name}` ({} letters) can be made in {folder}: {source}", name.chars().count())]
+    Name {
+        /// What the name comes from.
+        field: &'static str,
+        /// Its value.
+        value: String,
+        /// The name.
+        name: String,
+        /// The folder.
+        folder: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A complete report could not be put in its place; it stays complete, and the next command on the folder tries again.
+    #[error(
+        "{path}: {source}; the report is complete in a hidden folder beside it, and the next run or analysis of the folder moves it"
+    )]
+    Place {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// Another process puts a report into the same folder and does not end.
+    #[error(
+        "{folder}: locked by another process; the report is complete in a hidden folder in it, and the next run or analysis of the folder moves it"
+    )]
+    Busy {
+        /// The folder.
+        folder: PathBuf,
     },
     /// A file could not be written.
     #[error(transparent)]

@@ -11,6 +11,7 @@ use crate::contact::{ContactNetwork, LawChoice, OnSite, PairLaw};
 use crate::displacement::DisplacementField;
 use crate::inflation::{Boundary, Inflated, InflationError, Rest, inflate};
 use crate::io::{ReadError, read_packing};
+use crate::memory::Memory;
 use crate::observe::PressureChange;
 use crate::observe::state::State;
 use crate::packing::{Packing, PackingError};
@@ -121,6 +122,7 @@ impl Trace for Watch<'_> {
 /// A scene that makes no sense. What fails in one sample is told in its place in the report.
 pub fn run(scene: &Scene, progress: &dyn Progress) -> Result<Report, RunError> {
     scene.check()?;
+    scene.check_memory(Memory::of_machine(), thread_count()).map_err(SceneError::from)?;
     let one = |(index, sample): (usize, &Sample)| {
         let result = match run_sample(scene, sample, index, progress) {
             Ok(result) => SampleOutcome::Done(Box::new(result)),
@@ -155,6 +157,15 @@ pub fn run(scene: &Scene, progress: &dyn Progress) -> Result<Report, RunError> {
         #[cfg(feature = "linear")]
         protocol,
     })
+}
+
+/// Samples that are run at once, where there are as many.
+pub(crate) fn thread_count() -> usize {
+    #[cfg(feature = "parallel")]
+    let count = rayon::current_num_threads();
+    #[cfg(not(feature = "parallel"))]
+    let count = 1;
+    count
 }
 
 /// What the samples say together of the protocols, where any was compared.

@@ -2,10 +2,13 @@
 
 use crate::contact::law::LawError;
 use crate::inflation::Boundary;
+use crate::memory::TooLarge;
 use crate::packing::PackingError;
 #[cfg(feature = "linear")]
 use crate::relax::implicit::Finish;
 use crate::relax::{ForceLimit, RelaxerChoice, TimeStep};
+use crate::scene::finite::{self, NotWritable};
+use crate::scene::size::{BYTES_A_DISK, DISK_INDEX};
 use crate::scene::{Observables, Sample, Scene, Source};
 
 /// A number of a scene that makes no sense.
@@ -30,6 +33,12 @@ pub enum SceneError {
     /// The law.
     #[error("law: {0}")]
     Law(#[from] LawError),
+    /// A number that cannot be written to a file and read back.
+    #[error(transparent)]
+    NotWritable(#[from] NotWritable),
+    /// A count beyond memory or index types.
+    #[error(transparent)]
+    TooLarge(#[from] TooLarge),
     /// The mixture or the number of disks.
     #[error("disk_count or mixture: {0}")]
     Mixture(PackingError),
@@ -54,6 +63,32 @@ pub enum SceneError {
         /// The value found.
         value: f64,
         /// The largest that is possible.
+        limit: f64,
+    },
+    /// Radii of which the small ones are lost in the rounding of the large ones.
+    #[error("mixture: radii from {smallest:e} to {largest:e} are {:.1e} apart: at most {limit:e}, beyond which forces on small disks are below the rounding of those on large ones", largest / smallest)]
+    RadiiTooFarApart {
+        /// The smallest \[length\].
+        smallest: f64,
+        /// The largest \[length\].
+        largest: f64,
+        /// The largest ratio \[1\].
+        limit: f64,
+    },
+    /// A pressure that rounding hides.
+    #[error(
+        "sample \"{name}\": source.pressure = {pressure:?}: disks of radius {radius:e} would overlap by some {overlap:.1e} of it: at least {limit:e}, below which overlaps are rounding; are pressure, stiffness and radii in one unit?"
+    )]
+    PressureBelowRounding {
+        /// The sample.
+        name: String,
+        /// The pressure asked for \[force / length\].
+        pressure: f64,
+        /// About the overlap over the radius \[1\].
+        overlap: f64,
+        /// The radius \[length\].
+        radius: f64,
+        /// The smallest such overlap \[1\].
         limit: f64,
     },
     /// A setting of an observable, in its own words.
@@ -89,7 +124,8 @@ impl Scene {
     /// [`SceneError`] names the field and the value.
     pub fn check(&self) -> Result<(), SceneError> {
         self.law.check()?;
-        self.mixture.radii(self.disk_count).map_err(SceneError::Mixture)?;
+        DISK_INDEX.check("disk_count", self.disk_count, BYTES_A_DISK)?;
+        self.mixture.check(self.disk_count).map_err(SceneError::Mixture)?;
         let tolerance = self.preparation.pressure_tolerance;
         within("preparation.pressure_tolerance", tolerance, "between 0 and 1", tolerance > 0.0 && tolerance < 1.0)?;
         check_relaxer("preparation.relaxer", &self.preparation.relaxer)?;
@@ -113,7 +149,9 @@ impl Scene {
                 return Err(SceneError::NameTwice { name: sample.name.clone() });
             }
         }
-        Ok(())
+        self.check_scales()?;
+        // What no rule above has named: a field that is only written, or a new one.
+        Ok(finite::check(self)?)
     }
 }
 
@@ -127,8 +165,12 @@ impl Observables {
             positive("observables.radial_profile.ring_width", profile.ring_width)?;
         }
         #[cfg(feature = "fit")]
-        if self.profile_fit.is_some() && self.radial_profile.is_none() {
-            return Err(SceneError::ObservableMissing { observable: "profile_fit", needed: "radial_profile" });
+        if let Some(fit) = &self.profile_fit {
+            if self.radial_profile.is_none() {
+                return Err(SceneError::ObservableMissing { observable: "profile_fit", needed: "radial_profile" });
+            }
+            let wrong = |reason: String| SceneError::Observable { observable: "profile_fit", reason };
+            fit.check().map_err(|error| wrong(error.to_string()))?;
         }
         self.check_response()?;
         #[cfg(feature = "linear")]
@@ -150,7 +192,7 @@ impl Observables {
                 relative_radius("observables.angular_profiles.relative_radii", radius)?;
             }
         }
-        Ok(())
+        Ok(finite::check_at("observables", self)?)
     }
 
     /// Those of penetration, correlation, modes and isostatic length.

@@ -4,12 +4,16 @@
 //! What an observable needs and the scene does not name is not computed.
 
 mod check;
+pub mod finite;
 mod loose_limit;
 mod observables;
+mod scale;
+mod size;
 
 use serde::{Deserialize, Serialize};
 
 pub use check::SceneError;
+pub use finite::NotWritable;
 pub use observables::{
     AngularCorrelationSettings, AngularProfileSettings, BondChangeSettings, ContactChangeSettings,
     DisplacementFieldSettings, Observables, RadialProfileSettings,

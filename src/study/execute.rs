@@ -8,8 +8,11 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 
 use crate::contact::{LawChoice, PairLaw};
+use crate::memory::Memory;
 use crate::run::{self, Progress};
 use crate::scene::Scene;
+use crate::study::lock::StudyLock;
+use crate::study::merge::{MergeError, Merged, merge_in};
 use crate::study::plan::{Plan, Shard, Task};
 use crate::study::record::{FailureKind, Record, RecordOutcome};
 use crate::study::settings::{Study, StudyError};
@@ -68,7 +71,50 @@ pub fn execute(
     progress: &impl StudyProgress,
 ) -> Result<Execution, ExecuteError> {
     let plan = Plan::of(study)?;
-    let store = Store::open(folder, study, replace)?;
+    plan.check_memory(Memory::of_machine(), run::thread_count()).map_err(StudyError::from)?;
+    let (store, _lock) = Store::open(folder, study, replace)?;
+    execute_in(&store, &plan, shard, progress)
+}
+
+/// What [`execute_and_merge()`] did.
+#[derive(Debug)]
+pub struct Whole {
+    /// What was done.
+    pub execution: Execution,
+    /// All records and their statistics; none where files are damaged.
+    pub merged: Option<Merged>,
+    /// While it lives, no other study takes the place of this one.
+    pub lock: StudyLock,
+}
+
+/// Like [`execute()`] of the whole study, then merges it, with the study's lock held throughout: what is merged is this study.
+///
+/// # Errors
+/// As [`execute()`] and [`merge()`](crate::study::merge()).
+pub fn execute_and_merge(
+    study: &Study,
+    folder: &Path,
+    replace: bool,
+    progress: &impl StudyProgress,
+) -> Result<Whole, MergeError> {
+    let plan = Plan::of(study)?;
+    plan.check_memory(Memory::of_machine(), run::thread_count()).map_err(StudyError::from)?;
+    let (store, lock) = Store::open(folder, study, replace)?;
+    let execution = execute_in(&store, &plan, Shard::default(), progress).map_err(|error| match error {
+        ExecuteError::Study(error) => MergeError::Study(error),
+        ExecuteError::Store(error) => MergeError::Store(error),
+    })?;
+    let merged = if execution.damaged.is_empty() { Some(merge_in(&store, study.clone(), &plan)?) } else { None };
+    Ok(Whole { execution, merged, lock })
+}
+
+/// Runs what is missing in a folder that is locked.
+fn execute_in(
+    store: &Store,
+    plan: &Plan,
+    shard: Shard,
+    progress: &impl StudyProgress,
+) -> Result<Execution, ExecuteError> {
     let _lock = store.lock(shard)?;
     let tasks: Vec<&Task> = plan.tasks.iter().filter(|task| shard.has(task.index)).collect();
     let done = Mutex::new(Execution {

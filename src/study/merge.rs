@@ -62,9 +62,13 @@ pub enum MergeError {
 /// # Errors
 /// A folder without a study, or that cannot be written.
 pub fn merge(folder: &Path) -> Result<Merged, MergeError> {
-    let store = Store::there(folder);
-    let study = store.study()?;
+    let (store, study, _lock) = Store::held(folder)?;
     let plan = Plan::of(&study)?;
+    merge_in(&store, study, &plan)
+}
+
+/// Merges a folder that is locked.
+pub(super) fn merge_in(store: &Store, study: Study, plan: &Plan) -> Result<Merged, MergeError> {
     let mut merged = Merged {
         study,
         sample_count: plan.sample_count(),
@@ -76,7 +80,7 @@ pub fn merge(folder: &Path) -> Result<Merged, MergeError> {
         files: Vec::new(),
     };
     let mut cells: Vec<CellSamples> = Vec::new();
-    let path = folder.join("records.jsonl");
+    let path = store.path("records.jsonl");
     write_atomically(&path, |writer| {
         for task in &plan.tasks {
             let records = match store.state(task) {
@@ -209,11 +213,11 @@ mod tests {
         let targets = (1..=250).map(|place| Target::ReducedPressure(1e6 * f64::from(place))).collect();
         let study = Study { targets, seeds: Seeds { first: 1, count: 400 }, ..Study::default() };
         let plan = Plan::of(&study).expect("it makes sense");
-        let store = Store::open(folder.path(), &study, false).expect("an empty folder");
+        let (store, lock) = Store::open(folder.path(), &study, false).expect("an empty folder");
         for task in &plan.tasks {
             store.write(task, &[record(task)], 1.0).expect("written");
         }
-        drop(plan);
+        drop((plan, lock));
         let before = peak();
         let start = std::time::Instant::now();
         let merged = merge(folder.path()).expect("a study is there");

@@ -13,6 +13,7 @@
 
 mod curves;
 mod execute;
+mod lock;
 mod merge;
 mod plan;
 mod recipe;
@@ -22,7 +23,8 @@ mod settings;
 mod statistics;
 mod store;
 
-pub use execute::{ExecuteError, Execution, StudyProgress, execute};
+pub use execute::{ExecuteError, Execution, StudyProgress, Whole, execute, execute_and_merge};
+pub use lock::StudyLock;
 pub use merge::{MergeError, Merged, merge};
 pub use plan::{Plan, Shard, Task};
 pub use recipe::{Recipe, Scale};

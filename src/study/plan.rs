@@ -7,6 +7,7 @@ use sha2::{Digest, Sha256};
 
 use crate::contact::LawChoice;
 use crate::inflation::Boundary;
+use crate::memory::{Memory, TooLarge};
 use crate::scene::Scene;
 use crate::study::settings::{Study, StudyError, Target, mobile_count};
 
@@ -68,10 +69,12 @@ impl Plan {
         study.check()?;
         let mut plan = Plan { tasks: Vec::new(), time_limit: study.time_limit };
         let mut known = HashSet::new();
+        // The lists of one part have no value twice, so its packings differ; those of several parts are compared.
+        let several = study.parts.len() > 1;
         for (place, part) in study.parted().into_iter().enumerate() {
             let first = plan.tasks.len();
             plan.add(&Arc::new(part));
-            for task in &plan.tasks[first..] {
+            for task in plan.tasks[first..].iter().filter(|_| several) {
                 if !known.insert(task.identity()) {
                     let Task { disk_count, target, seed, .. } = *task;
                     return Err(StudyError::PartsOverlap { part: place + 1, disk_count, target, seed });
@@ -93,6 +96,23 @@ impl Plan {
                 }
             }
         }
+    }
+
+    /// Whether the packings of the plan fit into memory, so many of them relaxed at once.
+    ///
+    /// # Errors
+    /// [`TooLarge`] names `disk_count`, the largest possible, and the memory it would take.
+    pub fn check_memory(&self, memory: Memory, at_once: usize) -> Result<(), TooLarge> {
+        let alike = |a: &Task, b: &Task| a.disk_count == b.disk_count && Arc::ptr_eq(&a.study, &b.study);
+        for tasks in self.tasks.chunk_by(alike) {
+            // Scenes of a task are inflated one after the other, tasks are run at once.
+            let at_once = at_once.min(tasks.len());
+            for mut scene in tasks[0].scenes() {
+                scene.sample = vec![scene.sample[0].clone(); at_once];
+                scene.check_memory(memory, at_once)?;
+            }
+        }
+        Ok(())
     }
 
     /// Samples, one an inflation.

@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::LawChoice;
 use crate::inflation::Boundary;
+use crate::memory::{Limit, TooLarge};
 use crate::relax::RelaxerChoice;
-use crate::scene::{Sample, Scene, SceneError, Source};
+use crate::scene::{NotWritable, Sample, Scene, SceneError, Source, finite};
 
 /// One scene and the lists of what is varied in it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -117,6 +118,12 @@ pub enum StudyError {
     /// What a sample of it would be makes no sense.
     #[error("{0}")]
     Scene(#[from] SceneError),
+    /// A number that cannot be written to a file and read back.
+    #[error(transparent)]
+    NotWritable(#[from] NotWritable),
+    /// More packings than a plan holds.
+    #[error(transparent)]
+    TooLarge(#[from] TooLarge),
     /// The scene of a study names no samples.
     #[error("scene.sample: the lists of a study make its samples, it names none itself")]
     SamplesNamed,
@@ -164,6 +171,13 @@ pub enum StudyError {
     },
 }
 
+/// Packings of a study: each is a file of one folder, and the plan of all is held in memory.
+const MOST_PACKINGS: Limit =
+    Limit { largest: 1_000_000, reason: "a study has at most a million packings, a file each" };
+
+/// A task of the plan, and the name of its file while those of the folder are compared \[bytes\].
+const BYTES_A_PACKING: f64 = 256.0;
+
 impl Study {
     /// Whether every sample of it would make sense.
     ///
@@ -176,7 +190,43 @@ impl Study {
         if let Some(value) = self.time_limit.filter(|value| value.is_nan() || *value <= 0.0) {
             return Err(StudyError::NotPositive { field: "time_limit", value });
         }
-        self.parted().iter().try_for_each(Study::check_lists)
+        let parts = self.parted();
+        parts.iter().try_for_each(Study::check_lists)?;
+        // After the lists are known not to be empty: their lengths multiply to the number of packings.
+        let mut others = 0;
+        for part in &parts {
+            let count = part.packing_count();
+            if count > MOST_PACKINGS.largest as usize - others {
+                return Err(part.too_many(others).into());
+            }
+            others += count;
+        }
+        // What no rule above has named: a field that is only written, or a new one.
+        Ok(finite::check(self)?)
+    }
+
+    /// Packings of a study without parts.
+    fn packing_count(&self) -> usize {
+        self.combination_count().saturating_mul(self.seeds.count)
+    }
+
+    /// Combinations of all lists but the seeds.
+    fn combination_count(&self) -> usize {
+        let lists = [self.laws.len().max(1), self.disk_counts.len().max(1), self.targets.len()];
+        lists.into_iter().fold(1, usize::saturating_mul)
+    }
+
+    /// The error of a part with too many packings beside so many others.
+    fn too_many(&self, others: usize) -> TooLarge {
+        let combinations = self.combination_count();
+        let largest = (MOST_PACKINGS.largest - others as u64) / combinations as u64;
+        TooLarge {
+            field: "seeds.count".into(),
+            value: self.seeds.count,
+            limit: largest,
+            reason: MOST_PACKINGS.reason,
+            bytes: self.seeds.count as f64 * combinations as f64 * BYTES_A_PACKING,
+        }
     }
 
     /// Studies without parts, one after the other; itself, if it has none.

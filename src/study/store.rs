@@ -5,13 +5,15 @@
 //! samples/IDENTITY.jsonl  {"jamscope_version", "identity", "checksum"} / the records / the wall time, a line each
 //! ```
 
-use std::fs::{File, TryLockError};
+use std::fs::File;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::io::{WriteError, write_atomically};
+use crate::io::{WriteError, remove_unfinished, write_atomically};
+use crate::study::lock::{self, PATIENCE, PAUSE, StudyLock};
 use crate::study::plan::{Shard, Task, hash};
 use crate::study::record::Record;
 use crate::study::settings::Study;
@@ -55,7 +57,7 @@ pub enum StoreError {
         reason: String,
     },
     /// Somebody else runs the same part of it.
-    #[error("{path}: locked, another process runs this part of the study in this folder")]
+    #[error("{path}: locked, another process runs the study in this folder, or this part of it; nothing was changed")]
     Locked {
         /// The lock.
         path: PathBuf,
@@ -98,6 +100,13 @@ struct Timing {
     seconds: f64,
 }
 
+/// What is written of a study besides its samples.
+const RESULTS: [&str; 6] =
+    ["records.jsonl", "summary.json", "summary.csv", "transition.json", "transition.csv", "report.html"];
+
+/// Letters in the name of a file of samples.
+const SAMPLE_NAME_LENGTH: usize = 24 + ".jsonl".len();
+
 /// The folder of a study.
 #[derive(Debug, Clone)]
 pub(super) struct Store {
@@ -105,28 +114,102 @@ pub(super) struct Store {
 }
 
 impl Store {
-    /// The folder of this study, made if it is not there. `replace` lets it take the place of another one.
-    pub(super) fn open(folder: &Path, study: &Study, replace: bool) -> Result<Self, StoreError> {
+    /// The folder of this study, made if it is not there, with its lock. `replace` lets the study take the place of another one.
+    ///
+    /// Nothing of a study that is there is changed before it is certain that no process runs it.
+    pub(super) fn open(folder: &Path, study: &Study, replace: bool) -> Result<(Self, StudyLock), StoreError> {
         let store = Store { folder: folder.into() };
         let samples = store.samples();
         std::fs::create_dir_all(&samples).map_err(|source| StoreError::Io { path: samples, source })?;
-        let path = store.study_path();
-        match store.study() {
-            Ok(there) if there == *study => return Ok(store),
-            Ok(_) if !replace => return Err(StoreError::OtherStudy { path }),
-            Err(error @ StoreError::Unreadable { .. }) if !replace => return Err(error),
-            Err(error @ StoreError::Io { .. }) => return Err(error),
-            _ => {}
+        let start = Instant::now();
+        loop {
+            // A file is replaced at once, so it can be read without a lock; what was read may have changed before the lock is had.
+            if store.has(study, replace)? {
+                let lock = StudyLock::shared(folder)?;
+                if store.has(study, replace)? {
+                    return store.ready(lock);
+                }
+            } else {
+                match StudyLock::exclusive(folder) {
+                    Ok(_lock) => {
+                        if !store.has(study, replace)? {
+                            store.take_over(study)?;
+                        }
+                    }
+                    // Perhaps another part of this very study, started at the same time, is writing it.
+                    Err(StoreError::Locked { .. }) if start.elapsed() < PATIENCE => std::thread::sleep(PAUSE),
+                    Err(error) => return Err(error),
+                }
+            }
         }
+    }
+
+    /// Whether the folder has this very study; not, where it has none or may be replaced.
+    fn has(&self, study: &Study, replace: bool) -> Result<bool, StoreError> {
+        match self.study() {
+            Ok(there) if there == *study => Ok(true),
+            Ok(_) if !replace => Err(StoreError::OtherStudy { path: self.study_path() }),
+            Err(error @ StoreError::Unreadable { .. }) if !replace => Err(error),
+            Err(error @ StoreError::Io { .. }) => Err(error),
+            _ => Ok(false),
+        }
+    }
+
+    /// Writes the study in the place of the one that is there. What was merged of that one goes first: it would be taken for
+    /// results of this one. Its samples stay.
+    fn take_over(&self, study: &Study) -> Result<(), StoreError> {
+        let path = self.study_path();
         let text = serde_json::to_string_pretty(study)
             .map_err(|error| StoreError::Unreadable { path: path.clone(), reason: error.to_string() })?;
+        // Without a study there are no results of one: files of these names are somebody's.
+        let results = if path.exists() { &RESULTS[..] } else { &[] };
+        for name in results {
+            let path = self.folder.join(name);
+            match std::fs::remove_file(&path) {
+                Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+                    return Err(StoreError::Io { path, source });
+                }
+                _ => {}
+            }
+        }
         write_atomically(&path, |writer| writer.write_all((text + "\n").as_bytes()))?;
-        Ok(store)
+        Ok(())
+    }
+
+    /// Removes what processes that were killed had begun to write, and tries whether samples can be written.
+    fn ready(self, lock: StudyLock) -> Result<(Self, StudyLock), StoreError> {
+        let samples = self.samples();
+        let failed = |path: &Path| {
+            let path = path.to_path_buf();
+            move |source| StoreError::Io { path, source }
+        };
+        let of_a_sample = |name: &str| name.len() == SAMPLE_NAME_LENGTH && name.ends_with(".jsonl");
+        remove_unfinished(&samples, of_a_sample).map_err(failed(&samples))?;
+        let of_the_study = |name: &str| name == "study.json" || RESULTS.contains(&name);
+        remove_unfinished(&self.folder, of_the_study).map_err(failed(&self.folder))?;
+        // Removed as soon as it is closed.
+        tempfile::Builder::new().prefix(".trial").suffix(".part").tempfile_in(&samples).map_err(failed(&samples))?;
+        Ok((self, lock))
+    }
+
+    /// The lock of the folder of whatever study is there, and the study.
+    pub(super) fn held(folder: &Path) -> Result<(Self, Study, StudyLock), StoreError> {
+        let store = Store::there(folder);
+        // A folder that is none of a study has no lock made in it.
+        store.study()?;
+        let lock = StudyLock::shared(folder)?;
+        let study = store.study()?;
+        Ok((store, study, lock))
     }
 
     /// The folder of whatever study is there.
     pub(super) fn there(folder: &Path) -> Self {
         Store { folder: folder.into() }
+    }
+
+    /// A file of the folder.
+    pub(super) fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
     }
 
     fn samples(&self) -> PathBuf {
@@ -148,17 +231,9 @@ impl Store {
         serde_json::from_str(&text).map_err(|error| StoreError::Unreadable { path, reason: error.to_string() })
     }
 
-    /// Keeps others from running the same part as long as the file lives; the system lets go of it when the process ends,
-    /// however it ends.
+    /// Keeps others from running the same part as long as the file lives.
     pub(super) fn lock(&self, shard: Shard) -> Result<File, StoreError> {
-        let path = self.folder.join(format!(".lock-{}-of-{}", shard.index, shard.count));
-        let failed = |source| StoreError::Io { path: path.clone(), source };
-        let file = File::options().create(true).truncate(false).write(true).open(&path).map_err(failed)?;
-        match file.try_lock() {
-            Ok(()) => Ok(file),
-            Err(TryLockError::WouldBlock) => Err(StoreError::Locked { path }),
-            Err(TryLockError::Error(source)) => Err(failed(source)),
-        }
+        lock::part(&self.folder, shard)
     }
 
     /// What is there of a task.
@@ -205,7 +280,7 @@ impl Store {
         for entry in std::fs::read_dir(&folder).map_err(failed)? {
             let entry = entry.map_err(failed)?;
             let name = entry.file_name().to_string_lossy().into_owned();
-            // What a process that was killed had begun to write.
+            // What another process writes.
             let begun = name.starts_with('.') && name.ends_with(".part");
             if !known.contains(&name) && !begun {
                 found.push(Problem { path: entry.path(), reason: "of no sample of this study".into() });

@@ -2,18 +2,26 @@
 
 mod analysis;
 #[cfg(feature = "cli")]
+mod any_field;
+#[cfg(feature = "cli")]
 mod command_line;
 #[cfg(feature = "cli")]
 mod exact_command;
 #[cfg(feature = "cli")]
 mod fuzz;
 mod io;
+#[cfg(feature = "cli")]
+mod output_folder;
 #[cfg(feature = "linear")]
 mod precision;
 mod report;
+#[cfg(feature = "cli")]
+mod sizes;
 mod study;
 #[cfg(feature = "cli")]
 mod study_command;
+#[cfg(feature = "cli")]
+mod study_folder;
 #[cfg(feature = "fit")]
 mod transition;
 #[cfg(feature = "cli")]

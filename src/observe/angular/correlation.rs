@@ -18,11 +18,11 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use crate::observe::angular::AngularError;
 use crate::observe::angular::crossing::{CrossingOutcome, ThresholdCrossing};
 use crate::observe::angular::pairs::PairSums;
 use crate::observe::angular::power_spectrum::{FrequencyLimit, PowerSpectrum, SpectrumSettings};
 use crate::observe::angular::ring::{RingSample, Weights};
+use crate::observe::angular::{AngularError, MOST_STEPS, at_most};
 
 /// How the correlation function is estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -193,6 +193,8 @@ const ROUNDING: f64 = 1e-9;
 
 /// A negative ρ up to this share of Σ P counts as 0 \[1\]. Larger ones leave an estimate that is far out of range.
 const NOISE: f64 = 0.05;
+/// Memory of a step or bin: its angle, its value, and both as text \[bytes\].
+const STEP_BYTES: f64 = 64.0;
 
 /// Frequencies between two settings of the rotation.
 const RESTART: usize = 64;
@@ -227,10 +229,11 @@ impl CorrelationSettings {
                 1
             }
         };
-        for (setting, count) in [("steps", self.step_count), ("bins", bin_count)] {
+        for (setting, field, count) in [("steps", "step_count", self.step_count), ("bins", "bin_count", bin_count)] {
             if count == 0 {
                 return Err(AngularError::NotPositive { setting, value: 0.0 });
             }
+            at_most(MOST_STEPS).check(field, count, STEP_BYTES)?;
         }
         match self.thresholds.iter().find(|&&threshold| threshold.is_nan() || threshold >= 1.0) {
             Some(&threshold) => Err(AngularError::ThresholdNotBelowOne { threshold }),

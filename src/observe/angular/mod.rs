@@ -28,6 +28,8 @@ mod window;
 
 use thiserror::Error;
 
+use crate::memory::{Limit, TooLarge};
+
 pub use block_errors::{BlockErrors, block_errors};
 pub use correlation::{AngularCorrelation, CorrelationEstimator, CorrelationOutcome, CorrelationSettings};
 pub use crossing::{CrossingOutcome, ThresholdCrossing};
@@ -44,6 +46,20 @@ pub use window::{Source, SpectralWindow};
 
 /// Disks a ring needs: with fewer there is no angle to speak of.
 pub const LEAST_DISK_COUNT: usize = 4;
+
+/// Steps or bins of a correlation function: a million of them stand 3 10⁻⁶ rad apart, closer than any two disks can.
+pub const MOST_STEPS: usize = 1_000_000;
+
+/// Points of a grid on which a ring is interpolated or binned.
+pub const MOST_GRID_POINTS: usize = 1 << 26;
+
+/// Frequencies between which leakage is removed: f_max² numbers and f_max³/3 multiplications, 0.8 GB and some minutes at most.
+pub const MOST_COUPLED_FREQUENCIES: usize = 10_000;
+
+/// A limit on what a table may have.
+const fn at_most(largest: usize) -> Limit {
+    Limit { largest: largest as u64, reason: "a limit on memory and time" }
+}
 
 /// Why a ring, its spectrum or its correlation function could not be had.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -89,6 +105,9 @@ pub enum AngularError {
         /// Its value.
         value: f64,
     },
+    /// A number of steps, bins, points or frequencies beyond what memory allows.
+    #[error(transparent)]
+    TooLarge(#[from] TooLarge),
     /// The highest frequency asked for is 0, or the estimator does not reach it.
     #[error("frequencies up to {frequency_limit}: from 1 to {highest} can be had")]
     FrequencyLimitOutOfRange {

@@ -10,12 +10,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::observe::angular::AngularError;
 use crate::observe::angular::even_grid::{binned, interpolated};
 use crate::observe::angular::fourier::{fourier_sums, transform};
 use crate::observe::angular::ring::{Centred, RingSample, Weights};
 use crate::observe::angular::unmixing::{Shares, unmix};
 use crate::observe::angular::window::SpectralWindow;
+use crate::observe::angular::{AngularError, MOST_COUPLED_FREQUENCIES, MOST_GRID_POINTS, at_most};
 
 /// How the spectrum is estimated from values at irregular angles.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -162,6 +162,10 @@ impl PowerSpectrum {
         match settings.estimator {
             SpectrumEstimator::Direct { weights, leakage } => {
                 within(ring.disk_count() / 2)?;
+                if leakage == Leakage::Removed {
+                    let bytes_each = 8.0 * frequency_limit as f64;
+                    at_most(MOST_COUPLED_FREQUENCIES).check("frequency_limit", frequency_limit, bytes_each)?;
+                }
                 Ok(Self::direct(ring, settings.estimator, weights, leakage, frequency_limit))
             }
             SpectrumEstimator::Interpolated { points_per_disk } => {
@@ -249,10 +253,15 @@ impl PowerSpectrum {
     }
 }
 
+/// Memory of a point: its value, about the mean, and the transform \[bytes\].
+const GRID_POINT_BYTES: f64 = 48.0;
+
 /// An even number of points, at least four.
 pub(super) fn grid_size(setting: &'static str, per_disk: f64, disk_count: usize) -> Result<usize, AngularError> {
     let half = 0.5 * positive(setting, per_disk)? * disk_count as f64;
-    Ok(2 * (half.round() as usize).max(2))
+    let count = 2 * (half.round() as usize).max(2);
+    at_most(MOST_GRID_POINTS).check(setting, count, GRID_POINT_BYTES)?;
+    Ok(count)
 }
 
 /// A setting that is positive and finite, up to 1000 a disk.

@@ -20,6 +20,11 @@ pub(crate) fn files(response: &Response) -> impl Iterator<Item = &'static Respon
     ALL.iter().filter(|file| (file.has)(response))
 }
 
+/// What the names of such files may end with.
+pub(crate) fn every_ending() -> impl Iterator<Item = &'static str> {
+    ALL.iter().map(|file| file.ending)
+}
+
 const ALL: [ResponseFile; 9] = [
     ResponseFile {
         ending: "radial_profile.csv",

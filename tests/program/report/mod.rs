@@ -71,7 +71,9 @@ fn written(report: &Report) -> BTreeMap<String, Vec<u8>> {
     // Not there yet, nor is what it stands in.
     let inner = folder.path().join("reports").join("first");
     let paths = write(report, &inner).expect("written");
-    let files = contents(&inner);
+    let mut files = contents(&inner);
+    // The list of them stands beside them, hidden, and is no result.
+    let list = String::from_utf8(files.remove(".report.files.json").expect("a list")).expect("Unicode");
     let named: BTreeSet<String> =
         paths.iter().map(|path| path.file_name().expect("a file").to_string_lossy().into_owned()).collect();
     assert_eq!(
@@ -80,6 +82,7 @@ fn written(report: &Report) -> BTreeMap<String, Vec<u8>> {
         "the paths returned are the files there, no temporary ones left"
     );
     assert_eq!(named.len(), paths.len(), "each file is named once");
+    assert!(named.iter().all(|name| list.contains(&format!("\"{name}\""))), "{list}");
     files
 }
 

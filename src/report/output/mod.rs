@@ -1,0 +1,207 @@
+//! [`OutputFolder`]: all files of one report, put into a folder together.
+//!
+//! ```text
+//! DIR/.report-XXXXXX.part/         being filled; locked by the process that fills it
+//! DIR/.report-XXXXXX.part.ready/   complete; its files are moved to DIR, those of the last report are removed before
+//! DIR/.report.files.json           what the last report wrote, with checksums
+//! ```
+//!
+//! Whenever a process is killed, the files in `DIR` are of one report: the last one, before the rename to `.ready`, or this one,
+//! perhaps not all of it. Then the next command that uses the folder moves the rest. `report.json` is the first file removed
+//! and the last one moved: where it is, all is there.
+//!
+//! Files that no report wrote, or that were changed since, are never removed. One that stands in the way is renamed to
+//! `NAME.~1~`.
+
+mod manifest;
+mod place;
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use crate::io::{remove_unfinished, try_name};
+use crate::report::ReportError;
+use crate::report::data_file::DataFile;
+use manifest::Manifest;
+pub use place::{complete, is_of_the_last_report};
+
+/// What a folder is filled with. Reports of different kinds in one folder know nothing of each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// The report of a run.
+    Report,
+    /// The analysis of states relaxed elsewhere.
+    Analysis,
+    /// Error against cost.
+    Precision,
+}
+
+impl Kind {
+    /// Name of its document without the ending.
+    fn name(self) -> &'static str {
+        match self {
+            Kind::Report => "report",
+            Kind::Analysis => "analysis",
+            Kind::Precision => "precision",
+        }
+    }
+
+    /// The file that is there if and only if all others are.
+    fn document(self) -> String {
+        format!("{}.json", self.name())
+    }
+
+    /// The list of files.
+    fn manifest(self) -> String {
+        format!(".{}.files.json", self.name())
+    }
+
+    /// The longest ending of a file that has the name of its sample.
+    fn longest_ending(self) -> &'static str {
+        match self {
+            Kind::Report | Kind::Analysis => DataFile::longest_ending(),
+            Kind::Precision => "displacement_factorisations.svg",
+        }
+    }
+
+    /// How the names of folders begin that are filled or ready.
+    fn prefix(self) -> String {
+        format!(".{}-", self.name())
+    }
+}
+
+/// How the name of a folder ends while it is filled, and when it is complete.
+const PART: &str = ".part";
+const READY: &str = ".ready";
+
+/// A folder for a report, made and tried before the work that the report is of.
+///
+/// Dropped without a report it leaves nothing behind.
+#[derive(Debug)]
+pub struct OutputFolder {
+    folder: PathBuf,
+    kind: Kind,
+    /// Removed when dropped.
+    part: Option<tempfile::TempDir>,
+    /// While it lives the part belongs to somebody.
+    _lock: Option<File>,
+    /// Folders made on the way, the deepest first.
+    made: Vec<PathBuf>,
+}
+
+impl OutputFolder {
+    /// Makes the folder if it is not there, completes what a killed process left complete, removes what it left incomplete, and
+    /// tries to write.
+    ///
+    /// # Errors
+    /// [`ReportError`] names the folder and what the system says.
+    pub fn open(folder: &Path, kind: Kind) -> Result<Self, ReportError> {
+        let made = make(folder).map_err(|source| ReportError::Folder { folder: folder.into(), source })?;
+        let mut output = OutputFolder { folder: folder.into(), kind, part: None, _lock: None, made };
+        complete(folder, kind)?;
+        let refused = |source| ReportError::NotWritable { folder: folder.into(), source };
+        output.clear().map_err(refused)?;
+        let (part, lock) = locked_part(folder, kind).map_err(refused)?;
+        try_name(part.path(), "trial".as_ref()).map_err(refused)?;
+        (output.part, output._lock) = (Some(part), lock);
+        Ok(output)
+    }
+
+    /// Whether all files of these samples can be made here, by the longest name; `field` is what the names come from.
+    ///
+    /// # Errors
+    /// [`ReportError::Name`], usually of a name too long for the file system.
+    pub fn try_samples<'a>(
+        &self,
+        field: &'static str,
+        samples: impl Iterator<Item = &'a str>,
+    ) -> Result<(), ReportError> {
+        let Some(sample) = samples.max_by_key(|sample| sample.len()) else { return Ok(()) };
+        let name = format!("{sample}.{}", self.kind.longest_ending());
+        try_name(self.inside(), name.as_ref()).map_err(|source| ReportError::Name {
+            field,
+            value: sample.into(),
+            name,
+            folder: self.folder.clone(),
+            source,
+        })
+    }
+
+    /// Where files are written until all are there.
+    pub(crate) fn inside(&self) -> &Path {
+        // It is there from `open` on.
+        self.part.as_ref().map_or(&self.folder, |part| part.path())
+    }
+
+    /// Puts the files in their place; gives their paths, in the order of `names`.
+    pub(crate) fn commit(mut self, names: Vec<String>) -> Result<Vec<PathBuf>, ReportError> {
+        self.make_ready(&names)?;
+        complete(&self.folder, self.kind)?;
+        Ok(names.iter().map(|name| self.folder.join(name)).collect())
+    }
+
+    /// Lists the files and says that all are there: from here on the report is complete. Gives the folder that is ready.
+    fn make_ready(&mut self, names: &[String]) -> Result<PathBuf, ReportError> {
+        let manifest = Manifest::of(self.inside(), names)?;
+        manifest.write(&self.inside().join(self.kind.manifest()))?;
+        let part = self.part.take().map(tempfile::TempDir::keep).unwrap_or_default();
+        let mut ready = part.clone().into_os_string();
+        ready.push(READY);
+        std::fs::rename(&part, &ready).map_err(|source| ReportError::Place { path: part, source })?;
+        self.made.clear();
+        Ok(ready.into())
+    }
+
+    /// Removes what processes that were killed had begun.
+    fn clear(&self) -> std::io::Result<()> {
+        for entry in std::fs::read_dir(&self.folder)? {
+            let entry = entry?;
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if name.starts_with(&self.kind.prefix()) && name.ends_with(PART) && entry.file_type()?.is_dir() {
+                let dead = File::open(entry.path()).is_ok_and(|folder| folder.try_lock().is_ok());
+                if dead {
+                    // Another process may remove it at the same time.
+                    let _ = std::fs::remove_dir_all(entry.path());
+                }
+            }
+        }
+        // Single files are what earlier versions had begun.
+        let known = Manifest::read(&self.folder.join(self.kind.manifest()));
+        remove_unfinished(&self.folder, |name| known.as_ref().is_some_and(|known| known.lists(name)))?;
+        Ok(())
+    }
+}
+
+impl Drop for OutputFolder {
+    fn drop(&mut self) {
+        self.part = None;
+        for folder in &self.made {
+            // Only where it is empty.
+            if std::fs::remove_dir(folder).is_err() {
+                break;
+            }
+        }
+    }
+}
+
+/// Makes a folder and those above it; gives those that were not there, the deepest first.
+fn make(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let missing = folder.ancestors().take_while(|it| !it.as_os_str().is_empty() && !it.exists());
+    let missing = missing.map(Path::to_path_buf).collect();
+    std::fs::create_dir_all(folder)?;
+    Ok(missing)
+}
+
+/// A new folder to fill, locked where the system can lock folders.
+fn locked_part(folder: &Path, kind: Kind) -> std::io::Result<(tempfile::TempDir, Option<File>)> {
+    loop {
+        let part = tempfile::Builder::new().prefix(&kind.prefix()).suffix(PART).tempdir_in(folder)?;
+        let Ok(lock) = File::open(part.path()) else { return Ok((part, None)) };
+        // A cleaning process may have taken it for one that belongs to nobody.
+        match lock.try_lock() {
+            Err(std::fs::TryLockError::WouldBlock) => {}
+            _ if !part.path().exists() => {}
+            _ => return Ok((part, Some(lock))),
+        }
+    }
+}
