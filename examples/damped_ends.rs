@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cargo run --release --features measurements --example damped_ends -- [--disks N] [--pressures A,B,...] [--seeds FIRST,COUNT]
-//!     [--rates A,B,...] [--tolerances A,B,...] [--methods implicit,share,fixed] [--starts DIR]
+//!     [--rates A,B,...] [--law constant|viscoelastic] [--tolerances A,B,...] [--methods implicit,share,fixed] [--starts DIR]
 //! ```
 //!
 //! Random points are quenched at a pressure by FIRE and Newton's method, cut to a circle with a held rim and brought to rest; the centre grows
@@ -98,12 +98,20 @@ fn settings() -> Result<Settings, Box<dyn Error>> {
                     numbers()?.into_iter().flat_map(|rate| [constant(rate), viscoelastic(rate)]).collect();
             }
             "--tolerances" => settings.tolerances = numbers()?,
+            "--law" => settings.dampings.retain(|damping| law_of(*damping) == value),
             "--methods" => settings.methods = value.split(',').map(String::from).collect(),
             "--starts" => settings.starts = Some(value),
             _ => return Err(format!("unknown argument {argument}").into()),
         }
     }
     Ok(settings)
+}
+
+fn law_of(damping: DampingChoice) -> &'static str {
+    match damping {
+        DampingChoice::Constant(_) => "constant",
+        DampingChoice::Viscoelastic(_) => "viscoelastic",
+    }
 }
 
 fn constant(rate: f64) -> DampingChoice {
@@ -121,11 +129,7 @@ enum Method {
 }
 
 fn relaxers(settings: &Settings, damping: DampingChoice) -> Vec<(String, Method)> {
-    let law = match damping {
-        DampingChoice::Constant(_) => "constant",
-        DampingChoice::Viscoelastic(_) => "viscoelastic",
-    };
-    let law = format!("{law} {}", damping.rate());
+    let law = format!("{} {}", law_of(damping), damping.rate());
     let mut relaxers = Vec::new();
     for method in &settings.methods {
         let explicit = |time_step| {

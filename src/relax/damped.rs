@@ -158,7 +158,7 @@ impl DampedDynamics {
                 };
                 let energies = Energies::new(&totals, kinetic_energy, motion.dissipated);
                 let balance = balance.get_or_insert(EnergyBalance::new(energies));
-                if balance.accept_unless_gained(energies) {
+                if balance.accept(energies) {
                     motion.remember();
                     if let (Some(control), TimeStep::OfStability(share)) = (&mut control, self.time_step) {
                         control.lengthen(SHARE_GROWTH, share);

@@ -40,13 +40,12 @@ fn watched(relaxer: &impl Relaxer, start: Packing<2>) -> (Vec<(f64, f64)>, Outco
     (energies, outcome)
 }
 
-/// The energy in motion may be wrong by 5 % from one check to the next, and by 10⁻⁷ of the elastic energy (the balance that steps
-/// keep); damping takes at least as much all along, so the sum falls, but for that.
+/// E + K may rise between two checks by 5 % of K, by as much of what damping took, and by 10⁻⁷ of E: the balance that steps keep.
 fn never_gains(energies: &[(f64, f64)]) {
     for two in energies.windows(2) {
         let [(before, moving), (after, moved)] = [two[0], two[1]];
         let gain = after + moved - before - moving;
-        assert!(gain <= 0.05 * moving.max(moved) + 2e-7 * before.max(after), "{two:?}");
+        assert!(gain <= 0.1 * moving.max(moved) + 2e-7 * before.max(after), "{two:?}");
     }
 }
 
@@ -64,8 +63,8 @@ fn the_blow_of_an_inflation_near_jamming_gains_no_energy() {
         never_gains(&energies);
         let account = outcome.cost.energies.expect("energies of a motion");
         assert!((account.before / blown - 1.0).abs() < 1e-12, "{account:?}");
-        // Steps that keep 5 % of the energy in motion, which is taken once: 5 % of the blow.
-        assert!(account.imbalance <= 0.05 * blown, "{account:?}");
+        // 5 % of what damping took, and 5 % of the kinetic energy, which is less than the blow.
+        assert!(account.imbalance <= 0.1 * blown, "{account:?}");
         let sum = account.after + account.damped + account.left;
         assert!((sum - account.before).abs() <= account.imbalance * (1.0 + 1e-9) + 1e-9 * blown, "{account:?}");
         // What is left is of the order of the packing, not of the blow; it was 2000 times as much, or nothing.
