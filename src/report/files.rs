@@ -11,6 +11,7 @@ use crate::contact::LawChoice;
 use crate::displacement::DisplacementField;
 use crate::io::{Column, write_atomically, write_packing};
 use crate::packing::Packing;
+use crate::processor::{Processor, Vectors};
 use crate::report::data_file::DataFile;
 use crate::report::rows::{done, law};
 use crate::report::{ReportError, csv};
@@ -46,7 +47,8 @@ pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, ReportError
 pub fn write_analyses(analyses: &[Analysis], folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
     std::fs::create_dir_all(folder).map_err(|source| ReportError::Folder { folder: folder.into(), source })?;
     let mut files = Files { folder, written: Vec::new() };
-    let document = Analyses { jamscope_version: env!("CARGO_PKG_VERSION"), analyses };
+    let vectors = Processor::own().vectors();
+    let document = Analyses { jamscope_version: env!("CARGO_PKG_VERSION"), vectors, analyses };
     files.json("analysis.json", &document)?;
     for analysis in analyses {
         for file in csv::response::files(&analysis.response) {
@@ -85,6 +87,7 @@ pub fn write_study(
 #[derive(Serialize)]
 struct Analyses<'a> {
     jamscope_version: &'static str,
+    vectors: Vectors,
     analyses: &'a [Analysis],
 }
 

@@ -86,7 +86,7 @@ pub fn execute(
                 note(&|execution| execution.damaged.push(problem.clone()));
                 return Ok(());
             }
-            TaskState::Finished(records, _) => (records, None),
+            TaskState::Finished(records, ..) => (records, None),
             TaskState::Missing => {
                 let start = Instant::now();
                 let records = run_task(task, plan.time_limit);

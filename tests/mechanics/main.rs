@@ -11,6 +11,7 @@ mod contact;
 #[cfg(feature = "linear")]
 mod implicit;
 mod inflation;
+mod kernels;
 mod lammps;
 #[cfg(feature = "linear")]
 mod lattice;
