@@ -84,9 +84,9 @@ mod tests {
         for (a, b) in [(0.5, 0.5), (7.5, 0.5), (19.0, 1.0), (44.25, 1.5), (350.0, 0.5), (3.0, 12.0)] {
             for x in [0.02, 0.2, 0.6, 0.9, 0.999] {
                 let found = incomplete_beta(a, b, x).expect("in range");
-                // puruspe's logarithm of the gamma function has some 10⁻¹³ of a + b.
+                // Where there are closed forms puruspe is 3·10⁻¹² off.
                 let expected = puruspe::betai(a, b, x);
-                assert!((found - expected).abs() <= 1e-12 * (1.0 + a + b) * expected, "{found:e}, {expected:e}");
+                assert!((found - expected).abs() <= 1e-11 * (1.0 + a + b) * expected, "{found:e}, {expected:e}");
             }
         }
     }

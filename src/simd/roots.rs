@@ -13,9 +13,10 @@
 //! is rounded the result is off by 2⁻¹⁰⁴ of itself, and after it the correctly rounded one, unless the exact result lies so near
 //! to the middle between two numbers. The tests try those that lie nearest.
 //!
-//! Without e² one reciprocal in 2⁵² would be wrong, that of the last number below a power of two: 1/a is 2⁻¹⁰⁶ of itself above a middle,
-//! and y (1 + e) = (1 − e²)/a just there. With it the error is that of rounding e + e²: below 2⁻¹⁰⁶ where |e| ≤ 2⁻⁵³, and no reciprocal of a
-//! number of 53 bits lies nearer to a middle than 2⁻¹⁰⁶.
+//! Without e² one reciprocal would be wrong, that of the last number below a power of two: 1/a is 2⁻¹⁰⁶ of itself above a middle m, and
+//! y (1 + e) = (1 − e²)/a is m, which is rounded down. So e + e² is rounded up, and what is rounded last is above 1/a, by less than the last place
+//! of e + e². That is enough: a m is a whole number of units and no power of two, so 1/a is at least 2⁻¹⁰⁶ of itself from any m. Where it is near
+//! one, y is one of the numbers beside it, so |e| < 2⁻⁵³ and the last place is 2⁻¹⁰⁶ at most; the one number with e = 2⁻⁵³ lies above its m.
 //!
 //! # Source
 //! Markstein (2000), IA-64 and Elementary Functions, chapters 8 and 9.
@@ -74,7 +75,7 @@ pub fn positive_part_in_single<S: Simd>(simd: S, a: S::f32s) -> S::f32s {
 
 #[cfg(target_arch = "x86_64")]
 mod long {
-    use std::arch::x86_64::{__m512d, _CMP_NEQ_UQ};
+    use std::arch::x86_64::{__m512d, _CMP_NEQ_UQ, _MM_FROUND_NO_EXC, _MM_FROUND_TO_POS_INF};
 
     use pulp::x86::V4;
 
@@ -106,7 +107,8 @@ mod long {
             inverse = simd._mm512_fmadd_pd(inverse, error, inverse);
         }
         let error = simd._mm512_fnmadd_pd(a, inverse, one);
-        simd._mm512_fmadd_pd(inverse, simd._mm512_fmadd_pd(error, error, error), inverse)
+        let error = simd._mm512_fmadd_round_pd::<{ _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC }>(error, error, error);
+        simd._mm512_fmadd_pd(inverse, error, inverse)
     }
 }
 
@@ -169,6 +171,25 @@ mod tests {
         found
     }
 
+    /// Numbers of 53 bits whose reciprocals lie nearest to the middle m of two: a m = 2¹⁰⁶ ± 1, from the factors of both.
+    fn reciprocals_near_a_middle() -> Vec<f64> {
+        let below = [3u128, 107, 6361, 69_431, 20_394_401, 28_059_810_762_433];
+        let above = [5u128, 15_358_129, 586_477_649, 1_801_439_824_104_653];
+        assert_eq!(below.iter().product::<u128>(), (1 << 106) - 1);
+        assert_eq!(above.iter().product::<u128>(), (1 << 106) + 1);
+        let mut found = Vec::new();
+        for factors in [&below[..], &above[..]] {
+            for chosen in 0u32..1 << factors.len() {
+                let of = |(place, &factor): (usize, &u128)| if chosen >> place & 1 == 1 { factor } else { 1 };
+                let a: u128 = factors.iter().enumerate().map(of).product();
+                if (1 << 52..1 << 53).contains(&a) {
+                    found.push(a as f64);
+                }
+            }
+        }
+        found
+    }
+
     #[test]
     fn roots_and_reciprocals_have_the_bits_of_the_instructions() {
         let mut random = Pcg64::seed_from_u64(1);
@@ -190,6 +211,9 @@ mod tests {
         }
         let hard: Vec<f64> = (-64..64).flat_map(|k| nearest_to_a_middle(8 * k + 1)).collect();
         assert!(hard.len() > 100, "{} hard cases", hard.len());
+        column.extend(hard);
+        let hard = reciprocals_near_a_middle();
+        assert!(hard.contains(&9_007_199_254_740_991.0) && hard.len() > 1, "{hard:?}");
         column.extend(hard);
         column.resize(column.len().next_multiple_of(8), 1.0);
         for processor in Processor::all() {
