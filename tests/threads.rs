@@ -155,7 +155,7 @@ fn tiles_and_packed_lists_have_the_same_bits_with_every_kernel() {
                 let totals = assembly.evaluate_totals();
                 let ends = [Precision::Double, Precision::Mixed].map(|precision| {
                     let limit = ForceLimit::Relative(0.0);
-                    let fire = Fire { limit, step_limit: 100, precision, ..Fire::default() };
+                    let fire = Fire { limit, step_limit: 60, precision, ..Fire::default() };
                     let end = fire.relax(shaken(&large()), &law, &mut ()).expect("disks apart");
                     (
                         end.state.positions().to_vec(),
