@@ -200,7 +200,7 @@ pub(in crate::fit) fn locate(highest: usize, rise: f64, factor: f64, deviance: i
     } else {
         inside
     };
-    let ends = [interval.lower, interval.upper].map(|end| end.map(f64::exp2));
+    let ends = [interval.lower, interval.upper].map(|end| end.map(libm::exp2));
     // A sixteenth of f = 1 is as good as 0, sixteen times the highest f as infinity.
     let down_to_zero = scale_free_rise <= rise || ends[0].is_none();
     let up_to_infinity = white_rise <= rise || ends[1].is_none();
