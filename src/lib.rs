@@ -54,6 +54,7 @@
 //!
 //! | module | content | start from |
 //! |---|---|---|
+//! | [`processor`] | the vector instructions that the kernels use | [`Processor`](processor::Processor) |
 //! | [`vector`] | vectors of D = 2 or 3 components, error-free sums | [`Vector`](vector::Vector) |
 //! | `sparse` (feature `linear`) | one triangle of a symmetric matrix in compressed columns | `sparse::SymmetricMatrix` |
 //! | [`memory`] | how much of it a count may take | [`Memory`](memory::Memory) |
@@ -89,7 +90,7 @@
 //!
 //! | feature | adds | with |
 //! |---|---|---|
-//! | `fit` | fits of a measured profile, of a measured spectrum, of ensembles | argmin, statrs |
+//! | `fit` | fits of a measured profile, of a measured spectrum, of ensembles | argmin |
 //! | `linear` | Hessian, factorisations, Newton, linear response, plastic part, moduli, modes, protocol sensitivity | faer |
 //! | `parallel` | the samples of a scene side by side, or the tiles of one large packing; never changes a bit of a result | rayon |
 //! | `plot` | figures and the HTML page of a report | plotters |
@@ -101,6 +102,9 @@
 //!
 //! The book (`book/src`) has a chapter a module: the question, the equation, how it is computed, how it is checked, and
 //! where it ends. Its snippets are compiled and run by `cargo test --doc`.
+
+// Results have no elementary function of the system in them (clippy.toml); tests may.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod analysis;
 pub mod certificate;
@@ -121,6 +125,7 @@ pub mod plastic;
 #[cfg(feature = "linear")]
 pub mod precision;
 pub mod preparation;
+pub mod processor;
 #[cfg(feature = "linear")]
 pub mod protocol;
 pub mod reference;
@@ -278,6 +283,8 @@ mod book {
     mod precision {}
     #[doc = include_str!("../book/src/performance.md")]
     mod performance {}
+    #[doc = include_str!("../book/src/processor.md")]
+    mod processor {}
     #[doc = include_str!("../book/src/figures.md")]
     mod figures {}
     #[doc = include_str!("../book/src/glossary.md")]

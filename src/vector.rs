@@ -5,6 +5,8 @@
 
 use std::ops::{Add, Mul, Sub};
 
+use crate::processor;
+
 /// A vector of D components.
 pub type Vector<const D: usize> = [f64; D];
 
@@ -70,7 +72,7 @@ pub fn larger(a: f64, b: f64) -> f64 {
 
 /// The largest `|a_k − b_k|²` of two columns of vectors, NaN if any is.
 pub fn longest_difference_squared<const D: usize>(a: &[Vector<D>], b: &[Vector<D>]) -> f64 {
-    pulp::Arch::new().dispatch(LongestDifference { a, b })
+    processor::dispatch(LongestDifference { a, b })
 }
 
 struct LongestDifference<'a, const D: usize> {

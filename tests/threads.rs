@@ -13,6 +13,7 @@ use jamscope::contact::damping::{ConstantDamping, DampingLaw};
 use jamscope::contact::{Assembly, Hertzian, PairLaw};
 use jamscope::io::read_packing;
 use jamscope::packing::Packing;
+use jamscope::processor::{Processor, Vectors};
 use jamscope::relax::{Fire, ForceLimit, Precision, Relaxer};
 use jamscope::vector::{difference, norm, scaled, sum};
 
@@ -140,6 +141,39 @@ fn shaken(packing: &Packing<2>) -> Packing<2> {
     let positions = packing.positions().iter().enumerate().map(|(disk, &at)| sum(at, way(disk))).collect();
     let shaken = Packing::new(*packing.domain(), positions, packing.radii().to_vec());
     shaken.and_then(|shaken| shaken.with_held(packing.held().to_vec())).expect("disks of that packing")
+}
+
+#[test]
+fn tiles_and_packed_lists_have_the_same_bits_with_every_kernel() {
+    // Seven tiles: long lists, packed where vectors have 512 bits, and borders.
+    let law = Hertzian::default();
+    let found: Vec<_> = Processor::all()
+        .into_iter()
+        .map(|processor| {
+            processor.run(|| {
+                let mut assembly = Assembly::new(&large(), law).expect("disks apart");
+                let totals = assembly.evaluate_totals();
+                let ends = [Precision::Double, Precision::Mixed].map(|precision| {
+                    let limit = ForceLimit::Relative(0.0);
+                    let fire = Fire { limit, step_limit: 60, precision, ..Fire::default() };
+                    let end = fire.relax(shaken(&large()), &law, &mut ()).expect("disks apart");
+                    (
+                        end.state.positions().to_vec(),
+                        end.state.corrections().to_vec(),
+                        end.residual,
+                        end.cost.rebuild_count,
+                    )
+                });
+                (processor, (assembly.forces, totals, ends))
+            })
+        })
+        .collect();
+    let (own, expected) = found.last().expect("its own");
+    assert!(found.iter().any(|(processor, _)| processor.vectors() == Vectors::None));
+    for (processor, one) in &found {
+        // Numbers that are equal and not zero have the same bits.
+        assert!(one == expected, "{processor:?} and {own:?} differ");
+    }
 }
 
 #[test]

@@ -65,7 +65,7 @@ impl Progress for Bars {
         if stage.first.is_nan() {
             stage.first = residual.max(1.0);
         }
-        let part = ((stage.first / residual).ln() / (stage.first / stage.limit).ln()).clamp(0.0, 1.0);
+        let part = (libm::log(stage.first / residual) / libm::log(stage.first / stage.limit)).clamp(0.0, 1.0);
         // A quench climbs in between; the bar shows how far it ever came.
         let position = ((part * PARTS as f64) as u64).max(bar.position());
         bar.set_position(position);

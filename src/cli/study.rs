@@ -182,6 +182,9 @@ pub fn merge(arguments: &MergeArguments) -> Result<ExitCode, Failure> {
 /// Writes the report of a merged study; what is in it, and the files, in words.
 fn results(merged: &Merged, folder: &Path) -> Result<String, Failure> {
     let mut text = format!("{} of {} samples in {}\n", merged.record_count, merged.sample_count, folder.display());
+    if let Some(mixed) = merged.mixed_vectors() {
+        text += &format!("{mixed}\n");
+    }
     for statistics in &merged.cells {
         let cell = &statistics.cell;
         let (target, value) = cell.target.name_and_value();

@@ -34,7 +34,7 @@ impl CellGrid {
             Domain::Open => bounding_box(points),
         };
         // No more cells than disks: an open plane with one disk far away must not ask for the memory of its box.
-        let most = (points.len() as f64).powf(1.0 / D as f64).ceil().max(1.0);
+        let most = libm::pow(points.len() as f64, 1.0 / D as f64).ceil().max(1.0);
         let counts: [usize; D] = std::array::from_fn(|d| (lengths[d] / range).floor().clamp(1.0, 4.0 * most) as usize);
         let cell_count: usize = counts.iter().product();
         let scale: Vector<D> = std::array::from_fn(|d| counts[d] as f64 / lengths[d]);

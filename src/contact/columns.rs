@@ -8,9 +8,10 @@ use pulp::Simd;
 use crate::contact::law::PairLaw;
 use crate::contact::listed::{AtAnchors, OfBlock};
 use crate::contact::pair_list::{BLOCK, Block, PairList};
+use crate::processor::Processor;
 use crate::simd::ahead::Cache;
 use crate::simd::components;
-use crate::simd::roots::{Unit, positive_part, reciprocal, square_roots};
+use crate::simd::roots::{positive_part, reciprocal, square_roots};
 use crate::vector::Vector;
 
 /// How far ahead the list is asked for: its memory is so many blocks of arithmetic away; the first cache has no room for more than one
@@ -89,7 +90,7 @@ impl<const D: usize> Columns<D> {
         let apart = self.apart.each_mut().map(|column| &mut S::as_mut_simd_f64s(column).0[..count]);
         let overlap = &mut S::as_mut_simd_f64s(&mut self.overlap).0[..count];
         let inverse = &mut S::as_mut_simd_f64s(&mut self.inverse).0[..count];
-        let (zero, unit) = (simd.splat_f64s(0.0), Unit::here());
+        let (zero, roots) = (simd.splat_f64s(0.0), Processor::here().roots());
         for k in (0..count).step_by(2) {
             let mut squares = [zero; 2];
             for (half, square) in squares.iter_mut().enumerate() {
@@ -111,13 +112,13 @@ impl<const D: usize> Columns<D> {
                 }
                 overlap[k] = change;
             }
-            [inverse[k], inverse[k + 1]] = square_roots(simd, unit, squares);
+            [inverse[k], inverse[k + 1]] = square_roots(simd, roots, squares);
         }
         for k in 0..count {
             let distance = inverse[k];
             let both = simd.add_f64s(distance, listed.distance(simd, k, anchor_overlap[k]));
             // One reciprocal for change / both and 1 / distance: divisions and roots are what the loop waits for.
-            let of_both = reciprocal(simd, unit, simd.mul_f64s(distance, both));
+            let of_both = reciprocal(simd, roots, simd.mul_f64s(distance, both));
             let change = simd.mul_f64s(overlap[k], simd.mul_f64s(distance, of_both));
             overlap[k] = positive_part(simd, simd.sub_f64s(anchor_overlap[k], change));
             inverse[k] = simd.mul_f64s(both, of_both);

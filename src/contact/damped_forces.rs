@@ -12,6 +12,7 @@ use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, PairList};
 use crate::contact::rows::{gather, scatter};
 use crate::contact::walk::{Walked, walk};
+use crate::processor;
 use crate::simd::lanes;
 use crate::vector::Vector;
 
@@ -40,7 +41,7 @@ pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
         gather(&mut apace, pairs, block, (velocities, 0));
         let (apace, coefficient) = (&apace[..block.pair_count], &damping_coefficient[listed]);
         let (damping, anchors) = (Damping { law: damping, coefficient, apace }, Anchors::of(pairs, block));
-        power += pulp::Arch::new().dispatch(Arithmetic { law, damping, columns: &mut columns, anchors });
+        power += processor::dispatch(Arithmetic { law, damping, columns: &mut columns, anchors });
         scatter(&columns.pull, pairs, block, (forces, 0));
     }
     power

@@ -22,6 +22,7 @@ use crate::contact::pair_list::{BLOCK, Block, PairList};
 use crate::contact::rows::{ask_for_later_rows, gather, scatter};
 use crate::contact::tiles::Tile;
 use crate::contact::totals::{Tally, Totals};
+use crate::processor;
 use crate::side_by_side;
 use crate::vector::{Number, Vector, difference, sum};
 
@@ -141,7 +142,7 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Summed<'_, D, L> {
     ) -> &'a [Vector<D>; BLOCK] {
         let block = &self.pairs.blocks[block];
         fill(self.law, self.pairs, displacements, block, columns);
-        pulp::Arch::new().dispatch(Tally { law: self.law, columns: &*columns, count: block.pair_count, totals });
+        processor::dispatch(Tally { law: self.law, columns: &*columns, count: block.pair_count, totals });
         &columns.pull
     }
 }
@@ -256,7 +257,7 @@ pub(super) fn fill<const D: usize, L: PairLaw>(
 ) {
     ask_for_later_rows(pairs, block);
     gather(&mut columns.pull, pairs, block, displacements);
-    pulp::Arch::new().dispatch(Arithmetic { law, columns, anchors: Anchors::of(pairs, block) });
+    processor::dispatch(Arithmetic { law, columns, anchors: Anchors::of(pairs, block) });
 }
 
 /// The arithmetic of a block as a job that is compiled for each vector width the machine may have, and started for the widest

@@ -21,7 +21,8 @@ use pulp::bytemuck::{cast_slice, cast_slice_mut};
 use serde::{Deserialize, Serialize};
 
 use crate::contact::damping::{DampingLaw, MassDamping, ViscoelasticDamping, effective_radius};
-use crate::simd::roots::{Unit, square_roots};
+use crate::processor::Processor;
+use crate::simd::roots::square_roots;
 
 /// What happens where two disks touch: a pure function of the overlap and of a coefficient made once a pair.
 pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
@@ -172,7 +173,7 @@ impl PairLaw for Hertzian {
     }
     #[inline(always)]
     fn forces<S: Simd>(&self, simd: S, [c, d]: [S::f64s; 2], overlaps: [S::f64s; 2]) -> [S::f64s; 2] {
-        let ([a, b], [a_root, b_root]) = (overlaps, square_roots(simd, Unit::here(), overlaps));
+        let ([a, b], [a_root, b_root]) = (overlaps, square_roots(simd, Processor::here().roots(), overlaps));
         [simd.mul_f64s(simd.mul_f64s(c, a), a_root), simd.mul_f64s(simd.mul_f64s(d, b), b_root)]
     }
     #[inline(always)]
@@ -322,6 +323,7 @@ impl LawChoice {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::processor::dispatch;
 
     fn check_law(law: impl PairLaw) {
         let coefficient = law.coefficient(0.5, 0.7);
@@ -370,10 +372,13 @@ mod tests {
         let some = [0.0, 1e-20, 1e-9, 3e-3, 0.01, 0.1, 0.3, f64::NAN];
         let overlaps = std::array::from_fn(|pair| some[(pair + pair / 8) % 8]);
         let coefficients = std::array::from_fn(|pair| law.coefficient(0.3 + 0.1 * pair as f64, 0.5));
-        let found = pulp::Arch::new().dispatch(Forces(law, coefficients, overlaps));
-        for ((force, coefficient), overlap) in found.iter().zip(coefficients).zip(overlaps) {
-            let alone = law.force(coefficient, overlap);
-            assert!(force.to_bits() == alone.to_bits() || overlap.is_nan() && force.is_nan(), "{law:?} at {overlap}");
+        for processor in Processor::all() {
+            let found = processor.run(|| dispatch(Forces(law, coefficients, overlaps)));
+            for ((force, coefficient), overlap) in found.iter().zip(coefficients).zip(overlaps) {
+                let alone = law.force(coefficient, overlap);
+                let same = force.to_bits() == alone.to_bits() || overlap.is_nan() && force.is_nan();
+                assert!(same, "{law:?} at {overlap}, {processor:?}");
+            }
         }
     }
 
@@ -406,7 +411,12 @@ mod tests {
             let some = [0.0, 1e-12, 1e-9, 3e-3, 0.01, 0.1, 0.3, f32::NAN];
             let overlaps: [f32; 16] = std::array::from_fn(|pair| some[(pair + pair / 8) % 8]);
             let coefficients: [f32; 16] = std::array::from_fn(|pair| 0.3 + 0.1 * pair as f32);
-            let found = pulp::Arch::new().dispatch(SingleForces(law, coefficients, overlaps));
+            let found = dispatch(SingleForces(law, coefficients, overlaps));
+            for processor in Processor::all() {
+                let again = processor.run(|| dispatch(SingleForces(law, coefficients, overlaps)));
+                let bits = |forces: &[f32]| forces.iter().map(|force| force.to_bits()).collect::<Vec<_>>();
+                assert_eq!(bits(&again), bits(&found), "{law:?}, {processor:?}");
+            }
             for ((force, c), overlap) in found.into_iter().zip(coefficients).zip(overlaps) {
                 let expected = f64::from(c) * f64::from(overlap).powf(law.exponent() - 1.0);
                 // Two products and a root, half a unit each.

@@ -11,6 +11,7 @@ use crate::contact::lacking::Roaming;
 use crate::contact::measured::Measured;
 use crate::contact::pair_list::{BLOCK, PairList, Search, Source};
 use crate::packing::{Domain, PackingError};
+use crate::processor;
 use crate::side_by_side::{self, PIECE};
 use crate::vector::{Vector, difference, dot, extended_norm, extended_sum, sum, two_sum};
 
@@ -211,7 +212,7 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for Anchored<'_, D, C> {
             ends.anchors[place] = (disks.anchors[first], disks.anchors[second]);
             ends.radii[place] = (disks.radii[first], disks.radii[second]);
         }
-        pulp::Arch::new().dispatch(Measure { ends, lengths, coefficient, measured });
+        processor::dispatch(Measure { ends, lengths, coefficient, measured });
         if let Some(classes) = disks.classes {
             // The numbers of a packed list, whether it is packed or not.
             for (place, (&first, &second)) in first.iter().zip(second).enumerate() {

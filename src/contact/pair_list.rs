@@ -229,7 +229,7 @@ impl<const D: usize> PairList<D> {
 
     /// Disks of a tile of a list of so many.
     fn tile_size(disk_count: usize) -> usize {
-        let layer = (disk_count as f64).powf(1.0 - 1.0 / D as f64);
+        let layer = libm::pow(disk_count as f64, 1.0 - 1.0 / D as f64);
         LEAST_TILE.max(layers(D) * layer as usize)
     }
 

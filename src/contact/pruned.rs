@@ -16,6 +16,7 @@
 use crate::contact::measured::Measured;
 use crate::contact::pair_list::{Arranger, BLOCK, Block, LONGEST_ROW, PairList, Source};
 use crate::contact::rows::{gather, rows_of};
+use crate::processor;
 use crate::vector::Vector;
 
 /// Pairs that a skin of one radius adds, over those that touch: 8 in 100 for a tenth of a radius, 15 for a quarter \[1\].
@@ -80,7 +81,7 @@ impl<const D: usize> Pruned<'_, D> {
             gather(&mut moved, self.whole, block, (self.displacements, 0));
             let excess = &mut excess[..block.pair_count];
             let listed = self.whole.listed.unpacked(first_pair / BLOCK, &mut room);
-            pulp::Arch::new().dispatch(Excess { listed, skin: self.skin, moved: &moved, excess });
+            processor::dispatch(Excess { listed, skin: self.skin, moved: &moved, excess });
             let mut pair = first_pair as u32;
             for (&row, excess) in rows_of(self.whole, block).iter().zip(excess.chunks_exact(block.row_length)) {
                 // Which are near cannot be guessed: they are picked without a branch. NaN counts as near.

@@ -6,6 +6,7 @@ use crate::contact::kinds::Kinds;
 use crate::contact::measured::Measured;
 use crate::contact::pair_list::{BLOCK, PairList};
 use crate::contact::rows::gather;
+use crate::processor;
 use crate::side_by_side;
 use crate::simd::ahead::{Cache, LINE};
 use crate::simd::table::{self, look_up_in_single};
@@ -249,7 +250,7 @@ impl<const D: usize> Task<'_, D> {
         let block = &self.pairs.blocks[block];
         gather(&mut moved, self.pairs, block, (self.base, 0));
         let (count, factors) = (block.pair_count, self.factors);
-        pulp::Arch::new().dispatch(Round { listed, count, moved: &moved, factors, rounded });
+        processor::dispatch(Round { listed, count, moved: &moved, factors, rounded });
         if let Some(kinds) = kinds {
             // The numbers of a packed list, whether it is packed or not.
             for place in 0..count {

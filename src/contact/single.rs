@@ -23,6 +23,7 @@ use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, PairList};
 use crate::contact::rounded::{Factors, InSingle, OfBlockInSingle, Rounded};
 use crate::contact::rows::{ask_for_later_rows, gather};
+use crate::processor;
 use crate::side_by_side::{self, PIECE};
 use crate::simd::ahead::Cache;
 use crate::simd::components;
@@ -269,7 +270,7 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Pressed<'_, D, L> {
         gather(&mut columns.pull, self.pairs, &self.pairs.blocks[block], ways);
         let (law, listed) = (self.law, self.blocks.of_block(block));
         let pair_count = self.pairs.blocks[block].pair_count;
-        pulp::Arch::new().dispatch(Arithmetic { law, listed, columns, pair_count, asks: self.pairs.asks() });
+        processor::dispatch(Arithmetic { law, listed, columns, pair_count, asks: self.pairs.asks() });
         &columns.pull
     }
 }
@@ -364,17 +365,18 @@ mod tests {
     use super::*;
     use crate::contact::Hertzian;
     use crate::contact::rounded::{Each, KindsInSingle, Packed};
+    use crate::processor::Processor;
 
-    /// The forces of a block, on the widest vectors and one by one; how many pairs press.
+    /// The forces of a block, with every width of vectors, prefetched or not.
     fn forces_of(listed: OfBlockInSingle<'_, 2>, ways: &[[f32; 2]; BLOCK]) -> [[f32; 2]; BLOCK] {
         let law = &Hertzian::default();
         let mut forces = Vec::new();
         for asks in [None, Some(Cache::First), Some(Cache::Second)] {
-            let [mut widest, mut scalar] = [(); 2].map(|()| Columns { pull: *ways, ..Columns::new() });
-            let of = |columns| Arithmetic { law, listed, columns, pair_count: BLOCK, asks };
-            pulp::Arch::new().dispatch(of(&mut widest));
-            pulp::WithSimd::with_simd(of(&mut scalar), pulp::Scalar::new());
-            forces.extend([widest.pull, scalar.pull]);
+            for processor in Processor::all() {
+                let columns = &mut Columns { pull: *ways, ..Columns::new() };
+                processor.run(|| processor::dispatch(Arithmetic { law, listed, columns, pair_count: BLOCK, asks }));
+                forces.push(columns.pull);
+            }
         }
         let bits = |forces: &[[f32; 2]; BLOCK]| forces.map(|force| force.map(f32::to_bits));
         assert!(forces.iter().all(|one| bits(one) == bits(&forces[0])));

@@ -5,6 +5,7 @@ use crate::contact::law::PairLaw;
 use crate::contact::pair_list::{BLOCK, Block, PairList};
 use crate::contact::rows::{ask_for_later_rows, gather, scatter_with};
 use crate::contact::tiles::Tile;
+use crate::processor;
 use crate::side_by_side;
 use crate::vector::{Vector, sum};
 
@@ -58,7 +59,7 @@ impl<const D: usize, L: PairLaw, W: Fn(usize, f64, f64) -> f64> Task<'_, D, L, W
             ask_for_later_rows(pairs, block);
             gather(&mut columns.pull, pairs, block, (self.displacements, 0));
             let (columns, anchors) = (&mut columns, Anchors::of(pairs, block));
-            pulp::Arch::new().dispatch(Arithmetic { task: self, block, columns, anchors, values });
+            processor::dispatch(Arithmetic { task: self, block, columns, anchors, values });
             if tile.inner.contains(&place) {
                 scatter_with(values, pairs, block, (row.as_chunks_mut::<1>().0, offset as u32), sum);
                 continue;

@@ -3,6 +3,7 @@
 use crate::contact::measured::Measured;
 use crate::contact::pair_list::{BLOCK, PairList};
 use crate::contact::rows::gather;
+use crate::processor;
 use crate::vector::Vector;
 
 /// A listed pair where its disks are, by the formula of [`geometry`](super::forces::geometry).
@@ -29,7 +30,7 @@ pub fn walk<const D: usize>(pairs: &PairList<D>, displacements: &[Vector<D>], mu
     for block in &pairs.blocks {
         let (numbers, listed) = (block.pairs(), pairs.listed.unpacked(block.pairs / BLOCK, &mut room));
         gather(&mut moved, pairs, block, (displacements, 0));
-        pulp::Arch::new().dispatch(Measure { count: block.pair_count, listed, moved: &moved, at: &mut at });
+        processor::dispatch(Measure { count: block.pair_count, listed, moved: &moved, at: &mut at });
         for (place, pair) in numbers.enumerate() {
             look(&Walked {
                 pair,

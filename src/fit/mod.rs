@@ -6,6 +6,7 @@
 
 pub mod angular;
 pub mod ensemble;
+mod incomplete_beta;
 pub mod modes;
 pub mod profile;
 mod rings;

@@ -1,6 +1,6 @@
 //! How many independent rings there are, and what a better fit is worth.
 
-use statrs::function::beta::checked_beta_reg;
+use crate::fit::incomplete_beta::incomplete_beta;
 
 /// Effective number of independent rings, from the residuals of a fit in units of their errors.
 ///
@@ -43,13 +43,13 @@ pub(crate) fn chance(simple: f64, full: f64, more: usize, freedom: f64) -> f64 {
         return 1.0;
     }
     // The arguments are in range: freedom ≥ 1, more ≥ 1, 0 ≤ x < 1; NaN, if it ever came, must not look significant.
-    checked_beta_reg(0.5 * freedom, 0.5 * more as f64, full / simple).unwrap_or(1.0)
+    incomplete_beta(0.5 * freedom, 0.5 * more as f64, full / simple).unwrap_or(1.0)
 }
 
 /// The same probability when the best of `trial_count` independent tries was taken (Šidák).
 pub(crate) fn corrected(chance: f64, trial_count: f64) -> f64 {
     // 1 − (1 − p)^T without losing a small p.
-    -(trial_count * (-chance).ln_1p()).exp_m1()
+    -libm::expm1(trial_count * libm::log1p(-chance))
 }
 
 #[cfg(test)]

@@ -80,7 +80,7 @@ impl Wave {
             };
         }
         let (j, y) = (cylinder::j1(x), cylinder::y1(x));
-        let modulus = j.hypot(y);
+        let modulus = libm::hypot(j, y);
         // M' of M² = J² + Y² with J_1' = J_0 − J_1/x; divided by M one at a time, as M² overflows first.
         let growth = x * (cylinder::j0(x) * (j / modulus) + cylinder::y0(x) * (y / modulus)) / modulus;
         let turning = FRAC_2_PI / modulus / modulus;

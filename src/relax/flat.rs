@@ -1,6 +1,7 @@
 //! Sums over flat columns in a fixed order, in lanes the compiler can turn into vector instructions. Long columns are cut into
 //! pieces of a fixed length, which may be worked on side by side; their sums are added in order.
 
+use crate::processor;
 use crate::side_by_side;
 use crate::simd::lanes::{self, Summed};
 use crate::simd::real::Real;
@@ -44,7 +45,7 @@ impl Products {
 
 /// F·v, F·F and v·v in one pass. Sums of up to some thousand terms are of the precision given, those of the parts in double.
 pub fn products<T: Summed>(force: &[T], velocity: &[T]) -> Products {
-    let of_piece = |(force, velocity)| pulp::Arch::new().dispatch(ProductsOf { force, velocity });
+    let of_piece = |(force, velocity)| processor::dispatch(ProductsOf { force, velocity });
     if force.len() <= PIECE {
         return of_piece((force, velocity));
     }
@@ -82,7 +83,7 @@ pub fn kick_and_drift<T: Real>(
 ) -> f64 {
     let [keep, push, time_step] = [keep, push, time_step].map(T::rounded);
     let piece = |((force, velocity), displacement): ((&_, &mut _), &mut _)| {
-        pulp::Arch::new().dispatch(KickAndDrift { keep, push, time_step, force, velocity, displacement })
+        processor::dispatch(KickAndDrift { keep, push, time_step, force, velocity, displacement })
     };
     if force.len() <= PIECE {
         return piece(((force, velocity), displacement));
@@ -131,7 +132,7 @@ impl<T: Real> pulp::WithSimd for KickAndDrift<'_, T> {
 
 /// a·b.
 pub fn dot_product(a: &[f64], b: &[f64]) -> f64 {
-    pulp::Arch::new().dispatch(DotProduct { a, b })
+    processor::dispatch(DotProduct { a, b })
 }
 
 struct DotProduct<'a> {
@@ -150,7 +151,7 @@ impl pulp::WithSimd for DotProduct<'_> {
 
 /// `y ← keep·y + factor·x`.
 pub fn combine(keep: f64, y: &mut [f64], factor: f64, x: &[f64]) {
-    pulp::Arch::new().dispatch(Combine { keep, y, factor, x });
+    processor::dispatch(Combine { keep, y, factor, x });
 }
 
 struct Combine<'a> {

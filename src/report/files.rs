@@ -11,6 +11,7 @@ use crate::contact::LawChoice;
 use crate::displacement::DisplacementField;
 use crate::io::{Column, write_atomically, write_packing};
 use crate::packing::Packing;
+use crate::processor::{Processor, Vectors};
 use crate::report::data_file::DataFile;
 use crate::report::output::{Kind, OutputFolder};
 use crate::report::rows::{done, law};
@@ -63,7 +64,8 @@ pub fn write_analyses(analyses: &[Analysis], folder: &Path) -> Result<Vec<PathBu
 /// [`ReportError`] names the file and what is wrong.
 pub fn write_analyses_into(analyses: &[Analysis], output: OutputFolder) -> Result<Vec<PathBuf>, ReportError> {
     let mut files = Files { folder: output.inside(), written: Vec::new() };
-    let document = Analyses { jamscope_version: env!("CARGO_PKG_VERSION"), analyses };
+    let vectors = Processor::own().vectors();
+    let document = Analyses { jamscope_version: env!("CARGO_PKG_VERSION"), vectors, analyses };
     files.json("analysis.json", &document)?;
     for analysis in analyses {
         for file in csv::response::files(&analysis.response) {
@@ -103,6 +105,7 @@ pub fn write_study(
 #[derive(Serialize)]
 struct Analyses<'a> {
     jamscope_version: &'static str,
+    vectors: Vectors,
     analyses: &'a [Analysis],
 }
 

@@ -26,7 +26,7 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
 /// A value and its standard error, both to the second significant digit of the error.
 #[cfg_attr(not(feature = "fit"), allow(dead_code, reason = "only fits have errors"))]
 pub(crate) fn with_error(value: f64, error: f64) -> String {
-    let place = error.abs().log10().floor();
+    let place = libm::log10(error.abs()).floor();
     if !(value.is_finite() && (-6.0..4.0).contains(&place)) {
         return format!("{} ± {}", significant(value, 4), significant(error, 2));
     }

@@ -21,7 +21,7 @@ pub(crate) const STYLE: &str = include_str!("page.css");
 const TITLE: &str = "jamscope: response to an inflation";
 const HEADING: &str = "Response of a packing to the inflation of one disk";
 
-/// The page of a report. Two runs of one scene give the same bytes: wall times are left out.
+/// The page of a report. Two runs of one scene on one processor give the same bytes: wall times are left out.
 ///
 /// # Errors
 /// A figure whose numbers are not finite.

@@ -53,7 +53,7 @@ pub(crate) fn figures(
         #[cfg(feature = "fit")]
         let elastic = |mode: usize, radius: f64| {
             let amplitude = fit?.at(mode, radius)?.radial;
-            Some(if mode == 0 { amplitude.re } else { amplitude.norm() })
+            Some(if mode == 0 { amplitude.re } else { libm::hypot(amplitude.re, amplitude.im) })
         };
         #[cfg(feature = "fit")]
         let curve: Option<ModeCurve<'_>> = fit.is_some().then_some(&elastic);
@@ -124,14 +124,14 @@ fn fitted<'a>(ring: &'a RingResponse, relative: &'a [f64]) -> Vec<SpectrumCurve<
     if let Some(fit) = ring.slope.as_ref().and_then(|it| it.measured()) {
         let exponent = fit.exponent.best;
         let label = format!("f^(−{}), fitted", significant(exponent, 3));
-        curves.push(scaled(label, fit.window, Box::new(move |f| f.powf(-exponent))));
+        curves.push(scaled(label, fit.window, Box::new(move |f| libm::pow(f, -exponent))));
     }
     if let Some(fit) = ring.crossover.as_ref().and_then(|it| it.measured())
         && let CrossoverOutcome::Found { crossover, .. } = fit.outcome
     {
         let (middle, exponent) = (crossover.best, fit.exponent);
         let label = format!("Lorentzian, f† = {}", significant(middle, 2));
-        curves.push(scaled(label, fit.window, Box::new(move |f| 1.0 / (1.0 + (f / middle).powf(exponent)))));
+        curves.push(scaled(label, fit.window, Box::new(move |f| 1.0 / (1.0 + libm::pow(f / middle, exponent)))));
     }
     curves.push(critical(relative));
     curves
@@ -145,7 +145,7 @@ fn fitted<'a>(_ring: &'a RingResponse, relative: &'a [f64]) -> Vec<SpectrumCurve
 /// f^(−3/2), what the study finds at the transition.
 fn critical(relative: &[f64]) -> SpectrumCurve<'_> {
     let window = [1.0, (relative.len() - 1) as f64];
-    SpectrumCurve { label: "f^(−1.5)".into(), of: Box::new(|f| f.powf(-1.5)), window }
+    SpectrumCurve { label: "f^(−1.5)".into(), of: Box::new(|f| libm::pow(f, -1.5)), window }
 }
 
 /// What the figures of these responses show, in a paragraph; only what is there.

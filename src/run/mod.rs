@@ -16,6 +16,7 @@ use crate::observe::PressureChange;
 use crate::observe::state::State;
 use crate::packing::{Packing, PackingError};
 use crate::preparation::{Preparation, PreparationError, Target, prepare};
+use crate::processor::Processor;
 #[cfg(feature = "linear")]
 use crate::protocol::{Compared, Protocol, ProtocolSensitivity, ProtocolSettings, ProtocolSummary, chosen};
 use crate::relax::{Criterion, Look, Outcome, Relaxer, RelaxerChoice, Stop, Trace};
@@ -152,6 +153,7 @@ pub fn run(scene: &Scene, progress: &dyn Progress) -> Result<Report, RunError> {
     let protocol = protocol_summary(&samples);
     Ok(Report {
         jamscope_version: env!("CARGO_PKG_VERSION"),
+        vectors: Processor::own().vectors(),
         scene: scene.clone(),
         samples,
         #[cfg(feature = "linear")]

@@ -8,6 +8,7 @@ use crate::inflation::Inflated;
 #[cfg(feature = "linear")]
 use crate::observe::RadialProfile;
 use crate::packing::Packing;
+use crate::processor::Vectors;
 #[cfg(feature = "linear")]
 use crate::protocol::{ProtocolSensitivity, ProtocolSummary};
 use crate::relax::{Cost, Criterion};
@@ -22,6 +23,8 @@ use crate::verdict::RestVerdict;
 pub struct Report {
     /// Version of jamscope that made it.
     pub jamscope_version: &'static str,
+    /// Vector instructions of the processor that made it: what goes through a factorisation has other last digits with others.
+    pub vectors: Vectors,
     /// The scene, all defaults filled in.
     pub scene: Scene,
     /// One entry a sample, in the order of the scene.

@@ -1,6 +1,6 @@
 //! Memory that is asked for before it is needed, where the machine can be asked: it comes while other work is done.
 
-use crate::simd::roots::Unit;
+use crate::processor::{Processor, Roots};
 
 /// Numbers a line of a cache has room for are asked for at once \[bytes\].
 pub const LINE: usize = 64;
@@ -18,9 +18,9 @@ impl Cache {
     /// That of this machine: the first one is large and quick enough on AMD's fifth generation, on the fourth it is as slow as not to ask.
     #[inline(always)]
     pub fn here() -> Cache {
-        match Unit::here() {
-            Unit::Fast => Cache::First,
-            Unit::Slow | Unit::Quotients => Cache::Second,
+        match Processor::here().roots() {
+            Roots::Instructions => Cache::First,
+            Roots::Products | Roots::Quotients => Cache::Second,
         }
     }
 

@@ -128,6 +128,7 @@ mod long {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::processor::{Processor, dispatch};
 
     /// Numbers of vectors one after the other, column by column and back.
     struct ThereAndBack<const D: usize>;
@@ -174,8 +175,7 @@ mod tests {
     #[test]
     fn components_go_into_columns_and_back() {
         fn check<const D: usize>() {
-            pulp::Arch::new().dispatch(ThereAndBack::<D>);
-            pulp::WithSimd::with_simd(ThereAndBack::<D>, pulp::Scalar::new());
+            Processor::all().into_iter().for_each(|processor| processor.run(|| dispatch(ThereAndBack::<D>)));
         }
         check::<1>();
         check::<2>();

@@ -122,6 +122,7 @@ fn with_rest(mut lanes: [f64; LANES], a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::processor::{Processor, dispatch};
 
     /// Sums in eight lanes, one number after the other.
     fn plain(terms: impl Iterator<Item = f64>) -> f64 {
@@ -144,8 +145,9 @@ mod tests {
             };
             let most = a.iter().fold(0f32, |most, value| most.max(value.abs()));
             let expected = ([product(&a, &b), product(&a, &a), product(&b, &b)], f64::from(most));
-            assert_eq!(pulp::Arch::new().dispatch(Single(&a, &b)), expected, "widest, {length}");
-            assert_eq!(pulp::WithSimd::with_simd(Single(&a, &b), pulp::Scalar::new()), expected, "scalar, {length}");
+            for processor in Processor::all() {
+                assert_eq!(processor.run(|| dispatch(Single(&a, &b))), expected, "{processor:?}, {length}");
+            }
         }
     }
 
@@ -179,8 +181,9 @@ mod tests {
             let both = product(&a, &b);
             let most = a.iter().fold(0.0f64, |most, value| most.max(value.abs()));
             let expected = [plain(a.iter().copied()), both, both, product(&a, &a), product(&b, &b), most];
-            assert_eq!(pulp::Arch::new().dispatch(All(&a, &b)), expected, "widest, {length}");
-            assert_eq!(pulp::WithSimd::with_simd(All(&a, &b), pulp::Scalar::new()), expected, "scalar, {length}");
+            for processor in Processor::all() {
+                assert_eq!(processor.run(|| dispatch(All(&a, &b))), expected, "{processor:?}, {length}");
+            }
         }
     }
 }

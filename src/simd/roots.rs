@@ -2,67 +2,49 @@
 //!
 //! Many processors with vectors of 512 bits have an instruction for eight square roots and one for eight quotients that take 16 to 30
 //! cycles, one at a time, and begin two fused products each cycle. There a first guess of 14 bits is refined by products, and every
-//! other root left to the unit for roots, which works beside them ([`Unit`]):
+//! other root left to the unit for roots, which works beside them ([`Roots`]):
 //!
 //! ```text
 //! √a    g = a y, h = y/2, y ≈ 1/√a      twice: e = 1/2 − g h, g ← g + g e, h ← h + h e      at last: g + (a − g²) h
-//! 1/a   y ≈ 1/a                         three times: e = 1 − a y, y ← y + y e
+//! 1/a   y ≈ 1/a                         twice: e = 1 − a y, y ← y + y e      at last: y + y (e + e²)
 //! ```
 //!
 //! The last e and a − g² are exact; what is added then is right to 2⁻⁵² of itself and no more than 2⁻⁵² of the result. So before it
 //! is rounded the result is off by 2⁻¹⁰⁴ of itself, and after it the correctly rounded one, unless the exact result lies so near
 //! to the middle between two numbers. The tests try those that lie nearest.
 //!
+//! Without e² one reciprocal would be wrong, that of the last number below a power of two: 1/a is 2⁻¹⁰⁶ of itself above a middle m, and
+//! y (1 + e) = (1 − e²)/a is m, which is rounded down. So e + e² is rounded up, and what is rounded last is above 1/a, by less than the last place
+//! of e + e². That is enough: a m is a whole number of units and no power of two, so 1/a is at least 2⁻¹⁰⁶ of itself from any m. Where it is near
+//! one, y is one of the numbers beside it, so |e| < 2⁻⁵³ and the last place is 2⁻¹⁰⁶ at most; the one number with e = 2⁻⁵³ lies above its m.
+//!
 //! # Source
 //! Markstein (2000), IA-64 and Elementary Functions, chapters 8 and 9.
 
 use pulp::Simd;
 
-/// What the unit for roots and quotients of this machine is good for. Never changes a bit, except as [`reciprocal`] says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unit {
-    /// Every other root; reciprocals by products.
-    Slow,
-    /// Every other root, and reciprocals: a quotient of eight takes 9 cycles.
-    Quotients,
-    /// All of them: two roots and a quotient of eight numbers each take 5 ns together.
-    Fast,
-}
-
-impl Unit {
-    /// That of this machine, by what marks its maker and its generation: AMD's fourth has SSE4a, the fifth pairs of intersections as well.
-    #[inline(always)]
-    pub fn here() -> Unit {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("sse4a") {
-            let fifth = std::arch::is_x86_feature_detected!("avx512vp2intersect");
-            return if fifth { Unit::Fast } else { Unit::Quotients };
-        }
-        Unit::Slow
-    }
-}
+use crate::processor::Roots;
 
 /// √a of two vectors of numbers a ≥ 0, the bits of [`f64::sqrt`] for 0 and from 2⁻⁹⁶⁰ to 2¹⁰⁰⁰; below within a unit in the last place,
 /// above perhaps NaN. The unit for roots takes one of them meanwhile, or both.
 #[inline(always)]
-pub fn square_roots<S: Simd>(simd: S, unit: Unit, [a, b]: [S::f64s; 2]) -> [S::f64s; 2] {
+pub fn square_roots<S: Simd>(simd: S, roots: Roots, [a, b]: [S::f64s; 2]) -> [S::f64s; 2] {
     #[cfg(target_arch = "x86_64")]
-    if let (Some(long), Unit::Slow | Unit::Quotients) = (super::of_512_bits(simd), unit) {
+    if let (Some(long), Roots::Products | Roots::Quotients) = (super::of_512_bits(simd), roots) {
         return [pulp::bytemuck::cast(long::square_root(long, pulp::bytemuck::cast(a))), simd.sqrt_f64s(b)];
     }
-    let _ = unit;
+    let _ = roots;
     [simd.sqrt_f64s(a), simd.sqrt_f64s(b)]
 }
 
-/// 1/a, the bits of a division for |a| from 2⁻¹⁰⁰⁰ to 2¹⁰⁰⁰, except for the last number below a power of two, where it may be the
-/// next lower one (the sum to be rounded is the very middle); perhaps NaN beyond.
+/// 1/a, the bits of a division for |a| from 2⁻¹⁰⁰⁰ to 2¹⁰⁰⁰; perhaps NaN beyond.
 #[inline(always)]
-pub fn reciprocal<S: Simd>(simd: S, unit: Unit, a: S::f64s) -> S::f64s {
+pub fn reciprocal<S: Simd>(simd: S, roots: Roots, a: S::f64s) -> S::f64s {
     #[cfg(target_arch = "x86_64")]
-    if let (Some(simd), Unit::Slow) = (super::of_512_bits(simd), unit) {
+    if let (Some(simd), Roots::Products) = (super::of_512_bits(simd), roots) {
         return pulp::bytemuck::cast(long::reciprocal(simd, pulp::bytemuck::cast(a)));
     }
-    let _ = unit;
+    let _ = roots;
     simd.div_f64s(simd.splat_f64s(1.0), a)
 }
 
@@ -93,7 +75,7 @@ pub fn positive_part_in_single<S: Simd>(simd: S, a: S::f32s) -> S::f32s {
 
 #[cfg(target_arch = "x86_64")]
 mod long {
-    use std::arch::x86_64::{__m512d, _CMP_NEQ_UQ};
+    use std::arch::x86_64::{__m512d, _CMP_NEQ_UQ, _MM_FROUND_NO_EXC, _MM_FROUND_TO_POS_INF};
 
     use pulp::x86::V4;
 
@@ -120,23 +102,26 @@ mod long {
         let simd = simd.avx512f;
         let one = simd._mm512_set1_pd(1.0);
         let mut inverse = simd._mm512_rcp14_pd(a);
-        for _ in 0..3 {
+        for _ in 0..2 {
             let error = simd._mm512_fnmadd_pd(a, inverse, one);
             inverse = simd._mm512_fmadd_pd(inverse, error, inverse);
         }
-        inverse
+        let error = simd._mm512_fnmadd_pd(a, inverse, one);
+        let error = simd._mm512_fmadd_round_pd::<{ _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC }>(error, error, error);
+        simd._mm512_fmadd_pd(inverse, error, inverse)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::processor::{Processor, dispatch};
 
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
     /// Roots, reciprocals and positive parts of a column of whole vectors.
-    struct Each<'a>(&'a [f64], Unit);
+    struct Each<'a>(&'a [f64], Roots);
 
     impl pulp::WithSimd for Each<'_> {
         type Output = [Vec<f64>; 3];
@@ -156,10 +141,8 @@ mod tests {
         }
     }
 
-    const UNITS: [Unit; 3] = [Unit::Slow, Unit::Quotients, Unit::Fast];
-
-    fn of(column: &[f64], unit: Unit) -> [Vec<f64>; 3] {
-        pulp::Arch::new().dispatch(Each(column, unit))
+    fn of(column: &[f64], processor: Processor) -> [Vec<f64>; 3] {
+        processor.run(|| dispatch(Each(column, processor.roots())))
     }
 
     /// Odd numbers M < 2⁵⁴ whose square is c below a number of 53 bits times a power of two: M/2 is the middle of two doubles
@@ -188,6 +171,25 @@ mod tests {
         found
     }
 
+    /// Numbers of 53 bits whose reciprocals lie nearest to the middle m of two: a m = 2¹⁰⁶ ± 1, from the factors of both.
+    fn reciprocals_near_a_middle() -> Vec<f64> {
+        let below = [3u128, 107, 6361, 69_431, 20_394_401, 28_059_810_762_433];
+        let above = [5u128, 15_358_129, 586_477_649, 1_801_439_824_104_653];
+        assert_eq!(below.iter().product::<u128>(), (1 << 106) - 1);
+        assert_eq!(above.iter().product::<u128>(), (1 << 106) + 1);
+        let mut found = Vec::new();
+        for factors in [&below[..], &above[..]] {
+            for chosen in 0u32..1 << factors.len() {
+                let of = |(place, &factor): (usize, &u128)| if chosen >> place & 1 == 1 { factor } else { 1 };
+                let a: u128 = factors.iter().enumerate().map(of).product();
+                if (1 << 52..1 << 53).contains(&a) {
+                    found.push(a as f64);
+                }
+            }
+        }
+        found
+    }
+
     #[test]
     fn roots_and_reciprocals_have_the_bits_of_the_instructions() {
         let mut random = Pcg64::seed_from_u64(1);
@@ -210,17 +212,15 @@ mod tests {
         let hard: Vec<f64> = (-64..64).flat_map(|k| nearest_to_a_middle(8 * k + 1)).collect();
         assert!(hard.len() > 100, "{} hard cases", hard.len());
         column.extend(hard);
+        let hard = reciprocals_near_a_middle();
+        assert!(hard.contains(&9_007_199_254_740_991.0) && hard.len() > 1, "{hard:?}");
+        column.extend(hard);
         column.resize(column.len().next_multiple_of(8), 1.0);
-        for unit in UNITS {
-            let [roots, reciprocals, _] = of(&column, unit);
+        for processor in Processor::all() {
+            let [roots, reciprocals, _] = of(&column, processor);
             for ((a, root), reciprocal) in column.iter().zip(roots).zip(reciprocals) {
-                assert_eq!(root.to_bits(), a.sqrt().to_bits(), "root of {a:e}, {unit:?}");
-                let last = a.to_bits() & ((1 << 52) - 1) == (1 << 52) - 1 && unit == Unit::Slow;
-                let lower = (1.0 / a).to_bits() - 1;
-                assert!(
-                    reciprocal == 1.0 / a || last && reciprocal.to_bits() == lower,
-                    "reciprocal of {a:e}, {unit:?}"
-                );
+                assert_eq!(root.to_bits(), a.sqrt().to_bits(), "root of {a:e}, {processor:?}");
+                assert_eq!(reciprocal.to_bits(), (1.0 / a).to_bits(), "reciprocal of {a:e}, {processor:?}");
             }
         }
     }
@@ -228,18 +228,20 @@ mod tests {
     #[test]
     fn nothing_and_no_number_are_kept() {
         let column = [0.0, 1.0, f64::NAN, 4.0, 0.0, 0.25, f64::MIN_POSITIVE, 9.0];
-        for unit in UNITS {
-            let [roots, reciprocals, parts] = of(&column, unit);
+        for processor in Processor::all() {
+            let [roots, reciprocals, parts] = of(&column, processor);
             assert_eq!([roots[0], roots[1], roots[3], roots[4], roots[5], roots[7]], [0.0, 1.0, 2.0, 0.0, 0.5, 3.0]);
             assert!(roots[2].is_nan() && reciprocals[2].is_nan() && parts[2].is_nan());
             let smallest = f64::MIN_POSITIVE.sqrt();
             assert!((roots[6] - smallest).abs() <= f64::EPSILON * smallest);
         }
         let signs = [-1.0, -0.0, 0.0, 2.0, f64::NAN, f64::NEG_INFINITY, f64::INFINITY, -1e-300];
-        let [_, _, parts] = of(&signs, Unit::here());
-        assert_eq!([parts[0], parts[1], parts[2], parts[3]], [0.0, 0.0, 0.0, 2.0]);
-        assert!(parts[4].is_nan());
-        assert_eq!([parts[5], parts[6], parts[7]], [0.0, f64::INFINITY, 0.0]);
+        for processor in Processor::all() {
+            let [_, _, parts] = of(&signs, processor);
+            assert_eq!([parts[0], parts[1], parts[2], parts[3]], [0.0, 0.0, 0.0, 2.0]);
+            assert!(parts[4].is_nan());
+            assert_eq!([parts[5], parts[6], parts[7]], [0.0, f64::INFINITY, 0.0]);
+        }
     }
 
     /// Positive parts of sixteen numbers.
@@ -258,11 +260,13 @@ mod tests {
     fn positive_parts_in_single_precision_are_those_of_one_number_after_the_other() {
         let mut column = [1.5; 16];
         column[..8].copy_from_slice(&[-1.0, -0.0, 0.0, 2.0, f32::NAN, f32::NEG_INFINITY, f32::INFINITY, -1e-40]);
-        let parts = pulp::Arch::new().dispatch(InSingle(column));
-        assert_eq!([parts[0], parts[1], parts[2], parts[3]], [0.0, 0.0, 0.0, 2.0]);
-        assert!(parts[4].is_nan());
-        assert_eq!([parts[5], parts[6], parts[7], parts[8]], [0.0, f32::INFINITY, 0.0, 1.5]);
         let alone = pulp::WithSimd::with_simd(InSingle(column), pulp::Scalar::new());
-        assert_eq!(parts.map(f32::to_bits), alone.map(f32::to_bits));
+        for processor in Processor::all() {
+            let parts = processor.run(|| dispatch(InSingle(column)));
+            assert_eq!([parts[0], parts[1], parts[2], parts[3]], [0.0, 0.0, 0.0, 2.0]);
+            assert!(parts[4].is_nan());
+            assert_eq!([parts[5], parts[6], parts[7], parts[8]], [0.0, f32::INFINITY, 0.0, 1.5]);
+            assert_eq!(parts.map(f32::to_bits), alone.map(f32::to_bits), "{processor:?}");
+        }
     }
 }

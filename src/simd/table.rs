@@ -5,16 +5,15 @@ use std::slice::from_mut;
 use pulp::Simd;
 use pulp::bytemuck::cast_slice_mut;
 
+use crate::processor::{Processor, Vectors};
+
 /// Numbers of a table: as many as a vector of 512 bits has.
 pub const LENGTH: usize = 8;
 
 /// Whether this machine looks a vector of numbers up at once: with vectors of 256 bits a table costs more than it saves of memory in a far
 /// cache.
 pub fn is_quick() -> bool {
-    #[cfg(target_arch = "x86_64")]
-    return pulp::x86::V4::try_new().is_some();
-    #[cfg(not(target_arch = "x86_64"))]
-    false
+    Processor::here().vectors() == Vectors::Avx512
 }
 
 /// The entries of a table with these numbers, one a lane; only the last three bits of a number count.
@@ -73,6 +72,7 @@ mod tests {
     use pulp::bytemuck::cast_slice;
 
     use super::*;
+    use crate::processor::dispatch;
 
     /// Every number once and more, looked up a vector at a time.
     struct LookUp;
@@ -97,7 +97,6 @@ mod tests {
 
     #[test]
     fn every_lane_finds_its_own_number() {
-        pulp::Arch::new().dispatch(LookUp);
-        pulp::WithSimd::with_simd(LookUp, pulp::Scalar::new());
+        Processor::all().into_iter().for_each(|processor| processor.run(|| dispatch(LookUp)));
     }
 }

@@ -132,7 +132,7 @@ fn execute_in(
                 note(&|execution| execution.damaged.push(problem.clone()));
                 return Ok(());
             }
-            TaskState::Finished(records, _) => (records, None),
+            TaskState::Finished(records, ..) => (records, None),
             TaskState::Missing => {
                 let start = Instant::now();
                 let records = run_task(task, plan.time_limit);

@@ -1,5 +1,6 @@
 //! [`merge()`]: all records of a folder in the order of the plan, and the statistics of every cell.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -7,6 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::io::write_atomically;
+use crate::processor::Vectors;
 use crate::study::plan::Plan;
 use crate::study::samples::CellSamples;
 use crate::study::settings::{Study, StudyError};
@@ -22,6 +24,9 @@ pub struct Merged {
     pub sample_count: usize,
     /// Those that have a record.
     pub record_count: usize,
+    /// Records by the vector instructions they were computed with. More than one entry: records of different processors, whose digits
+    /// differ in the last places where they went through a factorisation.
+    pub records_by_vectors: BTreeMap<String, usize>,
     /// Files that cannot be used; their samples are missing.
     pub damaged: Vec<Problem>,
     /// Files of no sample of this study.
@@ -73,6 +78,7 @@ pub(super) fn merge_in(store: &Store, study: Study, plan: &Plan) -> Result<Merge
         study,
         sample_count: plan.sample_count(),
         record_count: 0,
+        records_by_vectors: BTreeMap::new(),
         damaged: Vec::new(),
         foreign: store.foreign(&plan.tasks)?,
         cells: Vec::new(),
@@ -83,14 +89,16 @@ pub(super) fn merge_in(store: &Store, study: Study, plan: &Plan) -> Result<Merge
     let path = store.path("records.jsonl");
     write_atomically(&path, |writer| {
         for task in &plan.tasks {
-            let records = match store.state(task) {
+            let (records, vectors) = match store.state(task) {
                 TaskState::Missing => continue,
                 TaskState::Damaged(problem) => {
                     merged.damaged.push(problem);
                     continue;
                 }
-                TaskState::Finished(records, _) => records,
+                TaskState::Finished(records, _, vectors) => (records, vectors),
             };
+            let vectors = vectors.map_or("not recorded", Vectors::name);
+            *merged.records_by_vectors.entry(vectors.into()).or_default() += records.len();
             for record in &records {
                 serde_json::to_writer(&mut *writer, record)?;
                 writer.write_all(b"\n")?;
@@ -159,10 +167,24 @@ fn table(cells: &[CellStatistics]) -> String {
     text
 }
 
+impl Merged {
+    /// What to know of records that were computed with different vector instructions; none if all were with the same.
+    pub fn mixed_vectors(&self) -> Option<String> {
+        if self.records_by_vectors.len() < 2 {
+            return None;
+        }
+        let each: Vec<String> =
+            self.records_by_vectors.iter().map(|(name, count)| format!("{name}: {count}")).collect();
+        Some(format!(
+            "records computed with different vector instructions ({}): numbers that went through a factorisation differ in their \
+             last digits between them",
+            each.join(", ")
+        ))
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use super::*;
     use crate::response::PhaseDecision;
     use crate::study::plan::Task;

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! A task writes one file, whole or not at all, and is never run again while that file is sound. What a task computes depends on
-//! the study alone, so any number of threads, shards and interruptions gives the same merged bytes. A sample that fails is a
-//! record too.
+//! the study and, in the last digits of what goes through a factorisation, on the processor, so any number of threads, shards and
+//! interruptions gives the same merged bytes on processors of one kind. A sample that fails is a record too.
 //!
 //! Start from [`execute()`] and [`merge()`].
 
@@ -39,7 +39,7 @@ use std::path::Path;
 /// The wall time the samples of a task took \[s\], where they are in the folder and sound.
 pub fn measured_seconds(folder: &Path, task: &Task) -> Option<f64> {
     match store::Store::there(folder).state(task) {
-        store::TaskState::Finished(_, seconds) => Some(seconds),
+        store::TaskState::Finished(_, seconds, _) => Some(seconds),
         store::TaskState::Missing | store::TaskState::Damaged(_) => None,
     }
 }

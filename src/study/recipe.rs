@@ -245,7 +245,7 @@ fn inflations(scale: Scale, laws: &[LawChoice]) -> Study {
         // Hookean pressures at about the same packing fractions, by φ(p) of both laws.
         let targets = |values: &[f64]| match law {
             LawChoice::Hookean(_) => {
-                reduced(&values.iter().map(|p| 1.6e7 * (p / 1e8).powf(2.0 / 3.0)).collect::<Vec<_>>())
+                reduced(&values.iter().map(|p| 1.6e7 * libm::pow(p / 1e8, 2.0 / 3.0)).collect::<Vec<_>>())
             }
             _ => reduced(values),
         };

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! study.json             the study, for whoever merges
-//! samples/IDENTITY.jsonl  {"jamscope_version", "identity", "checksum"} / the records / the wall time, a line each
+//! samples/IDENTITY.jsonl  {"jamscope_version", "vectors", "identity", "checksum"} / the records / the wall time, a line each
 //! ```
 
 use std::fs::File;
@@ -13,6 +13,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::io::{WriteError, remove_unfinished, write_atomically};
+use crate::processor::{Processor, Vectors};
 use crate::study::lock::{self, PATIENCE, PAUSE, StudyLock};
 use crate::study::plan::{Shard, Task, hash};
 use crate::study::record::Record;
@@ -78,8 +79,8 @@ pub struct Problem {
 pub(super) enum TaskState {
     /// Nothing.
     Missing,
-    /// All its records, and the wall time they took \[s\].
-    Finished(Vec<Record>, f64),
+    /// All its records, the wall time they took \[s\], and the vectors they were computed with, if the file says so.
+    Finished(Vec<Record>, f64, Option<Vectors>),
     /// A file that cannot be used.
     Damaged(Problem),
 }
@@ -89,6 +90,9 @@ pub(super) enum TaskState {
 #[serde(deny_unknown_fields)]
 struct Header {
     jamscope_version: String,
+    /// Absent in files written before it was.
+    #[serde(default)]
+    vectors: Option<Vectors>,
     identity: String,
     checksum: String,
 }
@@ -245,8 +249,10 @@ impl Store {
             Err(error) => return TaskState::Damaged(Problem { path, reason: error.to_string() }),
         };
         match records(&text, &task.identity()) {
-            Ok((records, seconds)) if records.len() == task.scene_count() => TaskState::Finished(records, seconds),
-            Ok((records, _)) => {
+            Ok((records, seconds, vectors)) if records.len() == task.scene_count() => {
+                TaskState::Finished(records, seconds, vectors)
+            }
+            Ok((records, ..)) => {
                 let reason = format!("{} records, not {}", records.len(), task.scene_count());
                 TaskState::Damaged(Problem { path, reason })
             }
@@ -262,6 +268,7 @@ impl Store {
         let body = serde_json::to_string(records).map_err(unreadable)?;
         let header = Header {
             jamscope_version: env!("CARGO_PKG_VERSION").into(),
+            vectors: Some(Processor::own().vectors()),
             identity: task.identity(),
             checksum: hash(&[&body]),
         };
@@ -298,8 +305,8 @@ impl Store {
     }
 }
 
-/// The records of a file, and what they took.
-fn records(text: &str, identity: &str) -> Result<(Vec<Record>, f64), String> {
+/// The records of a file, what they took, and the vectors they were computed with.
+fn records(text: &str, identity: &str) -> Result<(Vec<Record>, f64, Option<Vectors>), String> {
     let mut lines = text.split('\n');
     let (Some(header), Some(body), Some(timing), Some(""), None) =
         (lines.next(), lines.next(), lines.next(), lines.next(), lines.next())
@@ -318,5 +325,5 @@ fn records(text: &str, identity: &str) -> Result<(Vec<Record>, f64), String> {
     }
     let records = serde_json::from_str(body).map_err(|error| format!("line 2: {error}"))?;
     let timing: Timing = serde_json::from_str(timing).map_err(|error| format!("line 3: {error}"))?;
-    Ok((records, timing.seconds))
+    Ok((records, timing.seconds, header.vectors))
 }

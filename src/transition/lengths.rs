@@ -86,12 +86,14 @@ impl Lengths {
 pub(super) fn matching(lengths: &[Lengths], samples: &[&CellSamples]) -> Option<f64> {
     let radii = samples.first()?.numbers.get("outer_radius")?;
     let longest = NumberStatistics::of(radii).mean / super::pressure::FIRST_ZERO;
-    let points: Vec<[f64; 2]> =
-        lengths.iter().filter_map(|it| Some([it.point.pressure.ln(), (it.isostatic? / longest).ln()])).collect();
+    let points: Vec<[f64; 2]> = lengths
+        .iter()
+        .filter_map(|it| Some([libm::log(it.point.pressure), libm::log(it.isostatic? / longest)]))
+        .collect();
     points.windows(2).find_map(|pair| {
         let [low, high] = [pair[0], pair[1]];
         let share = low[1] / (low[1] - high[1]);
-        (low[1] > 0.0 && high[1] <= 0.0).then(|| ((1.0 - share) * low[0] + share * high[0]).exp())
+        (low[1] > 0.0 && high[1] <= 0.0).then(|| libm::exp((1.0 - share) * low[0] + share * high[0]))
     })
 }
 

@@ -160,7 +160,7 @@ pub(super) fn comparisons(
             }
         }
         if let Some(matching) = one.matching {
-            let reduced = matching * one.mobile_count().powf(1.5);
+            let reduced = matching * libm::pow(one.mobile_count(), 1.5);
             all.push(Comparison::interval("p̂ where ℓ_iso is 1/κ₁", &of, reduced, None, 1e8));
         }
         if let Some(fit) = one.divergence.at_transition {

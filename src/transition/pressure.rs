@@ -128,7 +128,10 @@ pub(super) fn estimates(points: &[SeriesPoint], samples: &[&CellSamples]) -> Vec
             .zip(samples)
             .filter_map(|(point, samples)| {
                 let values = samples.numbers.get(name)?;
-                Some((point.reduced_pressure.ln(), values.iter().map(|&value| is_plastic(samples, value)).collect()))
+                Some((
+                    libm::log(point.reduced_pressure),
+                    values.iter().map(|&value| is_plastic(samples, value)).collect(),
+                ))
             })
             .collect();
         (groups.len() > 1).then(|| MethodEstimate { method, pressure: by_halves(&groups) })
@@ -194,7 +197,7 @@ fn by_halves(groups: &[(f64, Vec<bool>)]) -> TransitionPressure {
             count: hits.len() as f64,
         })
         .collect();
-    let (lowest, highest) = (counts[0].x.exp(), counts[counts.len() - 1].x.exp());
+    let (lowest, highest) = (libm::exp(counts[0].x), libm::exp(counts[counts.len() - 1].x));
     let majority = |group: &HitCount| 2.0 * group.hits >= group.count;
     // A crossing beyond the cells that were measured is a guess: it is told as a bound.
     let bound = match (majority(&counts[0]), majority(&counts[counts.len() - 1])) {
@@ -203,7 +206,7 @@ fn by_halves(groups: &[(f64, Vec<bool>)]) -> TransitionPressure {
         _ => TransitionPressure::Unordered,
     };
     match half_crossing(&counts, Trend::Falling) {
-        Ok(HalfCrossing::Separated { between, .. }) => TransitionPressure::Between(between.map(f64::exp)),
+        Ok(HalfCrossing::Separated { between, .. }) => TransitionPressure::Between(between.map(libm::exp)),
         Ok(HalfCrossing::Found { extrapolated: false, .. }) => {
             let found = half_crossing_interval(groups, Trend::Falling, RESAMPLINGS);
             found.ok().flatten().map_or(bound, |found| TransitionPressure::Found(exponential(found)))
@@ -239,7 +242,7 @@ fn crossing(at: &[f64], values: &[f64], level: f64) -> Option<f64> {
     let below = values.iter().rposition(|&value| value < level)?;
     let (low, high) = (values[below], *values.get(below + 1)?);
     let share = (level - low) / (high - low);
-    Some((1.0 - share) * at[below].ln() + share * at[below + 1].ln())
+    Some((1.0 - share) * libm::log(at[below]) + share * libm::log(at[below + 1]))
 }
 
 /// The nearest values that nowhere fall, by weighted least squares: neighbours that do are pooled.
@@ -264,11 +267,11 @@ fn ascending(values: &[f64], weights: &[f64]) -> Vec<f64> {
 
 /// The interval of e^x; the standard error to first order.
 fn exponential(of: BootstrapInterval) -> BootstrapInterval {
-    let best = of.best.exp();
+    let best = libm::exp(of.best);
     BootstrapInterval {
         best,
         standard_error: of.standard_error.map(|error| best * error),
-        interval: of.interval.map(|ends| ends.map(f64::exp)),
+        interval: of.interval.map(|ends| ends.map(libm::exp)),
         ..of
     }
 }

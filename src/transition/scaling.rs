@@ -113,7 +113,7 @@ impl Scaling {
                     let values = merged.samples[point.cell].numbers.get(observable)?;
                     (values.len() >= LEAST_SAMPLES).then_some((point.pressure, values.as_slice()))
                 });
-                ([one.mobile_count().ln(), -one.cell.increase.ln()], values.collect())
+                ([libm::log(one.mobile_count()), -libm::log(one.cell.increase)], values.collect())
             })
             .filter(|(_, values): &(_, Values<'_>)| values.len() > 1)
             .collect();
@@ -202,7 +202,7 @@ impl PressureLaw {
                 let TransitionPressure::Found(found) = estimate.pressure else { continue };
                 let Some(error) = found.standard_error.filter(|error| *error > 0.0) else { continue };
                 // N^β p = p̂ N^(β/2).
-                let scale = mobile.powf(0.5 * beta(&law));
+                let scale = libm::pow(mobile, 0.5 * beta(&law));
                 let point = MeasuredPoint {
                     x: mobile * mobile * one.cell.increase,
                     y: scale * found.best,

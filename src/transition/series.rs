@@ -147,8 +147,8 @@ impl AtPressure {
             0 => return None,
             above => above - 1,
         };
-        let (low, high) = (points[below].reduced_pressure.ln(), points[above].reduced_pressure.ln());
-        let share = if above == below { 0.0 } else { (reduced_pressure.ln() - low) / (high - low) };
+        let (low, high) = (libm::log(points[below].reduced_pressure), libm::log(points[above].reduced_pressure));
+        let share = if above == below { 0.0 } else { (libm::log(reduced_pressure) - low) / (high - low) };
         let between = |values: [f64; 2]| (1.0 - share) * values[0] + share * values[1];
         let pair = [samples[below], samples[above]];
         let of_number = |name: &str| {

@@ -13,6 +13,7 @@ mod energy;
 #[cfg(feature = "linear")]
 mod implicit;
 mod inflation;
+mod kernels;
 mod lammps;
 #[cfg(feature = "linear")]
 mod lattice;

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use jamscope::contact::{Hertzian, Hookean, LawChoice};
 use jamscope::inflation::Boundary;
+use jamscope::processor::Processor;
 use jamscope::relax::{Fire, RelaxerChoice};
 use jamscope::run::{SampleOutcome, run};
 use jamscope::scene::{Observables, Sample, Scene, Source};
@@ -210,6 +211,38 @@ fn files_that_are_not_what_they_should_be_are_named_and_left_alone() {
     assert_eq!(whole(&study(), folder.path()).run_count, 6);
     assert_eq!(text(&files[2]).lines().nth(1), swapped.lines().nth(1));
     assert!(merged(folder.path()) == reference);
+}
+
+#[test]
+fn records_of_processors_with_other_vectors_are_told_apart() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    whole(&study(), folder.path());
+    let own = Processor::own().vectors().name();
+    let alike = merge(folder.path()).expect("a study is there");
+    assert_eq!(alike.records_by_vectors, BTreeMap::from([(own.to_string(), alike.record_count)]));
+    assert_eq!(alike.mixed_vectors(), None);
+    // One file as another processor would write it, one as before files said so.
+    let files = samples(folder.path());
+    let named = format!("\"vectors\":\"{own}\"");
+    let change = |file: &Path, with: &str| {
+        let text = std::fs::read_to_string(file).expect("text");
+        assert!(text.lines().next().is_some_and(|line| line.contains(&named)), "the first line names them");
+        std::fs::write(file, text.replacen(&named, with, 1)).expect("written");
+    };
+    change(&files[0], "\"vectors\":\"neon\"");
+    change(&files[1], "\"vectors\":null");
+    let mixed = merge(folder.path()).expect("a study is there");
+    assert_eq!(mixed.record_count, alike.record_count);
+    assert_eq!((mixed.records_by_vectors["neon"], mixed.records_by_vectors["not recorded"]), (2, 2));
+    let words = mixed.mixed_vectors().expect("three kinds");
+    assert!(words.contains("neon: 2") && words.contains("factorisation"), "{words}");
+    let summary = String::from_utf8(merged(folder.path()).remove("summary.json").expect("written")).expect("text");
+    assert!(summary.contains("\"neon\": 2"), "the summary counts them");
+    // What no processor has is damage, with its line.
+    let text = std::fs::read_to_string(&files[2]).expect("text");
+    std::fs::write(&files[2], text.replacen(&named, "\"vectors\":\"avx3\"", 1)).expect("written");
+    let damaged = merge(folder.path()).expect("a study is there").damaged;
+    assert!(damaged.len() == 1 && damaged[0].reason.starts_with("line 1: unknown variant `avx3`"), "{damaged:?}");
 }
 
 #[test]

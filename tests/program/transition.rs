@@ -50,6 +50,7 @@ fn merged(samples: Vec<CellSamples>) -> Merged {
         study: Study::default(),
         sample_count: samples.len() * SAMPLES,
         record_count: samples.len() * SAMPLES,
+        records_by_vectors: BTreeMap::from([("avx2".into(), samples.len() * SAMPLES)]),
         damaged: Vec::new(),
         foreign: Vec::new(),
         cells: samples.iter().map(CellSamples::statistics).collect(),

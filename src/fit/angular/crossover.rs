@@ -187,7 +187,7 @@ pub(in crate::fit) struct Located {
 
 /// Where −2 ln L is least from f† = 0 to infinity, and within which f† it rises by no more than `rise`; θ† = `factor`/f†.
 pub(in crate::fit) fn locate(highest: usize, rise: f64, factor: f64, deviance: impl Fn(Crossover) -> f64) -> Located {
-    let octaves = (highest as f64).log2() + 2.0 * OCTAVES_BEYOND;
+    let octaves = libm::log2(highest as f64) + 2.0 * OCTAVES_BEYOND;
     let steps = (octaves * STEPS_PER_OCTAVE).ceil() as usize;
     let grid: Vec<f64> = (0..=steps).map(|i| i as f64 / STEPS_PER_OCTAVE - OCTAVES_BEYOND).collect();
     let inside = minimum(&grid, rise, |octave| deviance(Crossover::Octave(octave)));
@@ -200,7 +200,7 @@ pub(in crate::fit) fn locate(highest: usize, rise: f64, factor: f64, deviance: i
     } else {
         inside
     };
-    let ends = [interval.lower, interval.upper].map(|end| end.map(f64::exp2));
+    let ends = [interval.lower, interval.upper].map(|end| end.map(libm::exp2));
     // A sixteenth of f = 1 is as good as 0, sixteen times the highest f as infinity.
     let down_to_zero = scale_free_rise <= rise || ends[0].is_none();
     let up_to_infinity = white_rise <= rise || ends[1].is_none();
@@ -208,7 +208,7 @@ pub(in crate::fit) fn locate(highest: usize, rise: f64, factor: f64, deviance: i
         (true, false, [_, Some(largest)]) => CrossoverOutcome::ScaleFree { largest, smallest_angle: factor / largest },
         (false, true, [Some(smallest), _]) => CrossoverOutcome::White { smallest, largest_angle: factor / smallest },
         (false, false, [Some(lower), Some(upper)]) => {
-            let best = interval.at.exp2();
+            let best = libm::exp2(interval.at);
             CrossoverOutcome::Found {
                 crossover: Interval { best, lower: Some(lower), upper: Some(upper) },
                 angle: Interval { best: factor / best, lower: Some(factor / upper), upper: Some(factor / lower) },

@@ -155,9 +155,9 @@ impl Ring {
         }
         // The scale at which the noise is as strong as the weakest power expected, and that of the strongest.
         let ratios = || expected.iter().zip(white).map(|(e, w)| e / w);
-        let low = (-ratios().map(|ratio| -ratio).fold(f64::NEG_INFINITY, larger)).ln() - NOISE_DECADES;
-        let high = ratios().fold(0.0, larger).ln() + NOISE_DECADES;
-        let found = at(golden(low, high, 1e-4, |log| at(log.exp()).deviance).exp());
+        let low = libm::log(-ratios().map(|ratio| -ratio).fold(f64::NEG_INFINITY, larger)) - NOISE_DECADES;
+        let high = libm::log(ratios().fold(0.0, larger)) + NOISE_DECADES;
+        let found = at(libm::exp(golden(low, high, 1e-4, |log| at(libm::exp(log)).deviance)));
         if found.deviance < without.deviance { found } else { without }
     }
 

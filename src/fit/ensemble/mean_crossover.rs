@@ -114,7 +114,7 @@ pub fn crossover_of_mean(
     let amplitude = best(crossover).map_or(f64::NAN, |best| best.amplitude);
     let crossover = match crossover {
         Crossover::Zero => 0.0,
-        Crossover::Octave(octave) => octave.exp2(),
+        Crossover::Octave(octave) => libm::exp2(octave),
         Crossover::Infinite => f64::INFINITY,
     };
     Ok(MeanCrossover::Fitted { outcome, crossover, amplitude, scale_free_rise, white_rise })

@@ -39,7 +39,7 @@ pub(super) fn time_steps<L: PairLaw, C: DampingLaw>(
         let (state, seconds) = place(division)?;
         let ways = (0..state.len()).filter(counts).map(|disk| norm(displacement(&reference, &state, disk)));
         let error = ways.fold(0.0, larger);
-        let order = last.map(|last| (last / error).log2()).filter(|order| order.is_finite());
+        let order = last.map(|last| libm::log2(last / error)).filter(|order| order.is_finite());
         last = Some(error);
         let share = LONGEST_STEP / division as f64;
         let values = vec![Some(longest / division as f64), Some(error), order, Some(seconds)];

@@ -72,9 +72,9 @@ impl Frame {
             std::array::from_fn(|i| column[i] - self.columns[0][i] * first - self.columns[1][i] * second)
         });
         let [first, second] = [0, 1].map(|i| product(&rest[i], &rest[i], weight).re);
-        let across = product(&rest[0], &rest[1], weight).norm();
+        let across = modulus(product(&rest[0], &rest[1], weight));
         let largest = 0.5 * (first + second) + libm::hypot(0.5 * (first - second), across);
-        volume.norm() / largest.sqrt()
+        modulus(volume) / largest.sqrt()
     }
 
     /// The solution with these coefficients.
@@ -111,6 +111,11 @@ impl Triangle {
         let second = second / self.second;
         [(first - self.across * second) / self.first, second]
     }
+}
+
+/// |a|.
+fn modulus(a: Complex<f64>) -> f64 {
+    libm::hypot(a.re, a.im)
 }
 
 /// `Σ conj(a_i) b_i` over U, v, P, W, the last two with `weight`; d is not a component of its own.

@@ -224,7 +224,7 @@ fn node_radii(annulus: Annulus, system: &System, mode: u32) -> Result<Vec<f64>, 
     }
     // Nodes are then at least 2¹⁰ roundings of R apart.
     let System { even, odd, .. } = *system;
-    if system.wavenumber() * outer > f64::exp2(42.0) {
+    if system.wavenumber() * outer > libm::exp2(42.0) {
         return Err(AngularModeError::ScreeningTooLarge { even, odd, outer_radius: outer });
     }
     let mut radii = vec![outer];

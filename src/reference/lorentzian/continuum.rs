@@ -93,7 +93,7 @@ impl ContinuumLorentzian {
         if threshold <= 0.0 {
             return Ok(Crossing::Never { lowest: 0.0 });
         }
-        Ok(only_crossing(&curve, threshold, (0..1000).map(|n| f64::exp2(f64::from(n)))))
+        Ok(only_crossing(&curve, threshold, (0..1000).map(|n| libm::exp2(f64::from(n)))))
     }
 
     fn evaluate<const SLOPE: bool>(&self, reduced_angle: f64) -> (f64, f64) {
@@ -125,7 +125,7 @@ fn spectrum(w: Complex, exponent: f64) -> Complex {
 /// contour is used for, or where S has (2^(−57) left of ∫ f S df).
 pub(super) fn last_panel(exponent: f64, scale: f64) -> f64 {
     let exponential = DECAY_LIMIT / (libm::sin(ray_angle(exponent)) * CUSP_BELOW);
-    let algebraic = if exponent > 2.0 { f64::exp2(57.0 / (exponent - 2.0)) } else { f64::INFINITY };
+    let algebraic = if exponent > 2.0 { libm::exp2(57.0 / (exponent - 2.0)) } else { f64::INFINITY };
     scale * exponential.min(algebraic).max(8.0)
 }
 

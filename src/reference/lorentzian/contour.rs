@@ -89,7 +89,7 @@ fn node_count(exponent: f64) -> usize {
     let kernel = 1.0 / -libm::expm1(-PI * libm::tan(ray_angle(exponent) - beta));
     // Two exponentials.
     let bound = 64.0 / 15.0 * 2.0 * spectrum * kernel / (1.0 - 1.0 / (rho * rho));
-    let count = 1.0 + libm::log(bound * f64::exp2(54.0)) / (2.0 * libm::log(rho));
+    let count = 1.0 + libm::log(bound * libm::exp2(54.0)) / (2.0 * libm::log(rho));
     (count.ceil() as usize).next_multiple_of(LANES)
 }
 
@@ -228,7 +228,7 @@ impl Contour {
     /// The integral at 0 < θ ≤ π, at most [`largest_angle`](Self::largest_angle), and its derivative, 0 unless `SLOPE`.
     pub(super) fn evaluate<const SLOPE: bool>(&self, angle: f64) -> (f64, f64) {
         let doublings = libm::ilogb(self.largest_angle() / angle).clamp(0, self.moments.len() as i32 - 1) as usize;
-        let top = self.first * f64::exp2(doublings as f64);
+        let top = self.first * libm::exp2(doublings as f64);
         let step = angle * top;
         let moments = &self.moments[doublings];
         let (mut direct, mut direct_slope) = polynomial::<SLOPE>(&moments.direct, step);
@@ -433,7 +433,7 @@ mod tests {
                     from *= 2.0;
                 }
                 let total = Lorentzian::of(crossover, exponent).expect("valid").total();
-                assert!(bound < f64::exp2(-59.0) * total, "s = {exponent}, f† = {crossover}: {:e}", bound / total);
+                assert!(bound < libm::exp2(-59.0) * total, "s = {exponent}, f† = {crossover}: {:e}", bound / total);
             }
         }
     }

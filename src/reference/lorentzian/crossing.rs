@@ -91,7 +91,7 @@ fn root(curve: &impl Fn(f64) -> (f64, f64), threshold: f64, low: f64, high: f64)
         // The curve may rise as any power of the angle: look for the bracket among powers of two.
         let mut halvings = 1.0;
         loop {
-            low = high * f64::exp2(-halvings);
+            low = high * libm::exp2(-halvings);
             if low == 0.0 {
                 return 0.0;
             }

@@ -14,6 +14,6 @@ const SAFETY: f64 = 0.5;
 
 /// Length of the next step over that of one with this share of the error allowed.
 pub(super) fn growth(share: f64, largest: f64) -> f64 {
-    let growth = (SAFETY / share).cbrt().clamp(SMALLEST_GROWTH, largest);
+    let growth = libm::cbrt(SAFETY / share).clamp(SMALLEST_GROWTH, largest);
     if growth.is_nan() { SMALLEST_GROWTH } else { growth }
 }

@@ -76,7 +76,7 @@ pub(super) struct Pace {
 
 impl Pace {
     pub(super) fn new<const D: usize, L: PairLaw, C: DampingLaw>(motion: &mut ImplicitMotion<D, L, C>) -> Self {
-        let worth = WORTH * (motion.assembly.mobile_count() as f64).powf(0.125);
+        let worth = WORTH * libm::pow(motion.assembly.mobile_count() as f64, 0.125);
         let explicit_step = if motion.has_masses() { SHARE * motion.stable_step() } else { 0.0 };
         let stiffness = motion.stiffness();
         let mut pace = Pace {

@@ -79,7 +79,7 @@ impl Scaling {
     /// For numbers up to `largest` in size: none from 0.01 to 1000, otherwise a multiple of three.
     fn of(largest: f64) -> Self {
         let plain = largest == 0.0 || (0.01..1e3).contains(&largest);
-        Scaling { exponent: if plain { 0 } else { 3 * (largest.log10() / 3.0).floor() as i32 } }
+        Scaling { exponent: if plain { 0 } else { 3 * (libm::log10(largest) / 3.0).floor() as i32 } }
     }
 
     /// A number in the units of the axis.
@@ -184,7 +184,7 @@ impl Chart {
 /// A tick label with the decimals its axis needs.
 fn tick(value: f64, span: f64) -> String {
     // About seven ticks, at 1, 2 or 5 times a power of ten.
-    let decimals = (-(span / 8.0).log10().floor()).clamp(0.0, 12.0) as usize;
+    let decimals = (-libm::log10(span / 8.0).floor()).clamp(0.0, 12.0) as usize;
     let text = format!("{value:.decimals$}");
     let zero = text.chars().all(|letter| !('1'..='9').contains(&letter));
     let text = if zero { text.replace('-', "") } else { text };

@@ -48,26 +48,26 @@ impl LogAxis {
         if high == 0.0 || !high.is_finite() {
             return None;
         }
-        let last = high.log10().ceil() as i32;
-        let first = (low.log10().floor() as i32).min(last - 1).max(last - MOST_DECADES);
+        let last = libm::log10(high).ceil() as i32;
+        let first = (libm::log10(low).floor() as i32).min(last - 1).max(last - MOST_DECADES);
         Some(LogAxis { range: [f64::from(first), f64::from(last)], ends })
     }
 
     /// From one value to another, both above zero.
     pub(crate) fn between(low: f64, high: f64, ends: [f64; 2]) -> Self {
-        LogAxis { range: [low.log10(), high.log10()], ends }
+        LogAxis { range: [libm::log10(low), libm::log10(high)], ends }
     }
 
     /// Where a value stands \[px\].
     pub(crate) fn place(&self, value: f64) -> f64 {
         // What is not positive stands at the lower end.
-        let share = (value.max(0.0).log10() - self.range[0]) / (self.range[1] - self.range[0]);
+        let share = (libm::log10(value.max(0.0)) - self.range[0]) / (self.range[1] - self.range[0]);
         self.ends[0] + share.clamp(0.0, 1.0) * (self.ends[1] - self.ends[0])
     }
 
     /// Whether a value stands on the axis.
     pub(crate) fn holds(&self, value: f64) -> bool {
-        value > 0.0 && (self.range[0]..=self.range[1]).contains(&value.log10())
+        value > 0.0 && (self.range[0]..=self.range[1]).contains(&libm::log10(value))
     }
 
     /// Labels, and where they stand.
@@ -81,7 +81,7 @@ impl LogAxis {
             for &step in steps {
                 let value = f64::from(step) * 10f64.powi(power);
                 // Rounding of the logarithm must not cost an end its label.
-                let inside = (self.range[0] - 1e-9..=self.range[1] + 1e-9).contains(&value.log10());
+                let inside = (self.range[0] - 1e-9..=self.range[1] + 1e-9).contains(&libm::log10(value));
                 let plain = steps.len() > 1 && (0..4).contains(&power);
                 let text = match step {
                     _ if plain => format!("{value}"),
@@ -136,10 +136,10 @@ impl LinearAxis {
     /// Labels at multiples of 1, 2 or 5 times a power of ten, and where they stand.
     fn labels(&self) -> Vec<(String, f64)> {
         let span = self.range[1] - self.range[0];
-        let power = 10f64.powi((span / LINEAR_LABELS).log10().floor() as i32);
+        let power = 10f64.powi(libm::log10(span / LINEAR_LABELS).floor() as i32);
         let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|it| it * power).find(|step| span / step <= LINEAR_LABELS);
         let step = step.unwrap_or(10.0 * power);
-        let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
+        let decimals = (-(libm::log10(step) + 1e-9).floor()).clamp(0.0, 12.0) as usize;
         let first = (self.range[0] / step - 1e-9).ceil() as i64;
         let last = (self.range[1] / step + 1e-9).floor() as i64;
         let label = |multiple: i64| {

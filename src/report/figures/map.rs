@@ -118,7 +118,7 @@ pub(crate) fn level(value: f64, full: f64, levels: i32) -> i32 {
 
 /// 1, 2 or 5 times a power of ten, at most `length`.
 fn round_below(length: f64) -> f64 {
-    let power = 10f64.powf(length.log10().floor());
+    let power = libm::pow(10.0, libm::log10(length).floor());
     [5.0, 2.0, 1.0].into_iter().map(|digit| digit * power).find(|&round| round <= length).unwrap_or(power)
 }
 

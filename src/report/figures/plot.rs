@@ -57,7 +57,7 @@ impl PlotAxis {
                 }
                 if self.logarithmic {
                     let low = found[0].max(MOST_DECADES * found[1]);
-                    let margin = (found[1] / low).powf(MARGIN).max(1.1);
+                    let margin = libm::pow(found[1] / low, MARGIN).max(1.1);
                     [low / margin, found[1] * margin]
                 } else {
                     // One value alone still has an axis.

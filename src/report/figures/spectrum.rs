@@ -53,7 +53,7 @@ pub fn spectrum_figure(name: &str, spectra: &[SpectrumPoints], curves: &[Spectru
         let dashes = if index == 0 { "" } else { " stroke-dasharray=\"6 4\"" };
         let colour = hexadecimal(SEQUENCE[(spectra.len() + index) % SEQUENCE.len()]);
         let [from, to] = curve.window;
-        let at = |i: usize| from * (to / from).powf(i as f64 / CURVE_POINTS as f64);
+        let at = |i: usize| from * libm::pow(to / from, i as f64 / CURVE_POINTS as f64);
         let points: Vec<(f64, f64)> = (0..=CURVE_POINTS).map(|i| (at(i), (curve.of)(at(i)))).collect();
         for run in points.split(|&(f, value)| !(x_axis.holds(f) && y_axis.holds(value))).filter(|run| run.len() > 1) {
             let place = |&(f, value): &(f64, f64)| format!("{:.1},{:.1}", x_axis.place(f), y_axis.place(value));

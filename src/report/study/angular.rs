@@ -64,7 +64,8 @@ fn normalised(curve: &MeanCurve) -> Vec<PlotPoint> {
 }
 
 fn power_law() -> Curve {
-    let points = (0..=40).map(|step| 10f64.powf(f64::from(step) / 20.0)).map(|f| (f, f.powf(-USUAL_EXPONENT)));
+    let points =
+        (0..=40).map(|step| libm::pow(10.0, f64::from(step) / 20.0)).map(|f| (f, libm::pow(f, -USUAL_EXPONENT)));
     dashed("f^−1.5", points)
 }
 
@@ -78,7 +79,7 @@ fn spectrum(subject: &Subject<'_>, series: &Series) -> Option<Figure> {
         curves.push(Curve { label: reduced(point.reduced_pressure), points, look: Look::Points, colour });
         let found = series.spectra.iter().find(|it| it.point.cell == point.cell).and_then(|it| it.crossover?.found());
         if let Some(lorentzian) = found.and_then(|found| Lorentzian::new(found, USUAL_EXPONENT).ok()) {
-            let points = (0..=60).map(|step| 24f64.powf(f64::from(step) / 60.0));
+            let points = (0..=60).map(|step| libm::pow(24.0, f64::from(step) / 60.0));
             let points = bare(points.map(|f| (f, lorentzian.spectrum(f) / lorentzian.spectrum(1.0))));
             fits.push(Curve { label: String::new(), points, look: Look::Line, colour });
         }

@@ -18,7 +18,8 @@ pub(super) fn matching(subject: &Subject<'_>) -> Vec<Figure> {
         });
         let isostatic = series.lengths.iter().filter_map(|it| Some((it.point.pressure, it.isostatic?)));
         let isostatic = bare(isostatic);
-        let published = series.points.iter().map(|point| (point.pressure, 75.0 * point.pressure.powf(-1.0 / 3.0)));
+        let published =
+            series.points.iter().map(|point| (point.pressure, 75.0 * libm::pow(point.pressure, -1.0 / 3.0)));
         let radius = series.points.iter().find_map(|point| subject.number(point.cell, "outer_radius"))?.mean;
         let some = !isostatic.is_empty();
         let curves = vec![
@@ -105,7 +106,8 @@ fn penetration(all: &[&JammingSeries], threshold: f64, from_jamming: bool) -> Op
                 series.cell.disk_count,
                 with_error(fit.exponent.value, fit.exponent.standard_error)
             );
-            let line = points.iter().map(|point| (point.x, fit.amplitude.value * point.x.powf(-fit.exponent.value)));
+            let line =
+                points.iter().map(|point| (point.x, fit.amplitude.value * libm::pow(point.x, -fit.exponent.value)));
             curves.push(Curve { label: String::new(), points: bare(line), look: Look::Line, colour });
         }
         curves.push(Curve { label, points, look: Look::Points, colour });

@@ -123,7 +123,7 @@ fn subject_plot(
         let at = |point: &crate::transition::SeriesPoint| match abscissa {
             Abscissa::Pressure => point.pressure,
             Abscissa::Reduced => point.reduced_pressure,
-            Abscissa::AsHertzian => point.pressure * series.mobile_count().powf(1.5),
+            Abscissa::AsHertzian => point.pressure * libm::pow(series.mobile_count(), 1.5),
         };
         let mut points = subject.along(series, name, at);
         scale(&mut points, unit);
@@ -178,9 +178,9 @@ pub(super) fn crossovers(subject: &Subject<'_>) -> Vec<Figure> {
                 (x > 0.0).then_some(PlotPoint { x, y: y / PI, interval: Some([(y - error) / PI, (y + error) / PI]) })
             });
             let points: Vec<PlotPoint> = below.collect();
-            let line = points
-                .iter()
-                .map(|point| (point.x, fit.amplitude.value * (point.x * fit.critical).powf(-fit.exponent.value) / PI));
+            let line = points.iter().map(|point| {
+                (point.x, fit.amplitude.value * libm::pow(point.x * fit.critical, -fit.exponent.value) / PI)
+            });
             let line = bare(line);
             let label =
                 format!("{}, μ = {:.2} ± {:.2}", short(series, all), fit.exponent.value, fit.exponent.standard_error);
@@ -204,7 +204,7 @@ pub(super) fn crossovers(subject: &Subject<'_>) -> Vec<Figure> {
         guides: Vec::new(),
     };
     let exact = (0..=80).filter_map(|step| {
-        let crossover = 0.1 * 10f64.powf(f64::from(step) * 3.0 / 80.0);
+        let crossover = 0.1 * libm::pow(10.0, f64::from(step) * 3.0 / 80.0);
         let angle = Lorentzian::new(crossover, USUAL_EXPONENT).ok()?.crossing(0.1).ok()?.angle()?;
         Some((crossover, angle / PI))
     });

@@ -115,7 +115,8 @@ fn introduction(merged: &Merged) -> String {
         0 => String::new(),
         missing => format!(" {} samples of the plan are missing.", count(missing)),
     };
-    format!("{} samples in {} cells.{left_out}{missing}", count(merged.record_count), merged.cells.len())
+    let mixed = merged.mixed_vectors().map_or(String::new(), |mixed| format!(" Not all alike: {}.", escaped(&mixed)));
+    format!("{} samples in {} cells.{left_out}{missing}{mixed}", count(merged.record_count), merged.cells.len())
 }
 
 /// A table with a head, the first column to the left.

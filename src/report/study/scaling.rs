@@ -39,7 +39,7 @@ pub(super) fn with_inflation(subject: &Subject<'_>) -> Vec<Figure> {
         {
             let mut curves = Vec::new();
             for (index, series) in all.iter().enumerate().filter(|(_, series)| series.cell.law == law) {
-                let scale = series.mobile_count().powf(0.5 * beta) / series.cell.increase.powf(0.25 * beta);
+                let scale = libm::pow(series.mobile_count(), 0.5 * beta) / libm::pow(series.cell.increase, 0.25 * beta);
                 let points = subject.along(series, name, |point| point.pressure * scale);
                 let points = points.iter().map(|point| PlotPoint {
                     y: point.y / unit,
@@ -80,7 +80,7 @@ fn diagram(subject: &Subject<'_>, law: LawChoice) -> Option<Figure> {
         for point in &series.points {
             let Some(found) = subject.number(point.cell, ANTICORRELATION) else { continue };
             let side = if found.mean < SCALE_FREE_ANTICORRELATION { &mut plastic } else { &mut elastic };
-            side.push((mobile.powf(beta) * point.pressure, mobile * mobile * series.cell.increase));
+            side.push((libm::pow(mobile, beta) * point.pressure, mobile * mobile * series.cell.increase));
         }
     }
     let mut curves = vec![
@@ -97,8 +97,10 @@ fn diagram(subject: &Subject<'_>, law: LawChoice) -> Option<Figure> {
         let points = bare(found.points.iter().map(|point| (point.y, point.x)));
         curves.push(Curve { label: "p_c by G*".into(), points, look: Look::Hollow, colour: [0x22; 3] });
         if let Some(fit) = &found.fit {
-            let points =
-                found.points.iter().map(|point| (fit.amplitude.value * point.x.powf(fit.exponent.value), point.x));
+            let points = found
+                .points
+                .iter()
+                .map(|point| (fit.amplitude.value * libm::pow(point.x, fit.exponent.value), point.x));
             let mut points: Vec<(f64, f64)> = points.collect();
             points.sort_by(|a, b| a.1.total_cmp(&b.1));
             let label = format!("exponent {:.2} ± {:.2}", fit.exponent.value, fit.exponent.standard_error);
@@ -108,7 +110,7 @@ fn diagram(subject: &Subject<'_>, law: LawChoice) -> Option<Figure> {
             let mut sorted = found.points.clone();
             sorted.sort_by(|a, b| a.x.total_cmp(&b.x));
             let through = sorted[middle];
-            let line = sorted.iter().map(|point| (through.y * (point.x / through.x).powf(0.25 * beta), point.x));
+            let line = sorted.iter().map(|point| (through.y * libm::pow(point.x / through.x, 0.25 * beta), point.x));
             let label = format!("exponent {}, published", 0.25 * beta);
             curves.push(Curve { label, points: bare(line), look: Look::Dashed, colour: [0x77; 3] });
         }

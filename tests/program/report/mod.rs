@@ -1,5 +1,6 @@
 //! What a report writes: the files asked for, every number to the bit, pages that stand alone.
 
+mod kernels;
 #[cfg(feature = "plot")]
 mod pictures;
 

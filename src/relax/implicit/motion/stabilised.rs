@@ -5,6 +5,7 @@ use crate::contact::damped_forces::damped_forces;
 use crate::contact::damping::DampingLaw;
 use crate::contact::walk::{Walked, walk};
 use crate::packing::PackingError;
+use crate::processor;
 use crate::relax::implicit::chebyshev::{Chebyshev, StageTerms, Stiffness};
 use crate::relax::implicit::motion::{ImplicitMotion, Inertia};
 use crate::relax::implicit::tableau::ROS34PW2;
@@ -57,7 +58,7 @@ impl<const D: usize> Chain<D> {
         let (start_velocities, start_forces) = (&start_velocities[..count], &start_forces[..count]);
         let forces = &forces[..count];
         let (mut change, mut farthest) = ([0.0f64; LANES], [0.0f64; LANES]);
-        pulp::Arch::new().dispatch(
+        processor::dispatch(
             #[inline(always)]
             || {
                 for k in 0..count {
