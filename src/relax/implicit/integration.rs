@@ -188,7 +188,11 @@ impl Integration {
                     let error = allowed.share(motion, |motion, disk| motion.error(*time_step, disk));
                     let growth = growth(error, LARGEST_GROWTH);
                     let energies = || Energies::new(&reached, motion.kinetic_energy(), motion.dissipated);
-                    if error <= 1.0 && balance.accept(energies()) {
+                    let balanced = |balance: &mut EnergyBalance| match motion.has_masses() {
+                        true => balance.accept(energies()),
+                        false => balance.accept_descent(energies()),
+                    };
+                    if error <= 1.0 && balanced(balance) {
                         *time_step *= if rejected { growth.min(1.0) } else { growth };
                         return Ok(Ok(Some(reached)));
                     }
