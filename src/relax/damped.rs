@@ -156,7 +156,7 @@ impl DampedDynamics {
                     time_step,
                     restart: false,
                 };
-                let energies = Energies::new(&totals, kinetic_energy, motion.dissipated);
+                let energies = Energies::new(&totals, kinetic_energy, motion.dissipated).with_peak(motion.take_peak());
                 let balance = balance.get_or_insert(EnergyBalance::new(energies));
                 if balance.accept(energies) {
                     motion.remember();
@@ -239,6 +239,8 @@ pub struct Motion<const D: usize, L, C> {
     pub dissipated: f64,
     /// What is lost to damping now \[energy / time\].
     dissipation: f64,
+    /// The largest kinetic energy since it was last asked for \[energy\].
+    peak: f64,
     row: Vec<f64>,
     before: Before<D>,
 }
@@ -273,6 +275,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
             damping_coefficient: Vec::new(),
             dissipated: 0.0,
             dissipation: 0.0,
+            peak: 0.0,
             row: Vec::new(),
             before: Before::default(),
             assembly,
@@ -297,6 +300,11 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
             &mut motion.accelerations,
         );
         motion
+    }
+
+    /// The largest kinetic energy since the last call \[energy\].
+    pub(super) fn take_peak(&mut self) -> f64 {
+        std::mem::take(&mut self.peak)
     }
 
     /// Remembers where everything is, for [`Motion::take_back`].
@@ -334,6 +342,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
             *u += time_step * *v;
             speed_squared += *v * *v;
         }
+        self.peak = larger(0.5 * speed_squared, self.peak);
         if self.assembly.keep_listed(time_step * speed_squared.sqrt())? {
             self.set_damping_coefficients();
         }

@@ -3,12 +3,13 @@
 //! ```text
 //! E + K + W = E_0        E elastic, K kinetic energy, W what damping took, E_0 the elastic energy of the start
 //! G ← max(0, G + Δ(E + K + W) − ε ΔW)        L ← max(0, L − Δ(E + K + W) − ε ΔW)
-//! M ← max(K, M − ΔW)        G, L ≤ ε M + η E        after every step; ε = 0.05, η = 10⁻⁷
+//! M ← max(max K, M − ΔW/2)        G, L ≤ ε M + η E        after every step; ε = 0.05, η = 10⁻⁷
 //! ```
 //!
 //! G and L are what the motion has gained or lost by errors beyond a share ε of what damping took. They are cumulative sums, so a small gain
 //! in every step is found as well as a large one in a single step. Both are compared with the energy in motion M: it goes to and fro between K and
-//! E, and only damping takes it away. E_0 would say little. The blow of an
+//! E, and only damping takes it away. Half of ΔW is taken from it, so that a motion whose errors are below half of the tolerance comes off the limit
+//! again. E_0 would say little. The blow of an
 //! inflation has 10⁴ times the energy of a packing near jamming; an error that is small beside it can still tear the packing apart. The floor
 //! η E lies below the energy from which on Newton's method may finish: a long step may damp away what is left there.
 //!
@@ -27,9 +28,8 @@ const TOLERANCE: f64 = 0.05;
 /// η.
 const FLOOR: f64 = 1e-7;
 
-/// Rounding of an elastic energy, over what was added up \[1\].
-#[cfg(feature = "linear")]
-const ROUNDING: f64 = 1e-12;
+/// Rounding of energies, over what was added up \[1\].
+const ROUNDING: f64 = 1e-13;
 
 /// Energies of a motion at one moment.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -40,13 +40,20 @@ pub(super) struct Energies {
     pub(super) scale: f64,
     /// K \[energy\].
     pub(super) kinetic: f64,
+    /// The largest K since the last check, where that is known \[energy\].
+    pub(super) peak: f64,
     /// W \[energy\].
     pub(super) damped: f64,
 }
 
 impl Energies {
     pub(super) fn new<const D: usize>(totals: &Totals<D>, kinetic: f64, damped: f64) -> Self {
-        Energies { elastic: totals.energy, scale: totals.energy_scale(), kinetic, damped }
+        Energies { elastic: totals.energy, scale: totals.energy_scale(), kinetic, peak: kinetic, damped }
+    }
+
+    /// The same, with the largest kinetic energy since the last check \[energy\].
+    pub(super) fn with_peak(self, peak: f64) -> Self {
+        Energies { peak: larger(peak, self.peak), ..self }
     }
 
     fn mechanical(&self) -> f64 {
@@ -75,8 +82,10 @@ impl EnergyBalance {
     pub(super) fn accept(&mut self, next: Energies) -> bool {
         let damped = next.damped - self.now.damped;
         let defect = next.mechanical() - self.now.mechanical() + damped;
-        let moving = larger(next.kinetic, self.moving - damped.abs());
-        let limit = TOLERANCE * moving + FLOOR * larger(self.now.scale, next.scale);
+        let moving = larger(next.peak, self.moving - 0.5 * damped.abs());
+        let limit = TOLERANCE * moving
+            + FLOOR * larger(self.now.scale, next.scale)
+            + ROUNDING * (self.start.scale + next.damped.abs());
         let after = |sum: f64, defect: f64| (sum + defect - TOLERANCE * damped.abs()).max(0.0);
         let (gain, loss) = (after(self.gain, defect), after(self.loss, -defect));
         // NaN is refused.
@@ -93,7 +102,7 @@ impl EnergyBalance {
     #[cfg(feature = "linear")]
     pub(super) fn accept_descent(&mut self, next: Energies) -> bool {
         // NaN is refused.
-        let accepted = next.elastic - self.now.elastic <= ROUNDING * larger(self.now.scale, next.scale);
+        let accepted = next.elastic - self.now.elastic <= 10.0 * ROUNDING * larger(self.now.scale, next.scale);
         if accepted {
             self.imbalance += (next.mechanical() - self.now.mechanical() + next.damped - self.now.damped).abs();
             self.now = next;
@@ -157,7 +166,7 @@ mod tests {
     use super::*;
 
     fn energies(elastic: f64, kinetic: f64, damped: f64) -> Energies {
-        Energies { elastic, scale: elastic, kinetic, damped }
+        Energies { elastic, scale: elastic, kinetic, peak: kinetic, damped }
     }
 
     #[test]

@@ -67,9 +67,9 @@ fn the_blow_of_an_inflation_near_jamming_gains_no_energy() {
         assert!(account.imbalance <= 0.1 * blown, "{account:?}");
         let sum = account.after + account.damped + account.left;
         assert!((sum - account.before).abs() <= account.imbalance * (1.0 + 1e-9) + 1e-9 * blown, "{account:?}");
-        // What is left is of the order of the packing, not of the blow; it was 2000 times as much, or nothing.
+        // The blow is spent, and the packing is still there; once its energy rose a thousandfold, or was lost.
         let after = energy(&outcome.state);
-        assert!(after > 0.1 * at_rest && after < 30.0 * at_rest, "{name}: {after}, at rest {at_rest}");
+        assert!(after > 0.1 * at_rest && after < 0.01 * blown, "{name}: {after}, at rest {at_rest}");
     }
 }
 

@@ -11,7 +11,7 @@ use crate::packing::PackingError;
 use crate::relax::implicit::motion::ImplicitMotion;
 use crate::relax::monitor::Monitor;
 use crate::relax::newton::{Descent, End, Patience};
-use crate::relax::{Cost, Stop, Trace};
+use crate::relax::{Cost, Look, Stop, Trace};
 use crate::vector::{Vector, difference, larger, norm};
 
 /// Way of a disk of the backbone to the minimum over an overlap, up to which there is no doubt \[1\].
@@ -34,6 +34,24 @@ const LONGEST_STEP: f64 = 0.1;
 
 /// Newton's factorisations at most.
 const FACTORISATION_LIMIT: usize = 100;
+
+/// Shows nothing of a trial, which may come to nothing, but its last check to who asks.
+struct Unseen<'a, T> {
+    trace: &'a mut T,
+    last: Option<Look>,
+}
+
+impl<T: Trace> Trace for Unseen<'_, T> {
+    const ACTIVE: bool = T::ACTIVE;
+
+    fn look(&mut self, look: &Look) {
+        self.last = Some(*look);
+    }
+
+    fn interrupted(&mut self) -> bool {
+        self.trace.interrupted()
+    }
+}
 
 /// Where a motion stands.
 pub(super) struct Standing {
@@ -86,7 +104,9 @@ impl<const D: usize> Finishing<D> {
         let smallest = before.radii().iter().copied().fold(f64::INFINITY, f64::min);
         let longest = LONGEST_STEP.min(at.overlap / smallest);
         let mut descent = Descent::new(longest, FACTORISATION_LIMIT, Patience::Factorisations(PATIENCE));
-        let end = descent.run(&mut motion.assembly, monitor, trace)?;
+        let mut unseen = Unseen { trace, last: None };
+        let end = descent.run(&mut motion.assembly, monitor, &mut unseen)?;
+        let last = unseen.last;
         *cost = cost.plus(descent.cost);
         if let End::Stop(stop @ (Stop::Converged(_) | Stop::RoundingFloor)) = end {
             let places: Vec<_> = (0..before.mobile_count()).map(|disk| motion.assembly.place(disk)).collect();
@@ -97,6 +117,9 @@ impl<const D: usize> Finishing<D> {
             let near = farthest(&|disk| before.place(disk)) <= NEAR;
             let again = self.minimum.as_ref().is_some_and(|minimum| farthest(&|disk| minimum[disk]) <= SAME);
             if near || again {
+                if let Some(look) = last {
+                    trace.look(&look);
+                }
                 return Ok(Some(stop));
             }
             self.minimum = Some(places);

@@ -16,12 +16,13 @@ pub(in crate::relax::implicit) struct Stretch<const D: usize, L, C> {
     totals: Totals<D>,
     time: f64,
     dissipated: f64,
+    peak: f64,
 }
 
 impl<const D: usize, L: PairLaw, C: DampingLaw> Stretch<D, L, C> {
     /// Energies at its end.
     pub(in crate::relax::implicit) fn energies(&self) -> Energies {
-        Energies::new(&self.totals, self.motion.kinetic_energy(), self.dissipated)
+        Energies::new(&self.totals, self.motion.kinetic_energy(), self.dissipated).with_peak(self.peak)
     }
 }
 
@@ -44,7 +45,8 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         }
         self.work.evaluation_count += count + 1;
         let totals = motion.assembly.evaluate_totals();
-        Ok(Stretch { totals, time, dissipated: self.dissipated + motion.dissipated, motion })
+        let (dissipated, peak) = (self.dissipated + motion.dissipated, motion.take_peak());
+        Ok(Stretch { totals, time, dissipated, peak, motion })
     }
 
     /// The motion goes on from the end of a stretch. `ahead` is the length of the step that is to follow, which looks out for contacts
