@@ -77,8 +77,8 @@ pub enum Finish {
 }
 
 impl Default for Finish {
-    /// From 10⁻³ on. Of 60 motions of 1000 disks (ten circles at p = 10, 100, 800, both damping laws) all end within 10⁻⁸ of
-    /// where they do when Newton begins at 10⁻⁵; so they do from 10⁻² on.
+    /// From 10⁻² on. Nine viscoelastic motions of 5548 disks (p = 0.05 to 1) end in the same minimum, each, when Newton's method is tried from
+    /// 3·10⁻², 10⁻² or 10⁻³ on; the last takes two to four times the evaluations.
     fn default() -> Self {
         Finish::Newton(1e-2)
     }
