@@ -10,7 +10,8 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
 use jamscope::study::{
-    self, FailureKind, Merged, Plan, Problem, Recipe, Record, RecordOutcome, Scale, Shard, Study, StudyProgress, Task,
+    self, Dynamics, FailureKind, Merged, Plan, Problem, Recipe, Record, RecordOutcome, Scale, Shard, Study,
+    StudyProgress, Task,
 };
 
 use crate::scene_file::refuse_cut;
@@ -29,6 +30,12 @@ pub struct StudyArguments {
     /// How much of a recipe: minutes on two cores, a night on two cores, or the published sizes and 400 samples.
     #[arg(long, value_parser = scales(), default_value = "small", requires = "recipe")]
     scale: Scale,
+    /// How packings of a recipe come to rest after the inflation.
+    #[arg(long, value_name = "NAME", value_parser = dynamics(), default_value = "fire-newton", requires = "recipe")]
+    dynamics: Dynamics,
+    /// Packings of each size and pressure of a recipe, in place of those of its scale.
+    #[arg(long, value_name = "N", requires = "recipe")]
+    seeds: Option<usize>,
     /// Print the study, to be run from a file or changed, and run nothing.
     #[arg(long)]
     print: bool,
@@ -60,6 +67,13 @@ pub struct MergeArguments {
 fn recipes() -> impl TypedValueParser<Value = Recipe> {
     let names = PossibleValuesParser::new(Recipe::ALL.map(|it| PossibleValue::new(it.name()).help(it.title())));
     names.try_map(|name| Recipe::ALL.into_iter().find(|it| it.name() == name).ok_or("no recipe of this name"))
+}
+
+/// Dynamics by their names.
+fn dynamics() -> impl TypedValueParser<Value = Dynamics> {
+    let names = Dynamics::ALL.iter().map(|it| PossibleValue::new(it.name()).help(it.title()));
+    PossibleValuesParser::new(names)
+        .try_map(|name| Dynamics::ALL.iter().copied().find(|it| it.name() == name).ok_or("no dynamics of this name"))
 }
 
 /// The scales by their names.
@@ -119,7 +133,14 @@ fn read_study(path: &Path) -> Result<Study, Failure> {
 pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
     let study = match (&arguments.study, arguments.recipe) {
         (Some(path), _) => read_study(path)?,
-        (None, Some(recipe)) => recipe.study(arguments.scale),
+        (None, Some(recipe)) => {
+            let mut study = recipe.study_by(arguments.scale, arguments.dynamics);
+            if let Some(count) = arguments.seeds {
+                study.set_seed_count(count);
+                study.check()?;
+            }
+            study
+        }
         (None, None) => {
             let names = Recipe::ALL.map(Recipe::name).join(", ");
             return Err(format!("a study file is needed, or --recipe with one of {names}").into());
@@ -138,7 +159,9 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
     }
     set_threads(arguments.threads)?;
     if let Some(recipe) = arguments.recipe {
-        print(&format!("{}: {}\n{}", recipe.name(), recipe.title(), cost::summary(&plan, &arguments.out, shard)))?;
+        let (title, dynamics) = (recipe.title(), arguments.dynamics.title());
+        let cost = cost::summary(&plan, &arguments.out, shard);
+        print(&format!("{}: {title}\nat rest by {dynamics}\n{cost}", recipe.name()))?;
     }
     let bar = Bar::new(plan.tasks.iter().filter(|task| shard.has(task.index)).count());
     let executed = match shard == Shard::default() {

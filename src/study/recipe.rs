@@ -9,6 +9,7 @@ use crate::contact::{Hertzian, Hookean, LawChoice};
 use crate::inflation::Boundary;
 use crate::relax::{Fire, RelaxerChoice};
 use crate::scene::{Observables, Scene};
+use crate::study::dynamics::Dynamics;
 use crate::study::settings::{Part, Seeds, Study, Target};
 
 /// A figure of the published study.
@@ -119,8 +120,23 @@ impl Recipe {
         }
     }
 
-    /// The study.
+    /// The study with its default dynamics.
     pub fn study(self, scale: Scale) -> Study {
+        self.study_by(scale, Dynamics::default())
+    }
+
+    /// The study. Packings below jamming come to rest by FIRE, whatever the dynamics: damped ones would not.
+    pub fn study_by(self, scale: Scale, dynamics: Dynamics) -> Study {
+        let mut study = self.of_scale(scale);
+        for relaxers in [&mut study.relaxers].into_iter().chain(study.parts.iter_mut().map(|part| &mut part.relaxers)) {
+            if *relaxers == [Dynamics::default().relaxer()] {
+                *relaxers = vec![dynamics.relaxer()];
+            }
+        }
+        study
+    }
+
+    fn of_scale(self, scale: Scale) -> Study {
         match self {
             Recipe::Radial => radial(scale),
             Recipe::Kappa
@@ -171,19 +187,9 @@ fn common() -> Study {
     Study {
         scene: Scene { observables, sample: Vec::new(), ..Scene::default() },
         targets: Vec::new(),
-        relaxers: vec![jammed()],
+        relaxers: vec![Dynamics::default().relaxer()],
         ..Study::default()
     }
-}
-
-#[cfg(feature = "linear")]
-fn jammed() -> RelaxerChoice {
-    RelaxerChoice::Staged(crate::relax::Staged::default())
-}
-
-#[cfg(not(feature = "linear"))]
-fn jammed() -> RelaxerChoice {
-    RelaxerChoice::Fire(Fire::default())
 }
 
 fn reduced(values: &[f64]) -> Vec<Target> {
@@ -334,6 +340,22 @@ mod tests {
         for recipe in Recipe::ALL {
             let counts = Scale::ALL.map(|scale| Plan::of(&recipe.study(scale)).expect("it makes sense").sample_count());
             assert!(counts[0] < counts[1] && counts[1] < counts[2], "{}: {counts:?}", recipe.name());
+        }
+    }
+
+    #[test]
+    fn dynamics_change_the_relaxers_of_jammed_packings_only() {
+        for recipe in Recipe::ALL {
+            for &dynamics in Dynamics::ALL {
+                let (study, default) = (recipe.study_by(Scale::Small, dynamics), recipe.study(Scale::Small));
+                let below = recipe == Recipe::Jamming;
+                assert_eq!(
+                    study.relaxers == default.relaxers,
+                    below || dynamics.relaxer() == Dynamics::default().relaxer()
+                );
+                let parts: Vec<_> = study.parts.iter().map(|part| &part.relaxers).collect();
+                assert_eq!(parts, default.parts.iter().map(|part| &part.relaxers).collect::<Vec<_>>());
+            }
         }
     }
 

@@ -179,6 +179,12 @@ const MOST_PACKINGS: Limit =
 const BYTES_A_PACKING: f64 = 256.0;
 
 impl Study {
+    /// So many seeds, from the first one on, in every part.
+    pub fn set_seed_count(&mut self, count: usize) {
+        self.seeds.count = count;
+        self.parts.iter_mut().filter_map(|part| part.seeds.as_mut()).for_each(|seeds| seeds.count = count);
+    }
+
     /// Whether every sample of it would make sense.
     ///
     /// # Errors

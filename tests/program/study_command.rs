@@ -201,6 +201,16 @@ fn a_recipe_is_a_study_that_can_be_printed_changed_and_run() {
     let expected = plan(&["study", "--recipe", "periodic", "--dry-run"]);
     assert!(expected.contains("2774 disks, pressure 3500: 10 packings, 1 inflations each, 0 done"), "{expected}");
     assert_eq!(plan(&["study", "periodic.toml", "--dry-run"]), expected);
+    // Other dynamics and fewer seeds are other studies.
+    let (done, other) = run(&["study", "--recipe", "kappa", "--seeds", "3", "--dynamics", "fire", "--print"]);
+    assert!(done && other.contains("count = 3\n") && other.contains("relaxers.fire"), "{other}");
+    #[cfg(feature = "linear")]
+    {
+        let (done, other) = run(&["study", "--recipe", "kappa", "--dynamics", "study", "--print"]);
+        assert!(done && other.contains("relaxers.implicit.damping.viscoelastic]\nrate = 500.0"), "{other}");
+    }
+    let (done, refusal) = run(&["study", "--recipe", "kappa", "--seeds", "0", "--dry-run"]);
+    assert!(!done && refusal.contains("seeds.count"), "{refusal}");
     // Smaller, it is run, merged and reported in one go.
     let smaller = text.replace("2774", "150").replace("count = 10", "count = 4");
     std::fs::write(folder.path().join("smaller.toml"), smaller).expect("written");
