@@ -301,9 +301,9 @@ mod tests {
     #[test]
     fn all_plastic_or_all_elastic_is_a_bound() {
         let groups = |hits: [bool; 2]| hits.map(|hit| (1.0, vec![hit; 5])).to_vec();
-        assert_eq!(by_halves(&groups([true, true])), TransitionPressure::Above(1f64.exp()));
-        assert_eq!(by_halves(&groups([false, false])), TransitionPressure::Below(1f64.exp()));
+        assert_eq!(by_halves(&groups([true, true])), TransitionPressure::Above(libm::exp(1.0)));
+        assert_eq!(by_halves(&groups([false, false])), TransitionPressure::Below(libm::exp(1.0)));
         let changing = [(0.0, vec![true; 5]), (2.0, vec![false; 5])];
-        assert_eq!(by_halves(&changing), TransitionPressure::Between([1.0, 2f64.exp()]));
+        assert_eq!(by_halves(&changing), TransitionPressure::Between([1.0, libm::exp(2.0)]));
     }
 }
