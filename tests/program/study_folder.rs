@@ -14,8 +14,13 @@ fn study(file: &Path, out: &Path, more: &[&str]) -> Command {
     command
 }
 
+/// A study that is refused, and what it says.
 fn refused(command: &mut Command) -> String {
-    let output = command.output().expect("the program starts");
+    refusal(command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts"))
+}
+
+fn refusal(started: Child) -> String {
+    let output = started.wait_with_output().expect("it ends");
     assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stdout));
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
@@ -41,22 +46,27 @@ fn finished(running: Child) -> String {
 fn a_study_that_runs_is_not_replaced() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let out = folder.path().join("s");
-    let (a, b) = (fixture("studies/a.toml"), fixture("studies/b.toml"));
-    let first = running(&a, &out, &[]);
+    // With five times the samples, on one thread, the first takes three times as long as the others wait for its lock.
+    let (a, b) = (folder.path().join("a.toml"), fixture("studies/b.toml"));
+    let text = std::fs::read_to_string(fixture("studies/a.toml")).expect("a fixture");
+    std::fs::write(&a, text.replace("count=12", "count=60")).expect("written");
+    let first = running(&a, &out, &["--threads", "1"]);
     let plan = std::fs::read(out.join("study.json")).expect("there");
-    let said = refused(&mut study(&b, &out, &["--replace"]));
-    assert!(said.contains("locked") && said.contains("nothing was changed"), "{said}");
-    let said = refused(&mut study(&b, &out, &[]));
-    assert!(said.contains("another study"), "{said}");
-    // A part of the other one is no way in either.
-    let said = refused(&mut study(&b, &out, &["--replace", "--shard", "1/7"]));
-    assert!(said.contains("locked"), "{said}");
+    // A part of the other study is no way in either. All wait at once.
+    let tries = [&["--replace"][..], &[], &["--replace", "--shard", "1/7"]].map(|more| {
+        let mut command = study(&b, &out, more);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts")
+    });
+    let [replacing, other, part] = tries.map(refusal);
+    assert!(replacing.contains("locked") && replacing.contains("nothing was changed"), "{replacing}");
+    assert!(other.contains("another study"), "{other}");
+    assert!(part.contains("locked"), "{part}");
     assert!(std::fs::read(out.join("study.json")).expect("there") == plan, "a refused study changes nothing");
     let text = finished(first);
-    assert!(text.contains("12 samples: 12 run") && text.contains("12 of 12 samples"), "{text}");
+    assert!(text.contains("60 samples: 60 run") && text.contains("60 of 60 samples"), "{text}");
     assert!(std::fs::read(out.join("study.json")).expect("there") == plan);
     let records = std::fs::read_to_string(out.join("records.jsonl")).expect("merged");
-    assert_eq!((records.lines().count(), records.matches("\"disk_count\":800").count()), (12, 12));
+    assert_eq!((records.lines().count(), records.matches("\"disk_count\":800").count()), (60, 60));
     // Once it has ended, it may be replaced; what was merged of it goes, its samples stay.
     let text = finished(study(&b, &out, &["--replace"]).stdout(Stdio::piped()).spawn().expect("it starts"));
     assert!(text.contains("5 samples: 5 run"), "{text}");
