@@ -40,6 +40,7 @@ impl ExplicitStep {
     }
 
     /// The last step \[time\].
+    #[cfg(feature = "linear")]
     pub(super) fn time_step(&self) -> f64 {
         self.time_step
     }
