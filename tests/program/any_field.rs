@@ -16,7 +16,7 @@ use toml::Value;
 /// Every kind of relaxer, so that their fields are tried too.
 fn relaxers() -> Vec<RelaxerChoice> {
     let fixed = DampedDynamics { time_step: TimeStep::Fixed(1e-4), ..DampedDynamics::default() };
-    let mut all = vec![
+    let all = vec![
         RelaxerChoice::Fire(Fire::default()),
         RelaxerChoice::Damped(DampedDynamics::default()),
         RelaxerChoice::Damped(fixed),
@@ -24,12 +24,15 @@ fn relaxers() -> Vec<RelaxerChoice> {
         RelaxerChoice::QuasiNewton(QuasiNewton::default()),
     ];
     #[cfg(feature = "linear")]
-    all.extend([
-        RelaxerChoice::Implicit(Default::default()),
-        RelaxerChoice::GradientFlow(Default::default()),
-        RelaxerChoice::Newton(Default::default()),
-        RelaxerChoice::Staged(Default::default()),
-    ]);
+    let all = {
+        let linear = [
+            RelaxerChoice::Implicit(Default::default()),
+            RelaxerChoice::GradientFlow(Default::default()),
+            RelaxerChoice::Newton(Default::default()),
+            RelaxerChoice::Staged(Default::default()),
+        ];
+        [all, linear.to_vec()].concat()
+    };
     all
 }
 

@@ -21,16 +21,18 @@ pub fn scenes() -> Vec<Vec<u8>> {
         relaxer = { conjugate_gradients = { largest_step = 0.1 } }\n\
         [[sample]]\nname = \"c\"\nsource = { file = \"packing.xyz\" }\n\
         relaxer = { fire = { limit = { absolute = 1e-7 }, mixing = 0.2 } }\n";
-    let mut scenes = vec![scene_file::commented_scene(), relaxers.into()];
+    let scenes = vec![scene_file::commented_scene(), relaxers.into()];
     #[cfg(feature = "linear")]
-    scenes.push(
+    let linear = vec![
         "disk_count = 100\n[law.hookean]\nstiffness = 1e5\n\
         [observables.protocol]\nfraction = 1.0\n[observables.plastic_part]\nring_width = 0.5\n\
         [[sample]]\nname = \"n\"\nsource = { pressure = 10.0 }\n\
         relaxer = { implicit = { damping = { viscoelastic = { rate = 500.0 } }, tolerance = 1e-3 } }\n\
         [[sample]]\nname = \"m\"\nsource = { pressure = 10.0 }\nrelaxer = { staged = { hand_over = 1e-5 } }\n"
-            .into(),
-    );
+            .to_string(),
+    ];
+    #[cfg(feature = "linear")]
+    let scenes = [scenes, linear].concat();
     scenes.into_iter().map(String::into_bytes).collect()
 }
 
