@@ -1,7 +1,7 @@
 //! [`Dynamics`]: how the packings of a recipe come to rest after the inflation, by name.
 //!
 //! Which minimum a packing ends in depends on the way it takes there. With viscoelastic damping a contact near jamming is underdamped: inertia carries
-//! disks over barriers that the other ways never cross. So the plastic phase of an ensemble depends on the dynamics, and a recipe says which it has.
+//! disks over barriers that the other dynamics never cross. So the plastic phase of an ensemble depends on the dynamics, and a recipe says which it has.
 
 use serde::Serialize;
 

@@ -111,8 +111,8 @@ impl<const D: usize> Finishing<D> {
         if let End::Stop(stop @ (Stop::Converged(_) | Stop::RoundingFloor)) = end {
             let places: Vec<_> = (0..before.mobile_count()).map(|disk| motion.assembly.place(disk)).collect();
             let farthest = |from: &dyn Fn(usize) -> Vector<D>| {
-                let ways = places.iter().enumerate().filter(|&(disk, _)| monitor.backbone()[disk]);
-                ways.map(|(disk, &place)| norm(difference(place, from(disk)))).fold(0.0, larger) / at.overlap
+                let distances = places.iter().enumerate().filter(|&(disk, _)| monitor.backbone()[disk]);
+                distances.map(|(disk, &place)| norm(difference(place, from(disk)))).fold(0.0, larger) / at.overlap
             };
             let near = farthest(&|disk| before.place(disk)) <= NEAR;
             let again = self.minimum.as_ref().is_some_and(|minimum| farthest(&|disk| minimum[disk]) <= SAME);
