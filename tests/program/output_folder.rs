@@ -167,7 +167,10 @@ fn killed_at_any_time_the_files_are_of_one_run() {
         running.kill().expect("it is killed, or done");
         running.wait().expect("it is gone");
         let seeds = seeds(&out);
-        assert_eq!(seeds.len(), 1, "round {round}: {:?} of the seeds {seeds:?}", names(&out));
+        // Killed while files are moved: those of the last report may be gone and those of this one wait in a folder.
+        let waits = names(&out).iter().any(|name| name.ends_with(".part.ready"));
+        let least = if waits { 0 } else { 1 };
+        assert!((least..=1).contains(&seeds.len()), "round {round}: {:?} of the seeds {seeds:?}", names(&out));
         found.extend(seeds);
         std::fs::write(out.join("notes.txt"), "mine").expect("written");
     }
