@@ -10,11 +10,15 @@ use crate::scene::Scene;
 /// Every so many angles of a correlation function are kept: two degrees apart is enough to draw.
 const ANGLE_STRIDE: usize = 4;
 
+/// Significant digits of a curve: single samples scatter by a percent and more, and a study of a thousand samples has a million points.
+const DIGITS: usize = 6;
+
 /// Curves by name, as pairs of abscissa and ordinate.
 pub(super) fn curves(scene: &Scene, response: &Response) -> BTreeMap<String, Vec<[f64; 2]>> {
     let mut all = BTreeMap::new();
     let mut put = |name: String, points: Vec<[f64; 2]>| {
-        all.insert(name, points.into_iter().filter(|point| point[1].is_finite()).collect::<Vec<_>>());
+        let finite = points.into_iter().filter(|point| point[1].is_finite());
+        all.insert(name, finite.map(|point| point.map(rounded)).collect::<Vec<_>>());
     };
     if let Some(profile) = &response.radial_profile {
         put("radial_profile".into(), profile.rings.iter().map(|ring| [ring.radius, ring.mean]).collect());
@@ -53,6 +57,12 @@ pub(super) fn curves(scene: &Scene, response: &Response) -> BTreeMap<String, Vec
         put("radial_fluctuation".into(), rings.iter().map(|ring| [ring.radius, ring.fluctuation]).collect());
     }
     all
+}
+
+/// To [`DIGITS`] significant digits.
+fn rounded(value: f64) -> f64 {
+    // What was printed is always a number.
+    format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
 }
 
 fn correlation(of: &AngularCorrelation) -> Vec<[f64; 2]> {

@@ -113,7 +113,11 @@ fn a_record_has_the_numbers_of_its_run() {
     let RecordOutcome::Done { curves, .. } = &record.outcome else { panic!("done") };
     let profile = result.response.radial_profile.as_ref().expect("asked for");
     let rings: Vec<[f64; 2]> = profile.rings.iter().map(|ring| [ring.radius, ring.mean]).collect();
-    assert_eq!(curves["radial_profile"], rings);
+    // A curve is kept to six digits: half a unit of the last one over the least number of six digits.
+    assert_eq!(curves["radial_profile"].len(), rings.len());
+    for (kept, measured) in curves["radial_profile"].iter().flatten().zip(rings.iter().flatten()) {
+        assert!((kept - measured).abs() <= 5.001e-6 * measured.abs(), "{kept} {measured}");
+    }
     // p̂ = p N^(3/2), N = π 0.48² 80 = 57.9 disks in the circle by area; prepared within 1 % of what was asked.
     let reduced = records.iter().find(|it| it.cell.target == Target::ReducedPressure(1e6)).expect("in the study");
     let (p, reduced) =
