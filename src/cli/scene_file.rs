@@ -15,7 +15,9 @@ pub fn commented_scene() -> String {
         (cfg!(feature = "fit") || !fitted)
             && (cfg!(feature = "linear") || !table.starts_with("[observables.plastic_part]"))
     };
-    include_str!("default_scene.toml").split("\n\n").filter(known).collect::<Vec<_>>().join("\n\n")
+    let text = include_str!("default_scene.toml").split("\n\n").filter(known).collect::<Vec<_>>().join("\n\n");
+    let default = format!("protocol = \"{}\"", jamscope::scene::ProtocolChoice::default().name());
+    text.replace("protocol = \"study\"", &default)
 }
 
 /// Why a scene file cannot be used; names the file.

@@ -9,9 +9,10 @@ use std::time::Duration;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
+use jamscope::relax::RelaxerChoice;
+use jamscope::scene::ProtocolChoice;
 use jamscope::study::{
-    self, Dynamics, FailureKind, Merged, Plan, Problem, Recipe, Record, RecordOutcome, Scale, Shard, Study,
-    StudyProgress, Task,
+    self, FailureKind, Merged, Plan, Problem, Recipe, Record, RecordOutcome, Scale, Shard, Study, StudyProgress, Task,
 };
 
 use crate::scene_file::refuse_cut;
@@ -31,8 +32,11 @@ pub struct StudyArguments {
     #[arg(long, value_parser = scales(), default_value = "small", requires = "recipe")]
     scale: Scale,
     /// How packings of a recipe come to rest after the inflation.
-    #[arg(long, value_name = "NAME", value_parser = dynamics(), default_value = "fire-newton", requires = "recipe")]
-    dynamics: Dynamics,
+    #[arg(long, value_name = "NAME", value_parser = protocols(), default_value = ProtocolChoice::default().name(), requires = "recipe")]
+    protocol: ProtocolChoice,
+    /// A relaxer with its default settings in place of that of the protocol.
+    #[arg(long, value_name = "NAME", value_parser = relaxer, requires = "recipe", conflicts_with = "protocol")]
+    relaxer: Option<RelaxerChoice>,
     /// Packings of each size and pressure of a recipe, in place of those of its scale.
     #[arg(long, value_name = "N", requires = "recipe")]
     seeds: Option<usize>,
@@ -69,11 +73,17 @@ fn recipes() -> impl TypedValueParser<Value = Recipe> {
     names.try_map(|name| Recipe::ALL.into_iter().find(|it| it.name() == name).ok_or("no recipe of this name"))
 }
 
-/// Dynamics by their names.
-fn dynamics() -> impl TypedValueParser<Value = Dynamics> {
-    let names = Dynamics::ALL.iter().map(|it| PossibleValue::new(it.name()).help(it.title()));
+/// The protocols by their names.
+fn protocols() -> impl TypedValueParser<Value = ProtocolChoice> {
+    let names = ProtocolChoice::ALL.map(|it| PossibleValue::new(it.name()).help(it.title()));
     PossibleValuesParser::new(names)
-        .try_map(|name| Dynamics::ALL.iter().copied().find(|it| it.name() == name).ok_or("no dynamics of this name"))
+        .try_map(|name| ProtocolChoice::ALL.into_iter().find(|it| it.name() == name).ok_or("no protocol of this name"))
+}
+
+/// A relaxer by the name it has in a scene.
+fn relaxer(name: &str) -> Result<RelaxerChoice, String> {
+    let choice = format!("{name} = {{}}");
+    toml::from_str(&choice).map_err(|error| error.message().to_string())
 }
 
 /// The scales by their names.
@@ -121,7 +131,16 @@ fn read_study(path: &Path) -> Result<Study, Failure> {
     if let Some(scene) = scene.as_table_mut() {
         scene.entry("sample").or_insert_with(|| toml::Value::Array(Vec::new()));
     }
-    let study: Study = table.try_into().map_err(|error| format!("{}: {error}", path.display()))?;
+    let protocol = table.remove("protocol");
+    let mut study: Study = table.try_into().map_err(|error| format!("{}: {error}", path.display()))?;
+    if let Some(protocol) = protocol {
+        let protocol: ProtocolChoice =
+            protocol.try_into().map_err(|error| format!("{}: protocol: {error}", path.display()))?;
+        if !study.relaxers.is_empty() {
+            return Err(format!("{}: protocol and relaxers: one of them is enough", path.display()).into());
+        }
+        study.relaxers = vec![protocol.relaxer()];
+    }
     study.check().map_err(|error| format!("{}: {error}", path.display()))?;
     refuse_cut(&text).map_err(|message| format!("{}: {message}", path.display()))?;
     Ok(study)
@@ -134,7 +153,8 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
     let study = match (&arguments.study, arguments.recipe) {
         (Some(path), _) => read_study(path)?,
         (None, Some(recipe)) => {
-            let mut study = recipe.study_by(arguments.scale, arguments.dynamics);
+            let relaxer = arguments.relaxer.unwrap_or(arguments.protocol.relaxer());
+            let mut study = recipe.study_by(arguments.scale, relaxer);
             if let Some(count) = arguments.seeds {
                 study.set_seed_count(count);
                 study.check()?;
@@ -159,9 +179,9 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
     }
     set_threads(arguments.threads)?;
     if let Some(recipe) = arguments.recipe {
-        let (title, dynamics) = (recipe.title(), arguments.dynamics.title());
+        let by = arguments.relaxer.map_or(arguments.protocol.title(), |relaxer| relaxer.name());
         let cost = cost::summary(&plan, &arguments.out, shard);
-        print(&format!("{}: {title}\nat rest by {dynamics}\n{cost}", recipe.name()))?;
+        print(&format!("{}: {}\nat rest by {by}\n{cost}", recipe.name(), recipe.title()))?;
     }
     let bar = Bar::new(plan.tasks.iter().filter(|task| shard.has(task.index)).count());
     let executed = match shard == Shard::default() {

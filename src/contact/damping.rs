@@ -108,4 +108,29 @@ impl DampingChoice {
             DampingChoice::Viscoelastic(law) => law.rate,
         }
     }
+
+    /// Damping ratio of a Hertzian contact: below 1 it oscillates, above 1 it creeps.
+    ///
+    /// ```text
+    /// ζ = c_ij/(2 √(k m_eff))        k = (3/2) k' √(δ R_ij), the stiffness dF/dδ
+    /// ```
+    ///
+    /// # Example
+    /// A contact of two small disks at p ≈ 10 has an overlap of about 2·10⁻³: viscoelastic damping of rate 500 lets it oscillate, constant
+    /// damping of that rate does not.
+    /// ```
+    /// use jamscope::contact::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
+    ///
+    /// let ratio = |damping: DampingChoice| damping.hertzian_damping_ratio(2e5, 0.25, 2e-3);
+    /// assert!((ratio(DampingChoice::Viscoelastic(ViscoelasticDamping { rate: 500.0 })) - 0.0483).abs() < 1e-4);
+    /// assert!((ratio(DampingChoice::Constant(ConstantDamping { rate: 500.0 })) - 4.3167).abs() < 1e-3);
+    /// ```
+    pub fn hertzian_damping_ratio(&self, stiffness: f64, effective_radius: f64, overlap: f64) -> f64 {
+        let root = (overlap * effective_radius).sqrt();
+        let damping = match self {
+            DampingChoice::Constant(law) => law.rate,
+            DampingChoice::Viscoelastic(law) => law.rate * REDUCED_MASS * root,
+        };
+        damping / (2.0 * (1.5 * stiffness * root * REDUCED_MASS).sqrt())
+    }
 }

@@ -27,6 +27,7 @@ pub mod staged;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::PairLaw;
+use crate::contact::damping::DampingChoice;
 use crate::packing::{Packing, PackingError};
 
 pub use conjugate_gradients::NonlinearConjugateGradients;
@@ -368,6 +369,35 @@ impl RelaxerChoice {
             RelaxerChoice::Newton(newton) => newton.limit,
             #[cfg(feature = "linear")]
             RelaxerChoice::Staged(staged) => staged.limit,
+        }
+    }
+
+    /// What it is, in the words of a report: dynamics by their damping law and rate, "viscoelastic 500".
+    ///
+    /// It has what a minimum depends on, but no limits and no tolerances.
+    pub fn description(&self) -> String {
+        let precise = |words: &str, precision: Precision| match precision {
+            Precision::Double => words.to_string(),
+            Precision::Mixed => format!("{words}, mixed precision"),
+        };
+        let damped = |damping: DampingChoice, net_force: NetForce| {
+            let law = match damping {
+                DampingChoice::Constant(_) => "constant damping",
+                DampingChoice::Viscoelastic(_) => "viscoelastic",
+            };
+            let total = if net_force == NetForce::Total { ", total force" } else { "" };
+            format!("{law} {}{total}", damping.rate())
+        };
+        match self {
+            RelaxerChoice::Fire(fire) => precise("FIRE", fire.precision),
+            RelaxerChoice::Damped(dynamics) => format!("{}, explicit", damped(dynamics.damping, dynamics.net_force)),
+            RelaxerChoice::ConjugateGradients(_) | RelaxerChoice::QuasiNewton(_) => self.name().into(),
+            #[cfg(feature = "linear")]
+            RelaxerChoice::Implicit(dynamics) => damped(dynamics.damping, dynamics.net_force),
+            #[cfg(feature = "linear")]
+            RelaxerChoice::GradientFlow(_) | RelaxerChoice::Newton(_) => self.name().into(),
+            #[cfg(feature = "linear")]
+            RelaxerChoice::Staged(staged) => precise("FIRE and Newton", staged.precision),
         }
     }
 

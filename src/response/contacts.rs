@@ -19,7 +19,7 @@ pub struct ContactSummary {
 }
 
 /// Contacts from one state to another, counted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct ContactChangeCounts {
     /// In both states.
     pub kept_count: usize,

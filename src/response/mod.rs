@@ -4,6 +4,7 @@
 //! [`analysis`](crate::analysis) reads them from files. What [`Observables`] does not name is not computed; what cannot be had
 //! says why, [`Measurement::Refused`]. A phase and fits are given only with the leave of a [`RestVerdict`].
 
+mod calibration;
 mod contacts;
 mod phase;
 
@@ -11,8 +12,11 @@ use std::fmt::Display;
 
 use serde::Serialize;
 
+pub use calibration::{
+    CalibratedCell, CalibratedEnsemble, Calibration, Conditions, EvidenceCounts, PhaseFrequency, WordCounts,
+};
 pub use contacts::{ContactChangeCounts, ContactSummary, CycleCounts};
-pub use phase::{Phase, PhaseDecision, PhaseOutcome};
+pub use phase::{Evidence, Phase, PhaseDecision, PhaseOutcome};
 
 use crate::displacement::{DisplacementField, MeasuredOn};
 #[cfg(feature = "fit")]

@@ -20,7 +20,8 @@ use crate::processor::Processor;
 #[cfg(feature = "linear")]
 use crate::protocol::{Compared, Protocol, ProtocolSensitivity, ProtocolSettings, ProtocolSummary, chosen};
 use crate::relax::{Criterion, Look, Outcome, Relaxer, RelaxerChoice, Stop, Trace};
-use crate::response::{Response, Subject};
+use crate::response::{Calibration, Conditions, PhaseFrequency, Response, Subject};
+use crate::scene::reduced_pressure::reduction;
 use crate::scene::{Sample, Scene, SceneError, Source};
 use crate::verdict::{Place, RestVerdict};
 
@@ -250,8 +251,10 @@ pub(crate) fn measure<L: PairLaw>(
         let trace = &mut watch("protocols", &sample.relaxer);
         protocol_of(scene, sample, (&inflated, &response.verdict), law, &settings, trace).map(Box::new).into()
     });
+    let phase_frequency = phase_frequency(scene, sample, &packing, &response);
     Ok(SampleResult {
         packing,
+        phase_frequency,
         inflation: summary(&inflated, law, scene.inflation.on_site_coupling)?,
         response,
         #[cfg(feature = "linear")]
@@ -262,6 +265,24 @@ pub(crate) fn measure<L: PairLaw>(
         inflated,
         prepared,
     })
+}
+
+/// How often samples like this one are called what it is called.
+fn phase_frequency(
+    scene: &Scene,
+    sample: &Sample,
+    packing: &PackingSummary,
+    response: &Response,
+) -> Option<PhaseFrequency> {
+    let relaxer = sample.relaxer.description();
+    let conditions = Conditions {
+        law: scene.law.name(),
+        relaxer: &relaxer,
+        disk_count: packing.disk_count,
+        increase: scene.inflation.increase,
+        reduced_pressure: packing.pressure * reduction(scene),
+    };
+    Calibration::built_in().frequency(&conditions, response.phase.outcome)
 }
 
 /// An inflation as the observables see it.

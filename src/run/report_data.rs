@@ -12,9 +12,9 @@ use crate::processor::Vectors;
 #[cfg(feature = "linear")]
 use crate::protocol::{ProtocolSensitivity, ProtocolSummary};
 use crate::relax::{Cost, Criterion};
-#[cfg(feature = "linear")]
-use crate::response::Measurement;
 use crate::response::Response;
+#[cfg(feature = "linear")]
+use crate::response::{Measurement, PhaseFrequency};
 use crate::scene::Scene;
 use crate::verdict::RestVerdict;
 
@@ -67,6 +67,9 @@ pub struct SampleResult {
     /// All that is measured on it.
     #[serde(flatten)]
     pub response: Response,
+    /// How often samples of an ensemble like this one are called what it is called.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub phase_frequency: Option<PhaseFrequency>,
     /// What of the response is not in the linear one.
     #[cfg(feature = "linear")]
     #[serde(skip_serializing_if = "Option::is_none")]

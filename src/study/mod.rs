@@ -12,7 +12,6 @@
 //! Start from [`execute()`] and [`merge()`].
 
 mod curves;
-mod dynamics;
 mod execute;
 mod lock;
 mod merge;
@@ -24,7 +23,6 @@ mod settings;
 mod statistics;
 mod store;
 
-pub use dynamics::Dynamics;
 pub use execute::{ExecuteError, Execution, StudyProgress, Whole, execute, execute_and_merge};
 pub use lock::StudyLock;
 pub use merge::{MergeError, Merged, merge};

@@ -9,7 +9,8 @@ use crate::contact::LawChoice;
 use crate::inflation::Boundary;
 use crate::memory::{Memory, TooLarge};
 use crate::scene::Scene;
-use crate::study::settings::{Study, StudyError, Target, mobile_count};
+use crate::scene::reduced_pressure::mobile_count;
+use crate::study::settings::{Study, StudyError, Target};
 
 /// One packing and what is done to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -124,7 +125,7 @@ impl Plan {
 impl Task {
     /// One scene of one sample an inflation; they differ in increase and relaxer.
     pub fn scenes(&self) -> Vec<Scene> {
-        let relaxers = self.study.relaxers();
+        let relaxers = self.study.relaxers(self.target);
         let scene = |increase, relaxer| {
             self.study.scene_of(self.law, self.disk_count, self.target, (increase, relaxer), self.seed)
         };
@@ -134,7 +135,7 @@ impl Task {
 
     /// How many.
     pub fn scene_count(&self) -> usize {
-        self.study.increases().len() * self.study.relaxers().len()
+        self.study.increases().len() * self.study.relaxers(self.target).len()
     }
 
     /// What is held.

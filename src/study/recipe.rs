@@ -8,8 +8,7 @@ use serde::Serialize;
 use crate::contact::{Hertzian, Hookean, LawChoice};
 use crate::inflation::Boundary;
 use crate::relax::{Fire, RelaxerChoice};
-use crate::scene::{Observables, Scene};
-use crate::study::dynamics::Dynamics;
+use crate::scene::{Observables, ProtocolChoice, Scene};
 use crate::study::settings::{Part, Seeds, Study, Target};
 
 /// A figure of the published study.
@@ -120,17 +119,17 @@ impl Recipe {
         }
     }
 
-    /// The study with its default dynamics.
+    /// The study, by the protocol of the published one.
     pub fn study(self, scale: Scale) -> Study {
-        self.study_by(scale, Dynamics::default())
+        self.study_by(scale, ProtocolChoice::default().relaxer())
     }
 
-    /// The study. Packings below jamming come to rest by FIRE, whatever the dynamics: damped ones would not.
-    pub fn study_by(self, scale: Scale, dynamics: Dynamics) -> Study {
+    /// The study by a relaxer. Packings below jamming come to rest by FIRE all the same: damped dynamics would not end there.
+    pub fn study_by(self, scale: Scale, relaxer: RelaxerChoice) -> Study {
         let mut study = self.of_scale(scale);
         for relaxers in [&mut study.relaxers].into_iter().chain(study.parts.iter_mut().map(|part| &mut part.relaxers)) {
-            if *relaxers == [Dynamics::default().relaxer()] {
-                *relaxers = vec![dynamics.relaxer()];
+            if *relaxers == [ProtocolChoice::default().relaxer()] {
+                *relaxers = vec![relaxer];
             }
         }
         study
@@ -172,7 +171,7 @@ impl Scale {
     }
 }
 
-/// What all of them have in common: FIRE to a packing, then FIRE and Newton in turn.
+/// What all of them have in common: FIRE to a packing, then the protocol of the published study.
 fn common() -> Study {
     let observables = Observables {
         angular_profiles: None,
@@ -187,7 +186,7 @@ fn common() -> Study {
     Study {
         scene: Scene { observables, sample: Vec::new(), ..Scene::default() },
         targets: Vec::new(),
-        relaxers: vec![Dynamics::default().relaxer()],
+        relaxers: vec![ProtocolChoice::default().relaxer()],
         ..Study::default()
     }
 }
@@ -344,15 +343,12 @@ mod tests {
     }
 
     #[test]
-    fn dynamics_change_the_relaxers_of_jammed_packings_only() {
+    fn a_relaxer_is_that_of_jammed_packings_only() {
         for recipe in Recipe::ALL {
-            for &dynamics in Dynamics::ALL {
-                let (study, default) = (recipe.study_by(Scale::Small, dynamics), recipe.study(Scale::Small));
+            for relaxer in ProtocolChoice::ALL.map(ProtocolChoice::relaxer) {
+                let (study, default) = (recipe.study_by(Scale::Small, relaxer), recipe.study(Scale::Small));
                 let below = recipe == Recipe::Jamming;
-                assert_eq!(
-                    study.relaxers == default.relaxers,
-                    below || dynamics.relaxer() == Dynamics::default().relaxer()
-                );
+                assert_eq!(study.relaxers == default.relaxers, below || relaxer == ProtocolChoice::default().relaxer());
                 let parts: Vec<_> = study.parts.iter().map(|part| &part.relaxers).collect();
                 assert_eq!(parts, default.parts.iter().map(|part| &part.relaxers).collect::<Vec<_>>());
             }

@@ -15,9 +15,10 @@ use crate::relax::{RelaxerChoice, Stop};
 use crate::response::{PhaseDecision, Response};
 use crate::run::{RunError, SampleResult};
 use crate::scene::Scene;
+use crate::scene::reduced_pressure::{mobile_count, reduction};
 use crate::study::curves::curves;
 use crate::study::plan::Task;
-use crate::study::settings::{Target, mobile_count, reduction};
+use crate::study::settings::Target;
 
 /// Samples that differ in nothing but the seed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -6,7 +6,8 @@ use crate::contact::LawChoice;
 use crate::inflation::Boundary;
 use crate::memory::{Limit, TooLarge};
 use crate::relax::RelaxerChoice;
-use crate::scene::{NotWritable, Sample, Scene, SceneError, Source, finite};
+use crate::scene::reduced_pressure::reduction;
+use crate::scene::{NotWritable, ProtocolChoice, Sample, Scene, SceneError, Source, finite};
 
 /// One scene and the lists of what is varied in it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -22,7 +23,7 @@ pub struct Study {
     pub increases: Vec<f64>,
     /// Contact laws; empty, that of the scene.
     pub laws: Vec<LawChoice>,
-    /// How samples come to rest after the inflation; empty, FIRE with its defaults.
+    /// How samples come to rest after the inflation; empty, as the default [`ProtocolChoice`] says.
     pub relaxers: Vec<RelaxerChoice>,
     /// Samples of every combination.
     pub seeds: Seeds,
@@ -288,7 +289,7 @@ impl Study {
             for disk_count in self.disk_counts() {
                 for target in &self.targets {
                     for increase in self.increases() {
-                        for relaxer in self.relaxers() {
+                        for relaxer in self.relaxers(*target) {
                             self.scene_of(law, disk_count, *target, (increase, relaxer), first).check()?;
                         }
                     }
@@ -313,9 +314,16 @@ impl Study {
         if self.increases.is_empty() { vec![self.scene.inflation.increase] } else { self.increases.clone() }
     }
 
-    /// The relaxers.
-    pub(super) fn relaxers(&self) -> Vec<RelaxerChoice> {
-        if self.relaxers.is_empty() { vec![RelaxerChoice::default()] } else { self.relaxers.clone() }
+    /// The relaxers of a target.
+    pub(super) fn relaxers(&self, target: Target) -> Vec<RelaxerChoice> {
+        if !self.relaxers.is_empty() {
+            return self.relaxers.clone();
+        }
+        let protocol = ProtocolChoice::default();
+        match target {
+            Target::PackingFraction(fraction) => vec![protocol.relaxer_of(&Source::PackingFraction(fraction))],
+            Target::Pressure(_) | Target::ReducedPressure(_) => vec![protocol.relaxer()],
+        }
     }
 
     /// The scene of one sample.
@@ -337,20 +345,6 @@ impl Study {
         scene.sample = vec![Sample { name: "sample".into(), seed, source, relaxer }];
         scene
     }
-}
-
-/// N, the disks in the circle by area, or all of the periodic box.
-pub(super) fn mobile_count(disk_count: usize, boundary: Boundary) -> f64 {
-    let share = match boundary {
-        Boundary::HeldRim { outer_radius_over_side: ratio } => std::f64::consts::PI * ratio * ratio,
-        Boundary::Periodic => 1.0,
-    };
-    share * disk_count as f64
-}
-
-/// p̂/p = N^(α−1).
-pub(super) fn reduction(scene: &Scene) -> f64 {
-    libm::pow(mobile_count(scene.disk_count, scene.inflation.boundary), scene.law.exponent() - 1.0)
 }
 
 fn twice<T: PartialEq + std::fmt::Debug>(list: &'static str, values: &[T]) -> Result<(), StudyError> {

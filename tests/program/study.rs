@@ -8,7 +8,7 @@ use jamscope::inflation::Boundary;
 use jamscope::processor::Processor;
 use jamscope::relax::{Fire, RelaxerChoice};
 use jamscope::run::{SampleOutcome, run};
-use jamscope::scene::{Observables, Sample, Scene, Source};
+use jamscope::scene::{Observables, ProtocolChoice, Sample, Scene, Source};
 use jamscope::study::{
     ExecuteError, FailureKind, MergeError, Part, Plan, Record, RecordOutcome, Seeds, Shard, StoreError, Study,
     StudyError, Target, execute, merge,
@@ -100,7 +100,7 @@ fn a_record_has_the_numbers_of_its_run() {
         name: "one".into(),
         seed: 3,
         source: Source::Pressure(500.0),
-        relaxer: RelaxerChoice::Fire(Fire::default()),
+        relaxer: ProtocolChoice::default().relaxer(),
     };
     let mut scene = Scene { sample: vec![sample], ..study().scene };
     scene.inflation.increase = 0.02;

@@ -154,13 +154,13 @@ fn the_study_of_seeds_has_the_plastic_sample_of_the_first_run() {
         String::from_utf8(output.expect("the program starts").stdout).expect("Unicode")
     };
     let plan = study(file.as_ref(), &["--dry-run"]);
-    assert!(plan.contains("5548 disks, pressure 10: 420 packings, 1 inflations each, 0 done"), "{plan}");
-    // One of them alone: its seed in the built-in scene, where all evidence says plastic.
+    assert!(plan.contains("5548 disks, pressure 10: 100 packings, 1 inflations each, 0 done"), "{plan}");
+    // One of them alone: its seed in the built-in scene, where what evidence speaks says plastic.
     let one = folder.path().join("one.toml");
     let text = std::fs::read_to_string(file).expect("a file of the book");
-    let all_seeds = "seeds = { first = 1, count = 420 }";
+    let all_seeds = "seeds = { first = 1, count = 100 }";
     assert!(text.contains(all_seeds));
-    std::fs::write(&one, text.replace(all_seeds, "seeds = { first = 326, count = 1 }")).expect("written");
+    std::fs::write(&one, text.replace(all_seeds, "seeds = { first = 1, count = 1 }")).expect("written");
     study(&one, &[]);
     let summary = std::fs::read_to_string(out.join("summary.json")).expect("a summary");
     let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
@@ -201,13 +201,29 @@ fn a_recipe_is_a_study_that_can_be_printed_changed_and_run() {
     let expected = plan(&["study", "--recipe", "periodic", "--dry-run"]);
     assert!(expected.contains("2774 disks, pressure 3500: 10 packings, 1 inflations each, 0 done"), "{expected}");
     assert_eq!(plan(&["study", "periodic.toml", "--dry-run"]), expected);
-    // Other dynamics and fewer seeds are other studies.
-    let (done, other) = run(&["study", "--recipe", "kappa", "--seeds", "3", "--dynamics", "fire", "--print"]);
+    // Another protocol, another relaxer and fewer seeds are other studies.
+    let (done, other) = run(&["study", "--recipe", "kappa", "--seeds", "3", "--protocol", "fire", "--print"]);
     assert!(done && other.contains("count = 3\n") && other.contains("relaxers.fire"), "{other}");
+    let (done, other) = run(&["study", "--recipe", "kappa", "--relaxer", "quasi_newton", "--print"]);
+    assert!(done && other.contains("[relaxers.quasi_newton]"), "{other}");
+    let (done, refusal) = run(&["study", "--recipe", "kappa", "--relaxer", "fier", "--print"]);
+    assert!(!done && refusal.contains("unknown variant `fier`"), "{refusal}");
     #[cfg(feature = "linear")]
     {
-        let (done, other) = run(&["study", "--recipe", "kappa", "--dynamics", "study", "--print"]);
+        let (done, other) = run(&["study", "--recipe", "kappa", "--print"]);
         assert!(done && other.contains("relaxers.implicit.damping.viscoelastic]\nrate = 500.0"), "{other}");
+        assert_eq!(run(&["study", "--recipe", "kappa", "--protocol", "study", "--print"]).1, other);
+        // A study file names a protocol or relaxers.
+        let file = |text: &str| std::fs::write(folder.path().join("by_name.toml"), text).expect("written");
+        file("protocol = \"constant\"\n");
+        let (done, named) = run(&["study", "by_name.toml", "--print"]);
+        assert!(done && named.contains("relaxers.implicit.damping.constant]\nrate = 500.0"), "{named}");
+        file("protocol = \"constant\"\nrelaxers = [{ fire = {} }]\n");
+        let (done, refusal) = run(&["study", "by_name.toml", "--print"]);
+        assert!(!done && refusal.contains("protocol and relaxers: one of them is enough"), "{refusal}");
+        file("protocol = \"newton\"\n");
+        let (done, refusal) = run(&["study", "by_name.toml", "--print"]);
+        assert!(!done && refusal.contains("protocol") && refusal.contains("newton"), "{refusal}");
     }
     let (done, refusal) = run(&["study", "--recipe", "kappa", "--seeds", "0", "--dry-run"]);
     assert!(!done && refusal.contains("seeds.count"), "{refusal}");

@@ -1,6 +1,7 @@
 //! What a reader wants to know of each sample, row by row; the terminal table and the page lay the same rows out.
 
 pub(crate) mod analysis;
+mod frequency;
 pub(crate) mod response;
 mod states;
 
@@ -121,6 +122,7 @@ pub(crate) fn sections(report: &Report, samples: &[SampleReport], times: Times) 
     ];
     let responses = samples.iter().map(|sample| done(sample).map(|result| &result.response)).collect();
     all.extend(response::sections(responses));
+    all.push(frequency::section(samples));
     #[cfg(feature = "linear")]
     all.extend([states::plastic(samples), crate::report::protocol::section(samples)]);
     all.retain(|section| !section.rows.is_empty());

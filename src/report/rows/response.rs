@@ -71,7 +71,8 @@ fn phase(responses: Vec<Option<&Response>>) -> Section {
     rows.add("phase", |it| Some(outcome_name(it.phase.outcome).into()))
         .add("by the radial profile", |it| name(it.phase.by_profile))
         .add("by the sign of Δp", |it| name(it.phase.by_pressure_change))
-        .add("by the angular spectrum", |it| name(it.phase.by_spectrum));
+        .add("by the angular spectrum", |it| name(it.phase.by_spectrum))
+        .add("by the contacts changed", |it| name(it.phase.by_contact_changes));
     rows.section("Phase")
 }
 

@@ -1,0 +1,132 @@
+//! [`ProtocolChoice`]: how packings come to rest, by name.
+//!
+//! ```text
+//! random points ─► quenched at φ, or quenched and brought to p, by FIRE ─► inflated ─► at rest again by the relaxer of the protocol
+//! ```
+//!
+//! Near jamming a packing has many minima, and the relaxer decides which one it ends in. With viscoelastic damping a contact near jamming is
+//! underdamped: inertia carries disks over barriers that the other relaxers never cross. So the plastic phase of an ensemble depends on the protocol,
+//! and every report names it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::contact::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
+use crate::relax::{Fire, RelaxerChoice};
+#[cfg(feature = "linear")]
+use crate::relax::{ImplicitDynamics, Staged};
+use crate::scene::Source;
+
+/// How packings come to rest after the inflation.
+///
+/// The default is that of the study, but FIRE in builds without the feature `linear`: explicit damped steps take a hundred times as long near jamming.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ProtocolChoice {
+    /// Damped dynamics, c_ij = γ m_eff √(δ R_ij) with γ = 500: underdamped near jamming. The published study's source names viscoelastic
+    /// damping and η_n = 500.
+    #[cfg_attr(feature = "linear", default)]
+    Study,
+    /// Damped dynamics, c_ij = γ with γ = 500: overdamped near jamming.
+    Constant,
+    /// FIRE and Newton's method in turn: a minimum near the start.
+    FireNewton,
+    /// FIRE alone.
+    #[cfg_attr(not(feature = "linear"), default)]
+    Fire,
+}
+
+/// γ of either damping law. Source: the published study, η_n = 500.
+const RATE: f64 = 500.0;
+
+/// φ_J. Below it FIRE relaxes: viscoelastic damping vanishes with the overlaps, so that a packing without contacts never stops.
+/// Source: O'Hern, Langer, Liu, Nagel (2002), Phys. Rev. Lett. 88, 075507.
+const JAMMING: f64 = 0.842;
+
+impl ProtocolChoice {
+    /// All of them.
+    pub const ALL: [ProtocolChoice; 4] =
+        [ProtocolChoice::Study, ProtocolChoice::Constant, ProtocolChoice::FireNewton, ProtocolChoice::Fire];
+
+    /// As it stands in a scene and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            ProtocolChoice::Study => "study",
+            ProtocolChoice::Constant => "constant",
+            ProtocolChoice::FireNewton => "fire-newton",
+            ProtocolChoice::Fire => "fire",
+        }
+    }
+
+    /// What it is, in a few words.
+    pub fn title(self) -> &'static str {
+        match self {
+            ProtocolChoice::Study => "damped dynamics, viscoelastic damping of rate 500, as the published study",
+            ProtocolChoice::Constant => "damped dynamics, constant damping of rate 500",
+            ProtocolChoice::FireNewton => "FIRE and Newton's method in turn",
+            ProtocolChoice::Fire => "FIRE alone",
+        }
+    }
+
+    /// The relaxer after the inflation. Without the feature `linear` damped dynamics take explicit steps, and FIRE ends without Newton's method.
+    pub fn relaxer(self) -> RelaxerChoice {
+        match self {
+            ProtocolChoice::Study => damped(DampingChoice::Viscoelastic(ViscoelasticDamping { rate: RATE })),
+            ProtocolChoice::Constant => damped(DampingChoice::Constant(ConstantDamping { rate: RATE })),
+            #[cfg(feature = "linear")]
+            ProtocolChoice::FireNewton => RelaxerChoice::Staged(Staged::default()),
+            #[cfg(not(feature = "linear"))]
+            ProtocolChoice::FireNewton => RelaxerChoice::Fire(Fire::default()),
+            ProtocolChoice::Fire => RelaxerChoice::Fire(Fire::default()),
+        }
+    }
+
+    /// The relaxer of a packing from this source: FIRE for one quenched below jamming.
+    pub fn relaxer_of(self, source: &Source) -> RelaxerChoice {
+        match source {
+            Source::PackingFraction(fraction) if *fraction < JAMMING => RelaxerChoice::Fire(Fire::default()),
+            _ => self.relaxer(),
+        }
+    }
+
+    /// The protocol that has this relaxer after the inflation, if one has.
+    pub fn of(relaxer: &RelaxerChoice) -> Option<Self> {
+        Self::ALL.into_iter().find(|protocol| protocol.relaxer() == *relaxer)
+    }
+}
+
+#[cfg(feature = "linear")]
+fn damped(damping: DampingChoice) -> RelaxerChoice {
+    RelaxerChoice::Implicit(ImplicitDynamics { damping, ..ImplicitDynamics::default() })
+}
+
+#[cfg(not(feature = "linear"))]
+fn damped(damping: DampingChoice) -> RelaxerChoice {
+    RelaxerChoice::Damped(crate::relax::DampedDynamics { damping, ..Default::default() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_that_of_a_scene_file() {
+        for protocol in ProtocolChoice::ALL {
+            let written = serde_json::to_string(&protocol).expect("a name");
+            assert_eq!(written, format!("\"{}\"", protocol.name()));
+        }
+    }
+
+    #[test]
+    fn fire_relaxes_what_is_quenched_below_jamming() {
+        let fire = RelaxerChoice::Fire(Fire::default());
+        for protocol in ProtocolChoice::ALL {
+            assert_eq!(protocol.relaxer_of(&Source::PackingFraction(0.82)), fire);
+            assert_eq!(protocol.relaxer_of(&Source::PackingFraction(0.86)), protocol.relaxer());
+            assert_eq!(protocol.relaxer_of(&Source::Pressure(1.0)), protocol.relaxer());
+        }
+        #[cfg(feature = "linear")]
+        for protocol in ProtocolChoice::ALL {
+            assert_eq!(ProtocolChoice::of(&protocol.relaxer()), Some(protocol));
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! Tables of the book and the calibration of phases against the records of the ensembles they come from.
+
+mod tables;
+
+use std::path::Path;
+
+use tables::{Ensemble, calibration, tables};
+
+fn ensembles() -> Vec<Ensemble> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/ensembles");
+    let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let mut archives: Vec<_> = entries.filter(|path| path.to_string_lossy().ends_with(".jsonl.gz")).collect();
+    archives.sort();
+    assert!(!archives.is_empty());
+    let read = |path: &std::path::PathBuf| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        Ensemble::read(path, folder.path())
+    };
+    std::thread::scope(|scope| {
+        let all: Vec<_> = archives.iter().map(|path| scope.spawn(move || read(path))).collect();
+        all.into_iter().map(|one| one.join().expect("an archive that can be read")).collect()
+    })
+}
+
+#[test]
+fn tables_of_the_book_are_those_of_the_records() {
+    let ensembles = ensembles();
+    let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("book/src");
+    let text: String = ["plastic_phase.md", "response.md"]
+        .map(|chapter| std::fs::read_to_string(book.join(chapter)).expect("a chapter"))
+        .concat();
+    for (title, table) in tables(&ensembles) {
+        assert!(text.contains(&table), "{title} is not in the book:\n{table}");
+    }
+    let expected = serde_json::to_string_pretty(&calibration(&ensembles)).expect("JSON") + "\n";
+    let found = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/response/calibration.json"));
+    assert_eq!(found.expect("there"), expected, "the calibration is not that of the records");
+}

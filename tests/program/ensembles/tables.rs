@@ -1,0 +1,241 @@
+//! The tables of the chapter *Which dynamics make the plastic phase*, from the records in `fixtures/ensembles`.
+
+use std::fmt::Write as _;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use flate2::read::GzDecoder;
+use jamscope::response::{Calibration, WordCounts};
+use jamscope::study::{CellSamples, Merged, NumberStatistics, Target, merge};
+use jamscope::transition::{Method, Series, Transition, TransitionPressure};
+
+/// A study of `fixtures/ensembles`, merged.
+pub struct Ensemble {
+    pub name: String,
+    pub merged: Merged,
+    pub transition: Transition,
+}
+
+/// First zero of J_1: κ_1 R.
+const FIRST_ZERO: f64 = 3.831_705_970_207_512;
+
+impl Ensemble {
+    /// Unpacks an archive (see `archive.py` beside it) into a folder and merges that.
+    pub fn read(archive: &Path, folder: &Path) -> Self {
+        let file = std::fs::File::open(archive).expect("an archive");
+        let lines = BufReader::new(GzDecoder::new(file)).lines().map(|line| line.expect("text"));
+        let lines: Vec<String> = lines.collect();
+        let samples = folder.join("samples");
+        std::fs::create_dir_all(&samples).expect("a folder");
+        std::fs::write(folder.join("study.json"), &lines[0]).expect("written");
+        for sample in lines[1..].chunks(3) {
+            let header: serde_json::Value = serde_json::from_str(&sample[0]).expect("a header");
+            let name = format!("{}.jsonl", &header["identity"].as_str().expect("an identity")[..24]);
+            std::fs::write(samples.join(name), sample.join("\n") + "\n").expect("written");
+        }
+        let merged = merge(folder).expect("a study");
+        assert!(merged.damaged.is_empty() && merged.foreign.is_empty(), "{:?} {:?}", merged.damaged, merged.foreign);
+        let transition = Transition::of(&merged);
+        let name = archive.file_name().expect("a name").to_string_lossy().replace(".jsonl.gz", "");
+        Ensemble { name, merged, transition }
+    }
+
+    /// The series with samples, one a relaxer.
+    fn series(&self) -> Vec<&Series> {
+        self.transition.series.iter().filter(|one| one.points.iter().any(|point| point.sample_count > 0)).collect()
+    }
+
+    fn samples(&self, series: &Series, target: Target) -> Option<&CellSamples> {
+        let own = |samples: &&CellSamples| {
+            samples.cell.target == target && samples.cell.differs_in_target_alone(&series.cell)
+        };
+        self.merged.samples.iter().find(own)
+    }
+
+    /// Targets, ascending.
+    fn targets(&self) -> Vec<(f64, Target)> {
+        let mut all: Vec<(f64, Target)> = Vec::new();
+        for samples in &self.merged.samples {
+            let target = samples.cell.target;
+            if !all.iter().any(|(_, other)| *other == target) && samples.done_count > 0 {
+                all.push((target.name_and_value().1, target));
+            }
+        }
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        all
+    }
+
+    /// A row a p̂, a column a relaxer and quantity.
+    fn by_pressure(&self, quantities: &[(&str, &dyn Fn(&Series, &CellSamples) -> String)]) -> String {
+        let series = self.series();
+        let mut head = "| p̂ | samples |".to_string();
+        for (name, _) in quantities {
+            for one in &series {
+                write!(head, " {name}: {} |", relaxer(one)).expect("text");
+            }
+        }
+        let mut table = head.clone() + "\n|" + &"---|".repeat(head.matches('|').count() - 1) + "\n";
+        for (value, target) in self.targets() {
+            let counts: Vec<usize> =
+                series.iter().filter_map(|one| Some(self.samples(one, target)?.done_count)).collect();
+            let (least, most) = (counts.iter().min().unwrap_or(&0), counts.iter().max().unwrap_or(&0));
+            let count = if least == most { least.to_string() } else { format!("{least} to {most}") };
+            write!(table, "| {} | {count} |", power(value)).expect("text");
+            for (_, of) in quantities {
+                for one in &series {
+                    let cell = self.samples(one, target).filter(|samples| samples.done_count > 0);
+                    write!(table, " {} |", cell.map_or("–".into(), |samples| of(one, samples))).expect("text");
+                }
+            }
+            table.push('\n');
+        }
+        table
+    }
+
+    /// Δp, κ and contacts.
+    pub fn radial(&self) -> String {
+        let pressure = |_: &Series, samples: &CellSamples| mean(samples, "scaled_pressure_change", 2);
+        let screened = |_: &Series, samples: &CellSamples| share(samples, |kappa, radius| kappa * radius >= 0.5 * FIRST_ZERO);
+        let made = |_: &Series, samples: &CellSamples| mean(samples, "contacts_made", 0);
+        self.by_pressure(&[("Δp/p^(1/3)", &pressure), ("κ ≥ κ₁/2", &screened), ("contacts made", &made)])
+    }
+
+    /// Slope, G*, θ*.
+    pub fn angular(&self) -> String {
+        let slope = |one: &Series, samples: &CellSamples| {
+            let index = self.merged.samples.iter().position(|other| std::ptr::eq(other, samples));
+            let spectrum = one.spectra.iter().find(|spectrum| Some(spectrum.point.cell) == index);
+            spectrum.and_then(|spectrum| spectrum.slope).map_or("–".into(), |slope| match slope.standard_error {
+                Some(error) => format!("{:.2} ± {error:.2}", slope.best),
+                None => format!("{:.2}", slope.best),
+            })
+        };
+        let anticorrelation = |_: &Series, samples: &CellSamples| mean(samples, "anticorrelation", 2);
+        let angle = |_: &Series, samples: &CellSamples| {
+            let Some(values) = samples.numbers.get("correlation_angle_at_0.1") else { return "–".into() };
+            let over_pi: Vec<f64> = values.iter().map(|value| value / std::f64::consts::PI).collect();
+            with_error(&NumberStatistics::of(&over_pi), 2)
+        };
+        self.by_pressure(&[("slope", &slope), ("G*", &anticorrelation), ("θ*/π", &angle)])
+    }
+
+    /// p̂_c by every method.
+    pub fn critical(&self) -> String {
+        let series = self.series();
+        let mut table = "| p̂_c by |".to_string();
+        series.iter().for_each(|one| write!(table, " {} |", relaxer(one)).expect("text"));
+        table += &format!(" published |\n|{}\n", "---|".repeat(series.len() + 2));
+        let mut methods: Vec<Method> = Vec::new();
+        for estimate in series.iter().flat_map(|one| &one.estimates) {
+            if !methods.contains(&estimate.method) {
+                methods.push(estimate.method);
+            }
+        }
+        for method in methods {
+            write!(table, "| {} |", method.name()).expect("text");
+            for one in &series {
+                let found = one.estimates.iter().find(|estimate| estimate.method == method);
+                write!(table, " {} |", found.map_or("–".into(), |found| pressure(found.pressure))).expect("text");
+            }
+            let published = if matches!(method, Method::Wavenumber | Method::PressureChange) { 3e8 } else { 1e8 };
+            writeln!(table, " {} |", power(published)).expect("text");
+        }
+        table
+    }
+
+    /// What each kind of evidence says of how many samples: plastic, quasielastic.
+    pub fn evidence(&self, relaxer_name: &str) -> String {
+        let mut table = "| p̂ | samples | together | profile | Δp | spectrum | contacts |\n".to_string();
+        table += &format!("|{}\n", "---|".repeat(7));
+        let words = |counts: WordCounts| format!("{}, {}", counts.plastic, counts.quasielastic);
+        for ensemble in self.transition.calibration.ensembles.iter().filter(|it| it.relaxer == relaxer_name) {
+            for cell in &ensemble.cells {
+                let counts = &cell.counts;
+                writeln!(
+                    table,
+                    "| {} | {} | {} | {} | {} | {} | {} |",
+                    power(cell.reduced_pressure),
+                    counts.sample_count,
+                    words(counts.phase),
+                    words(counts.profile),
+                    words(counts.pressure_change),
+                    words(counts.spectrum),
+                    words(counts.contact_changes)
+                )
+                .expect("text");
+            }
+        }
+        table
+    }
+}
+
+/// Every table of the chapters, with its title.
+pub fn tables(ensembles: &[Ensemble]) -> Vec<(String, String)> {
+    let mut all = Vec::new();
+    for one in ensembles {
+        all.push((format!("{}: radial", one.name), one.radial()));
+        all.push((format!("{}: angular", one.name), one.angular()));
+        all.push((format!("{}: p̂_c", one.name), one.critical()));
+        if one.name.starts_with("damping") {
+            all.push((format!("{}: evidence", one.name), one.evidence("viscoelastic 500")));
+        }
+    }
+    all
+}
+
+/// The calibration of the program: that of all ensembles.
+pub fn calibration(ensembles: &[Ensemble]) -> Calibration {
+    let all = ensembles.iter().flat_map(|one| one.transition.calibration.ensembles.iter().cloned());
+    Calibration { ensembles: all.collect() }
+}
+
+fn relaxer(one: &Series) -> String {
+    one.cell.relaxer.description()
+}
+
+/// 3·10⁸.
+fn power(value: f64) -> String {
+    let exponent = value.log10().floor() as i32;
+    let digits: String = exponent.to_string().chars().map(|c| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(c as usize - '0' as usize).unwrap_or('⁻')).collect();
+    let mantissa = value / 10f64.powi(exponent);
+    match (mantissa * 10.0).round() {
+        10.0 => format!("10{digits}"),
+        tenths if tenths % 10.0 == 0.0 => format!("{}·10{digits}", tenths / 10.0),
+        tenths => format!("{:.1}·10{digits}", tenths / 10.0),
+    }
+}
+
+fn pressure(of: TransitionPressure) -> String {
+    match of {
+        TransitionPressure::Found(found) => {
+            let ends = found.interval.map_or(String::new(), |[low, high]| format!(" ({} to {})", power(low), power(high)));
+            power(found.best) + &ends
+        }
+        TransitionPressure::Between([low, high]) => format!("between {} and {}", power(low), power(high)),
+        TransitionPressure::Above(highest) => format!("above {}", power(highest)),
+        TransitionPressure::Below(lowest) => format!("below {}", power(lowest)),
+        TransitionPressure::Unordered => "not in one place".into(),
+        TransitionPressure::Uninformative { .. } => "cannot tell".into(),
+    }
+}
+
+fn with_error(of: &NumberStatistics, digits: usize) -> String {
+    match of.standard_error {
+        Some(error) => format!("{:.digits$} ± {error:.digits$}", of.mean),
+        None => format!("{:.digits$}", of.mean),
+    }
+}
+
+fn mean(samples: &CellSamples, name: &str, digits: usize) -> String {
+    samples.numbers.get(name).map_or("–".into(), |values| with_error(&NumberStatistics::of(values), digits))
+}
+
+/// Samples whose κ is so, of those fitted.
+fn share(samples: &CellSamples, is: impl Fn(f64, f64) -> bool) -> String {
+    let (Some(kappas), Some(radii)) = (samples.numbers.get("wavenumber"), samples.numbers.get("outer_radius")) else {
+        return "–".into();
+    };
+    let radius = NumberStatistics::of(radii).mean;
+    let count = kappas.iter().filter(|&&kappa| is(kappa, radius)).count();
+    format!("{count} of {}", kappas.len())
+}
