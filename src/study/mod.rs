@@ -29,7 +29,7 @@ pub use merge::{MergeError, Merged, merge};
 pub use plan::{Plan, Shard, Task};
 pub use recipe::{Recipe, Scale};
 pub use record::{Cell, FailureKind, Record, RecordOutcome};
-pub use samples::{CellSamples, MeanCurve, MeanPoint, Single};
+pub use samples::{CellSamples, MeanCurve, MeanPoint, Single, StretchingRow};
 pub use settings::{Part, Seeds, Study, StudyError, Target};
 pub use statistics::{CellStatistics, NumberStatistics, PhaseCounts};
 pub use store::{Problem, StoreError};

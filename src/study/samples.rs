@@ -1,7 +1,8 @@
 //! [`CellSamples`]: what is kept of all samples of a cell, so that a study of any length fits in memory.
 //!
-//! Of every sample its numbers and the powers of its ring, some 80 numbers; of curves sums over samples; of the first few samples
-//! the radial profile as it is.
+//! Of every sample its numbers, the powers of its ring and, where it has an isostatic length, the stretching fluctuation of its rings; of curves
+//! sums over samples; of the first few samples the radial profile as it is. Of 5548 disks that is some 120 numbers a sample, 41 of them
+//! for the rings: 1 kB, so 100 MB for 10⁵ samples.
 
 use std::collections::BTreeMap;
 
@@ -27,10 +28,35 @@ pub struct CellSamples {
     pub numbers: BTreeMap<String, Vec<f64>>,
     /// P_f over the variance of the ring, f = 1, 2, …, of every sample that has it.
     pub powers: Vec<Vec<f64>>,
+    /// h_∥ of every ring with ΔZ, of every sample that has both: 8 bytes a ring.
+    pub stretching: Vec<StretchingRow>,
     /// Curves by name, averaged.
     pub curves: BTreeMap<String, MeanCurve>,
     /// The first samples.
     pub singles: Vec<Single>,
+}
+
+/// One sample's fluctuation of the stretching of bonds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StretchingRow {
+    /// ΔZ \[1\].
+    pub excess: f64,
+    /// Mean h_∥ of the rings from r = i to i + 1 in place i \[length\]; NaN where there is none.
+    pub rings: Vec<f64>,
+}
+
+impl StretchingRow {
+    fn of(excess: f64, points: &[[f64; 2]]) -> Self {
+        let places = |[radius, _]: &[f64; 2]| radius.floor() as usize;
+        let count = points.iter().map(places).max().map_or(0, |last| last + 1);
+        let mut sums = vec![(0.0, 0.0); count];
+        for point in points {
+            let sum = &mut sums[places(point)];
+            *sum = (sum.0 + point[1], sum.1 + 1.0);
+        }
+        // 0/0 is NaN.
+        StretchingRow { excess, rings: sums.into_iter().map(|(sum, count)| sum / count).collect() }
+    }
 }
 
 /// One sample's radial profile.
@@ -110,6 +136,7 @@ impl CellSamples {
             phases: PhaseCounts::default(),
             numbers: BTreeMap::new(),
             powers: Vec::new(),
+            stretching: Vec::new(),
             curves: BTreeMap::new(),
             singles: Vec::new(),
         }
@@ -120,7 +147,7 @@ impl CellSamples {
         self.cell == record.cell
     }
 
-    pub(super) fn add(&mut self, record: &Record) {
+    pub(crate) fn add(&mut self, record: &Record) {
         let (phase, numbers, curves) = match &record.outcome {
             RecordOutcome::Failed { kind, .. } => {
                 *self.failures.entry(*kind).or_default() += 1;
@@ -151,6 +178,11 @@ impl CellSamples {
         if let Some(points) = curves.get("power_spectrum") {
             self.powers.push(points.iter().map(|point| point[1]).collect());
         }
+        if let (Some(points), Some(&excess)) =
+            (curves.get("stretching_fluctuation"), numbers.get("excess_coordination"))
+        {
+            self.stretching.push(StretchingRow::of(excess, points));
+        }
         if let Some(profile) = curves.get("radial_profile")
             && self.singles.len() < SINGLE_COUNT
         {
@@ -173,6 +205,38 @@ impl CellSamples {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn stretching_stands_in_the_place_of_its_ring() {
+        let row = StretchingRow::of(0.5, &[[1.5, 0.3], [2.25, 0.25], [2.75, 0.15], [4.5, 0.1]]);
+        assert_eq!(row.excess, 0.5);
+        assert!(row.rings[0].is_nan() && row.rings[3].is_nan());
+        assert_eq!((row.rings.len(), &row.rings[1..3], row.rings[4]), (5, &[0.3, 0.2][..], 0.1));
+    }
+
+    #[test]
+    fn a_sample_without_its_excess_has_no_row() {
+        let mut cell = CellSamples::new(crate::study::Cell {
+            law: Default::default(),
+            disk_count: 100,
+            target: crate::study::Target::Pressure(1.0),
+            increase: 0.1,
+            relaxer: Default::default(),
+            boundary: Default::default(),
+        });
+        let record = |numbers: BTreeMap<String, f64>| Record {
+            cell: cell.cell,
+            seed: 1,
+            outcome: RecordOutcome::Done {
+                phase: Default::default(),
+                numbers,
+                curves: BTreeMap::from([("stretching_fluctuation".into(), vec![[1.5, 0.3]])]),
+            },
+        };
+        let both = [record(BTreeMap::new()), record(BTreeMap::from([("excess_coordination".into(), 0.4)]))];
+        both.iter().for_each(|record| cell.add(record));
+        assert_eq!((cell.done_count, cell.stretching.len(), cell.stretching[0].excess), (2, 1, 0.4));
+    }
 
     #[test]
     fn means_keep_their_digits() {

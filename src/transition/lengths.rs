@@ -5,12 +5,19 @@
 //! y(x) = (h_∥(r)/h_∥(1.5)) x, x = r ΔZ, of the means over samples        ℓ_iso: the smallest r with y ≥ 1.3
 //! ```
 //!
+//! The interval of ℓ_iso is that of drawing the samples of the cell, each with its h_∥ and ΔZ. The radii of rings stay as they are, means
+//! over all samples.
+//!
 //! Source: the study, appendix C and S8 (threshold 1.3), S3 (ξ, φ_J = 0.842).
 
 use serde::Serialize;
 
-use crate::fit::ensemble::{DivergenceAt, DivergenceOutcome, MeasuredPoint, fit_divergence, fit_divergence_at};
-use crate::study::{Cell, CellSamples, MeanPoint, Merged, NumberStatistics, Target};
+use crate::fit::ensemble::{
+    DivergenceAt, DivergenceOutcome, MeasuredPoint, bootstrap, bootstrap_all, fit_divergence, fit_divergence_at,
+};
+use crate::study::{Cell, CellSamples, MeanPoint, Merged, NumberStatistics, StretchingRow, Target};
+use crate::transition::RESAMPLINGS;
+use crate::transition::evidence::Sampled;
 use crate::transition::series::SeriesPoint;
 
 /// y from which on bonds stretch as in a continuum. Source: the study.
@@ -41,7 +48,10 @@ pub struct Lengths {
     pub screening: Option<LengthPoint>,
     /// ℓ_iso \[length\]; absent where y is above the threshold from the start or never.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub isostatic: Option<f64>,
+    pub isostatic: Option<Sampled>,
+    /// ℓ_iso ΔZ \[length\], ΔZ that of the samples drawn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scaled_isostatic: Option<Sampled>,
     /// r \[length\], x, y, h_r/h_r(1.5) x \[1\].
     #[serde(skip)]
     pub curve: Vec<[f64; 4]>,
@@ -78,22 +88,75 @@ impl Lengths {
             LengthPoint { mean: found.mean, standard_error: found.standard_error, count: found.count }
         });
         let curve = excess.filter(|excess| *excess > 0.0).map_or(Vec::new(), |excess| curve(samples, excess));
-        Lengths { point: *point, excess, screening, isostatic: reached(&curve), curve }
+        let [isostatic, scaled_isostatic] = isostatic(samples);
+        Lengths { point: *point, excess, screening, isostatic, scaled_isostatic, curve }
     }
 }
 
-/// p where ℓ_iso falls to the longest screening length, linear in logarithms between cells.
-pub(super) fn matching(lengths: &[Lengths], samples: &[&CellSamples]) -> Option<f64> {
+/// ℓ_iso and ℓ_iso ΔZ with their intervals.
+fn isostatic(samples: &CellSamples) -> [Option<Sampled>; 2] {
+    let (rows, radii) = (&samples.stretching, ring_radii(samples));
+    let found = bootstrap_all(&[rows.len()], RESAMPLINGS, |groups| {
+        let [length, excess] = isostatic_of(rows, &radii, &groups[0])?;
+        Some(vec![length, length * excess])
+    });
+    let found = found.unwrap_or_default();
+    [0, 1].map(|i| found.get(i).map(|&found| Sampled { found, sample_count: rows.len() }))
+}
+
+/// Place and mean radius of every ring \[length\].
+fn ring_radii(samples: &CellSamples) -> Vec<(usize, f64)> {
+    let points = samples.curves.get("stretching_fluctuation").map_or(Vec::new(), |curve| curve.points());
+    points.iter().map(|point| (point.x.floor() as usize, point.x)).collect()
+}
+
+/// ℓ_iso and ΔZ of some of the samples.
+fn isostatic_of(rows: &[StretchingRow], radii: &[(usize, f64)], chosen: &[usize]) -> Option<[f64; 2]> {
+    let excess = chosen.iter().map(|&i| rows[i].excess).sum::<f64>() / chosen.len() as f64;
+    if excess.is_nan() || excess <= 0.0 {
+        return None;
+    }
+    let mean = |place: usize| {
+        let values = chosen.iter().filter_map(|&i| rows[i].rings.get(place)).filter(|value| value.is_finite());
+        let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+        (count > 0.0).then_some(sum / count)
+    };
+    let rings: Vec<(f64, f64)> = radii.iter().filter_map(|&(place, radius)| Some((radius, mean(place)?))).collect();
+    let near = rings.iter().min_by(|a, b| (a.0 - NEAR_CENTRE).abs().total_cmp(&(b.0 - NEAR_CENTRE).abs()))?;
+    let curve: Vec<(f64, f64)> =
+        rings.iter().map(|&(radius, fluctuation)| (radius, fluctuation / near.1 * radius * excess)).collect();
+    Some([reached(&curve)?, excess])
+}
+
+/// p where ℓ_iso falls to the longest screening length, linear in logarithms between cells; the samples of all cells are drawn.
+pub(super) fn matching(points: &[SeriesPoint], samples: &[&CellSamples]) -> Option<Sampled> {
     let radii = samples.first()?.numbers.get("outer_radius")?;
     let longest = NumberStatistics::of(radii).mean / super::pressure::FIRST_ZERO;
-    let points: Vec<[f64; 2]> = lengths
+    let pressures: Vec<f64> = points.iter().map(|point| point.pressure).collect();
+    let rings: Vec<Vec<(usize, f64)>> = samples.iter().map(|samples| ring_radii(samples)).collect();
+    let matched_of = |groups: &[Vec<usize>]| {
+        let length = |cell: usize| Some(isostatic_of(&samples[cell].stretching, &rings[cell], &groups[cell])?[0]);
+        let lengths: Vec<Option<f64>> = (0..samples.len()).map(length).collect();
+        matched(&pressures, &lengths, longest)
+    };
+    let sizes: Vec<usize> = samples.iter().map(|samples| samples.stretching.len()).collect();
+    let all: Vec<Vec<usize>> = sizes.iter().map(|&size| (0..size).collect()).collect();
+    let (_, cells) = matched_of(&all)?;
+    let found = bootstrap(&sizes, RESAMPLINGS, |groups| Some(matched_of(groups)?.0))?;
+    Some(Sampled { found, sample_count: sizes[cells[0]].min(sizes[cells[1]]) })
+}
+
+/// p where a length falls to another, and the two cells it lies between.
+fn matched(pressures: &[f64], lengths: &[Option<f64>], longest: f64) -> Option<(f64, [usize; 2])> {
+    let points: Vec<(usize, [f64; 2])> = lengths
         .iter()
-        .filter_map(|it| Some([libm::log(it.point.pressure), libm::log(it.isostatic? / longest)]))
+        .enumerate()
+        .filter_map(|(cell, length)| Some((cell, [libm::log(pressures[cell]), libm::log((*length)? / longest)])))
         .collect();
     points.windows(2).find_map(|pair| {
-        let [low, high] = [pair[0], pair[1]];
+        let [(below, low), (above, high)] = [pair[0], pair[1]];
         let share = low[1] / (low[1] - high[1]);
-        (low[1] > 0.0 && high[1] <= 0.0).then(|| libm::exp((1.0 - share) * low[0] + share * high[0]))
+        (low[1] > 0.0 && high[1] <= 0.0).then(|| (libm::exp((1.0 - share) * low[0] + share * high[0]), [below, above]))
     })
 }
 
@@ -116,11 +179,11 @@ fn curve(samples: &CellSamples, excess: f64) -> Vec<[f64; 4]> {
 }
 
 /// The smallest r at which y rises to the threshold, linear between rings.
-fn reached(curve: &[[f64; 4]]) -> Option<f64> {
-    let after = curve.iter().position(|point| point[2] >= ISOSTATIC_THRESHOLD).filter(|&place| place > 0)?;
+fn reached(curve: &[(f64, f64)]) -> Option<f64> {
+    let after = curve.iter().position(|point| point.1 >= ISOSTATIC_THRESHOLD).filter(|&place| place > 0)?;
     let (low, high) = (curve[after - 1], curve[after]);
-    let share = (ISOSTATIC_THRESHOLD - low[2]) / (high[2] - low[2]);
-    Some(low[0] + share * (high[0] - low[0]))
+    let share = (ISOSTATIC_THRESHOLD - low.1) / (high.1 - low.1);
+    Some(low.0 + share * (high.0 - low.0))
 }
 
 /// ξ of one size against φ.
@@ -132,6 +195,8 @@ pub struct JammingSeries {
     pub threshold: f64,
     /// ξ.
     pub points: Vec<PenetrationPoint>,
+    /// Samples of the point with the fewest, of those fitted; 0 without one.
+    pub sample_count: usize,
     /// ν with φ_J = 0.842, of the points with ξ up to R/2.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_jamming: Option<DivergenceAt>,
@@ -176,6 +241,7 @@ impl JammingSeries {
                         cell: samples.cell,
                         threshold,
                         points: vec![point],
+                        sample_count: 0,
                         at_jamming: None,
                         free: None,
                     }),
@@ -184,10 +250,13 @@ impl JammingSeries {
         }
         for series in &mut all {
             series.points.sort_by(|a, b| a.packing_fraction.total_cmp(&b.packing_fraction));
+            let within = |point: &&PenetrationPoint| point.length.mean <= LARGEST_SHARE * point.outer_radius;
+            series.sample_count =
+                series.points.iter().filter(within).map(|point| point.length.count).min().unwrap_or(0);
             let usable: Vec<MeasuredPoint> = series
                 .points
                 .iter()
-                .filter(|point| point.length.mean <= LARGEST_SHARE * point.outer_radius)
+                .filter(within)
                 .filter_map(|point| {
                     let (x, y) = (point.packing_fraction, point.length.mean);
                     Some(MeasuredPoint { x, y, error: point.length.standard_error? })
@@ -203,38 +272,101 @@ impl JammingSeries {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
+    use crate::study::{Record, RecordOutcome};
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
 
     #[test]
     fn lengths_match_where_one_falls_to_the_other() {
-        let cell = crate::study::Cell {
+        // ℓ = 100/p, and 10.
+        let of = |pressures: [f64; 3]| matched(&pressures, &pressures.map(|pressure| Some(100.0 / pressure)), 10.0);
+        let (pressure, cells) = of([2.0, 5.0, 20.0]).expect("between 5 and 20");
+        assert!((pressure - 10.0).abs() < 1e-12 && cells == [1, 2], "{pressure}");
+        assert_eq!(of([11.0, 20.0, 30.0]), None);
+        let (_, cells) = matched(&[2.0, 5.0, 20.0], &[Some(50.0), None, Some(5.0)], 10.0).expect("between 2 and 20");
+        assert_eq!(cells, [0, 2]);
+    }
+
+    #[test]
+    fn the_threshold_is_reached_between_two_rings() {
+        let curve = [(1.5, 0.15), (2.5, 1.1), (3.5, 1.5)];
+        assert!((reached(&curve).expect("between the last two") - 3.0).abs() < 1e-12);
+        assert_eq!(reached(&curve[2..]), None);
+        assert_eq!(reached(&curve[..2]), None);
+    }
+
+    /// A cell whose samples have h_∥ = unit (1 + scatter), flat from the centre on, and ΔZ about 0.3.
+    fn cell_of(seed: u64, count: usize, pressure: f64, unit: f64) -> (SeriesPoint, CellSamples) {
+        let mut generator = Pcg64::seed_from_u64(seed);
+        let cell = Cell {
             law: Default::default(),
             disk_count: 100,
-            target: Target::Pressure(1.0),
+            target: Target::Pressure(pressure),
             increase: 0.1,
             relaxer: Default::default(),
             boundary: Default::default(),
         };
         let mut samples = CellSamples::new(cell);
-        samples.numbers.insert("outer_radius".into(), vec![10.0 * super::super::pressure::FIRST_ZERO]);
-        // ℓ_iso = 100/p, and 1/κ_1 = 10.
-        let length = |pressure: f64| Lengths {
-            point: SeriesPoint { cell: 0, pressure, reduced_pressure: pressure, sample_count: 1 },
-            excess: None,
-            screening: None,
-            isostatic: Some(100.0 / pressure),
-            curve: Vec::new(),
-        };
-        let found = matching(&[length(2.0), length(5.0), length(20.0)], &[&samples]).expect("between 5 and 20");
-        assert!((found - 10.0).abs() < 1e-12, "{found}");
-        assert_eq!(matching(&[length(11.0), length(20.0)], &[&samples]), None);
+        for seed in 0..count {
+            let mut draw = || generator.random::<f64>() - 0.5;
+            let numbers = BTreeMap::from([
+                ("excess_coordination".to_string(), unit * (1.0 + 0.2 * draw())),
+                ("outer_radius".to_string(), 8.0 * super::super::pressure::FIRST_ZERO),
+            ]);
+            let rings: Vec<[f64; 2]> =
+                (1..30).map(|place| [f64::from(place) + 0.5, 0.01 * (1.0 + 0.4 * draw())]).collect();
+            let curves = BTreeMap::from([
+                ("stretching_fluctuation".to_string(), rings.clone()),
+                ("radial_fluctuation".to_string(), rings),
+            ]);
+            let outcome = RecordOutcome::Done { phase: Default::default(), numbers, curves };
+            samples.add(&Record { cell, seed: seed as u64, outcome });
+        }
+        let point = SeriesPoint { cell: 0, pressure, reduced_pressure: pressure, sample_count: count };
+        (point, samples)
     }
 
     #[test]
-    fn the_threshold_is_reached_between_two_rings() {
-        let curve = [[1.5, 0.15, 0.15, 0.0], [2.5, 0.25, 1.1, 0.0], [3.5, 0.35, 1.5, 0.0]];
-        assert!((reached(&curve).expect("between the last two") - 3.0).abs() < 1e-12);
-        assert_eq!(reached(&curve[2..]), None);
-        assert_eq!(reached(&curve[..2]), None);
+    fn the_isostatic_length_has_the_interval_of_its_samples() {
+        // y = r ΔZ reaches 1.3 at r = 1.3/0.3.
+        let of = |seed: u64, count: usize| {
+            let (point, samples) = cell_of(seed, count, 1.0, 0.3);
+            Lengths::of(&point, &samples)
+        };
+        let lengths = of(1, 40);
+        let found = lengths.isostatic.expect("it is reached");
+        assert_eq!(found.sample_count, 40);
+        // The means of the curve, read as before, and those of the rows are one.
+        let curve: Vec<(f64, f64)> = lengths.curve.iter().map(|row| (row[0], row[2])).collect();
+        assert!((found.found.best / reached(&curve).expect("it is reached") - 1.0).abs() < 1e-12);
+        let product = lengths.scaled_isostatic.expect("likewise").found;
+        assert!((product.best / found.found.best - lengths.excess.expect("ΔZ")).abs() < 1e-12);
+        // Intervals of 95 % of 30 studies of 40 samples: 28.5 expected to hold the truth, with a standard deviation of 1.2.
+        let held = (0..30).filter(|&seed| of(100 + seed, 40).isostatic.expect("it is reached").found.holds(1.3 / 0.3));
+        let held = held.count();
+        assert!(held >= 25, "{held} of 30");
+        let Some([low, high]) = of(1, 160).isostatic.and_then(|it| it.found.interval) else { panic!("no interval") };
+        let Some([wide_low, wide_high]) = found.found.interval else { panic!("no interval") };
+        // Four times the samples: half of the width, to a fifth.
+        let share = (high - low) / (wide_high - wide_low);
+        assert!((0.35..0.7).contains(&share), "{share}");
+    }
+
+    #[test]
+    fn the_pressure_of_equal_lengths_has_the_interval_of_both_cells() {
+        // ℓ_iso = 1.3/ΔZ: 13 and 1.3/0.3 = 4.33; the longest screening length is 8.
+        let cells = [cell_of(1, 20, 1.0, 0.1), cell_of(2, 12, 10.0, 0.3)];
+        let (points, samples): (Vec<SeriesPoint>, Vec<&CellSamples>) =
+            cells.iter().map(|(point, samples)| (*point, samples)).unzip();
+        let found = matching(&points, &samples).expect("between both");
+        assert_eq!(found.sample_count, 12);
+        let truth = libm::pow(10.0, libm::log(13.0 / 8.0) / libm::log(3.0));
+        let error = found.found.standard_error.expect("an interval");
+        assert!((found.found.best - truth).abs() < 4.0 * error && error < 0.2 * truth, "{:?}", found.found);
+        let Some([low, high]) = found.found.interval else { panic!("no interval") };
+        assert!(low < found.found.best && found.found.best < high);
     }
 }

@@ -7,11 +7,15 @@
 //! ```
 //!
 //! Everything has an interval: the samples of every cell are drawn anew, [`bootstrap_all`](crate::fit::ensemble::bootstrap_all). What
-//! cannot be had says why.
+//! cannot be had says why, and what rests on too little says so: [`CannotTell`].
+//!
+//! Series that differ in how their packings come to rest are series of their own, and no law is fitted through several of them.
 //!
 //! # Source
 //! The study; what is taken from where stands with each number.
 
+mod crossing;
+mod evidence;
 mod lengths;
 mod literature;
 mod pressure;
@@ -21,6 +25,7 @@ mod spectra;
 
 use serde::Serialize;
 
+pub use evidence::{CannotTell, Sampled};
 pub use lengths::{JammingSeries, LengthPoint, Lengths, PenetrationPoint};
 pub use literature::{Comparison, Verdict};
 pub use pressure::{Method, MethodEstimate, TransitionPressure};
@@ -29,13 +34,15 @@ pub use series::{AtPressure, Series, SeriesPoint};
 pub use spectra::{AngleDivergence, CellSpectrum, RingSlope};
 
 #[cfg(feature = "plot")]
+pub(crate) use evidence::{LEAST_CELLS, LEAST_SAMPLES};
+#[cfg(feature = "plot")]
 pub(crate) use lengths::{ISOSTATIC_THRESHOLD, JAMMING};
 #[cfg(feature = "plot")]
 pub(crate) use literature::words;
 #[cfg(feature = "plot")]
 pub(crate) use pressure::{FIRST_ZERO, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION};
 #[cfg(feature = "plot")]
-pub(crate) use scaling::beta;
+pub(crate) use scaling::{beta, laws_and_relaxers};
 #[cfg(feature = "plot")]
 pub(crate) use series::{ANGLE, ANTICORRELATION, PUBLISHED};
 
@@ -49,9 +56,9 @@ pub(crate) const RESAMPLINGS: usize = 400;
 pub struct Transition {
     /// Cells above jamming that differ in the pressure alone, in the order of the plan.
     pub series: Vec<Series>,
-    /// How the series of a law scale, one a law and observable.
+    /// How the series of a law and relaxer scale, one an observable.
     pub scaling: Vec<Scaling>,
-    /// p_c of all series of a law as one power law.
+    /// p_c of all series of a law and relaxer as one power law.
     pub pressure_laws: Vec<PressureLaw>,
     /// ξ below jamming, by size.
     pub jamming: Vec<JammingSeries>,

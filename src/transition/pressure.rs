@@ -6,20 +6,24 @@
 //! | Δp | half of the samples have Δp < 0 | the same |
 //! | G* | the mean passes 1 − 2^(−1/2) = 0.293, its value for S ∝ f^(−1.5) | linear in ln p̂ between cells, after falling neighbours are pooled |
 //! | θ* | the mean passes 0.303 π, likewise | the same |
-//! | S(f) | the slope of the mean spectrum passes 1.5 | the same |
+//! | S(f), least squares | the slope of the mean spectrum by least squares in logarithms passes 1.5 | the same |
+//! | S(f), likelihood | the same slope by maximum likelihood | the same |
 //! | f† | f† of the mean spectrum falls below 0.1: from f = 1 on a power law within 3 % | the same |
+//!
+//! A cell counts with at least 8 samples. By κ and Δp two such cells and 20 samples lie on either side of a crossing. A bound needs an end
+//! cell that is clear of one half, or of the level, at 95 %, and two cells on its side. Below that a method
+//! [cannot tell](TransitionPressure::Uninformative).
 //!
 //! κ_1 R = 3.8317, the first zero of J_1: κ_fit of single samples is near 0 or from κ_1 on (the study, fig. 2).
 
 use serde::Serialize;
 
-use crate::fit::ensemble::{
-    BootstrapInterval, HalfCrossing, HitCount, Trend, bootstrap, half_crossing, half_crossing_interval,
-};
+use crate::fit::ensemble::BootstrapInterval;
 use crate::study::CellSamples;
-use crate::transition::RESAMPLINGS;
+use crate::transition::crossing::{by_halves, by_level};
+use crate::transition::evidence::{CannotTell, LEAST_SAMPLES};
 use crate::transition::series::{ANGLE, ANTICORRELATION, SeriesPoint};
-use crate::transition::spectra::{crossover_of, slope_of};
+use crate::transition::spectra::{crossover_of, likelihood_slope_of, slope_of};
 
 /// First zero of J_1.
 pub(crate) const FIRST_ZERO: f64 = 3.831_705_970_207_512;
@@ -48,8 +52,10 @@ pub enum Method {
     Anticorrelation,
     /// θ*.
     Angle,
-    /// The slope of S(f).
+    /// The slope of S(f) by least squares in logarithms.
     Spectrum,
+    /// The slope of S(f) by maximum likelihood.
+    SpectrumLikelihood,
     /// f†.
     Crossover,
 }
@@ -62,7 +68,8 @@ impl Method {
             Method::PressureChange => "Δp",
             Method::Anticorrelation => "G*",
             Method::Angle => "θ*",
-            Method::Spectrum => "slope of S(f)",
+            Method::Spectrum => "slope of S(f), least squares",
+            Method::SpectrumLikelihood => "slope of S(f), likelihood",
             Method::Crossover => "f†",
         }
     }
@@ -75,10 +82,15 @@ pub struct MethodEstimate {
     pub method: Method,
     /// What it gives.
     pub pressure: TransitionPressure,
+    /// Lowest and highest p̂ of the cells that count; none where fewer than two do \[force / length\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<[f64; 2]>,
+    /// Samples of the cell with the fewest, of those that count; of all where fewer than two count.
+    pub sample_count: usize,
 }
 
 impl MethodEstimate {
-    /// What the slope of the spectrum gives.
+    /// What the slope of the spectrum gives, by least squares.
     pub(super) fn by_spectrum(&self) -> Option<TransitionPressure> {
         (self.method == Method::Spectrum).then_some(self.pressure)
     }
@@ -90,14 +102,19 @@ impl MethodEstimate {
 pub enum TransitionPressure {
     /// At this p̂, with its interval.
     Found(BootstrapInterval),
-    /// Between the p̂ of two cells: no sample of a cell differs from the others.
+    /// Between the p̂ of two cells: up to the one all samples are plastic, from the other on none.
     Between([f64; 2]),
     /// Beyond the highest p̂ of the series: all its cells are plastic.
     Above(f64),
     /// Below the lowest p̂ of the series: all its cells are quasielastic.
     Below(f64),
-    /// The observable does not change from one to the other along the series.
+    /// Cells are clearly plastic and clearly quasielastic, but not in this order.
     Unordered,
+    /// The study cannot tell.
+    Uninformative {
+        /// Why.
+        reason: CannotTell,
+    },
 }
 
 impl TransitionPressure {
@@ -120,21 +137,53 @@ impl TransitionPressure {
     }
 }
 
+/// One method, of all cells that have its observable: p̂, samples, what the method asks of them. None of fewer than two cells.
+fn estimate<T>(
+    method: Method,
+    mut cells: Vec<(f64, usize, T)>,
+    find: impl Fn(&[f64], &[usize], &[T]) -> TransitionPressure,
+) -> Option<MethodEstimate> {
+    if cells.len() < 2 {
+        return None;
+    }
+    let fewest = |cells: &[(f64, usize, T)]| cells.iter().map(|(_, count, _)| *count).min().unwrap_or(0);
+    let of_all = fewest(&cells);
+    cells.retain(|(_, count, _)| *count >= LEAST_SAMPLES);
+    if cells.len() < 2 {
+        let pressure = TransitionPressure::Uninformative { reason: CannotTell::FewSamples };
+        return Some(MethodEstimate { method, pressure, measured: None, sample_count: of_all });
+    }
+    let sample_count = fewest(&cells);
+    let at: Vec<f64> = cells.iter().map(|(at, ..)| *at).collect();
+    let sizes: Vec<usize> = cells.iter().map(|(_, count, _)| *count).collect();
+    let all: Vec<T> = cells.into_iter().map(|(.., own)| own).collect();
+    let measured = Some([at[0], at[at.len() - 1]]);
+    Some(MethodEstimate { method, pressure: find(&at, &sizes, &all), measured, sample_count })
+}
+
+/// p̂, samples that have a number, and the cell with their values.
+type NumberCell<'a> = (f64, usize, (&'a CellSamples, &'a [f64]));
+
+/// Every cell that has a number.
+fn numbers<'a>(points: &[SeriesPoint], samples: &[&'a CellSamples], name: &str) -> Vec<NumberCell<'a>> {
+    let mut all = Vec::new();
+    for (point, &samples) in points.iter().zip(samples) {
+        if let Some(values) = samples.numbers.get(name) {
+            all.push((point.reduced_pressure, values.len(), (samples, values.as_slice())));
+        }
+    }
+    all
+}
+
 /// All methods that have their observable.
 pub(super) fn estimates(points: &[SeriesPoint], samples: &[&CellSamples]) -> Vec<MethodEstimate> {
     let plastic = |method, name: &str, is_plastic: &dyn Fn(&CellSamples, f64) -> bool| {
-        let groups: Vec<(f64, Vec<bool>)> = points
-            .iter()
-            .zip(samples)
-            .filter_map(|(point, samples)| {
-                let values = samples.numbers.get(name)?;
-                Some((
-                    libm::log(point.reduced_pressure),
-                    values.iter().map(|&value| is_plastic(samples, value)).collect(),
-                ))
-            })
-            .collect();
-        (groups.len() > 1).then(|| MethodEstimate { method, pressure: by_halves(&groups) })
+        estimate(method, numbers(points, samples, name), |at, _, cells| {
+            let group = |(at, &(samples, values)): (&f64, &(&CellSamples, &[f64]))| {
+                (libm::log(*at), values.iter().map(|&value| is_plastic(samples, value)).collect())
+            };
+            by_halves(&at.iter().zip(cells).map(group).collect::<Vec<(f64, Vec<bool>)>>())
+        })
     };
     let radius = |samples: &CellSamples| {
         let radii = samples.numbers.get("outer_radius")?;
@@ -144,34 +193,19 @@ pub(super) fn estimates(points: &[SeriesPoint], samples: &[&CellSamples]) -> Vec
         radius(samples).is_some_and(|radius| wavenumber * radius >= 0.5 * FIRST_ZERO)
     };
     let mean = |method, name: &str, level: f64| {
-        let usable: Vec<(f64, &Vec<f64>)> = points
-            .iter()
-            .zip(samples)
-            .filter_map(|(point, samples)| Some((point.reduced_pressure, samples.numbers.get(name)?)))
-            .collect();
-        let sizes: Vec<usize> = usable.iter().map(|(_, values)| values.len()).collect();
-        let at: Vec<f64> = usable.iter().map(|(at, _)| *at).collect();
-        let means = |groups: &[Vec<usize>]| -> Option<Vec<f64>> {
-            let mean = |(chosen, (_, values)): (&Vec<usize>, &(f64, &Vec<f64>))| {
-                chosen.iter().map(|&i| values[i]).sum::<f64>() / chosen.len() as f64
-            };
-            Some(groups.iter().zip(&usable).map(mean).collect())
-        };
-        (at.len() > 1).then(|| MethodEstimate { method, pressure: by_level(&at, &sizes, level, means) })
+        estimate(method, numbers(points, samples, name), |at, sizes, cells| {
+            by_level(at, sizes, level, |cell, chosen| {
+                let (_, values) = cells[cell];
+                Some(chosen.iter().map(|&i| values[i]).sum::<f64>() / chosen.len() as f64)
+            })
+        })
     };
-    let with_powers: Vec<(f64, &[Vec<f64>])> = points
-        .iter()
-        .zip(samples)
-        .filter(|(_, samples)| !samples.powers.is_empty())
-        .map(|(point, samples)| (point.reduced_pressure, samples.powers.as_slice()))
-        .collect();
     let spectrum = |method, level: f64, of: fn(&[Vec<f64>], &[usize]) -> Option<f64>| {
-        let sizes: Vec<usize> = with_powers.iter().map(|(_, powers)| powers.len()).collect();
-        let at: Vec<f64> = with_powers.iter().map(|(at, _)| *at).collect();
-        let values = |groups: &[Vec<usize>]| -> Option<Vec<f64>> {
-            groups.iter().zip(&with_powers).map(|(chosen, (_, powers))| of(powers, chosen)).collect()
-        };
-        (at.len() > 1).then(|| MethodEstimate { method, pressure: by_level(&at, &sizes, level, values) })
+        let with_powers = points.iter().zip(samples).filter(|(_, samples)| !samples.powers.is_empty());
+        let cells: Vec<(f64, usize, &[Vec<f64>])> = with_powers
+            .map(|(point, samples)| (point.reduced_pressure, samples.powers.len(), samples.powers.as_slice()))
+            .collect();
+        estimate(method, cells, |at, sizes, cells| by_level(at, sizes, level, |cell, chosen| of(cells[cell], chosen)))
     };
     [
         plastic(Method::Wavenumber, "wavenumber", &screened),
@@ -179,6 +213,7 @@ pub(super) fn estimates(points: &[SeriesPoint], samples: &[&CellSamples]) -> Vec
         mean(Method::Anticorrelation, ANTICORRELATION, SCALE_FREE_ANTICORRELATION),
         mean(Method::Angle, ANGLE, SCALE_FREE_ANGLE),
         spectrum(Method::Spectrum, SCALE_FREE_SLOPE, slope_of),
+        spectrum(Method::SpectrumLikelihood, SCALE_FREE_SLOPE, likelihood_slope_of),
         // What falls below a level rises above its opposite.
         spectrum(Method::Crossover, -VANISHED, |powers, chosen| Some(-crossover_of(powers, chosen)?)),
     ]
@@ -187,123 +222,25 @@ pub(super) fn estimates(points: &[SeriesPoint], samples: &[&CellSamples]) -> Vec
     .collect()
 }
 
-/// Where half of the samples are plastic, (ln p̂, plastic or not) by cell.
-fn by_halves(groups: &[(f64, Vec<bool>)]) -> TransitionPressure {
-    let counts: Vec<HitCount> = groups
-        .iter()
-        .map(|(x, hits)| HitCount {
-            x: *x,
-            hits: hits.iter().filter(|&&hit| hit).count() as f64,
-            count: hits.len() as f64,
-        })
-        .collect();
-    let (lowest, highest) = (libm::exp(counts[0].x), libm::exp(counts[counts.len() - 1].x));
-    let majority = |group: &HitCount| 2.0 * group.hits >= group.count;
-    // A crossing beyond the cells that were measured is a guess: it is told as a bound.
-    let bound = match (majority(&counts[0]), majority(&counts[counts.len() - 1])) {
-        (true, true) => TransitionPressure::Above(highest),
-        (false, false) => TransitionPressure::Below(lowest),
-        _ => TransitionPressure::Unordered,
-    };
-    match half_crossing(&counts, Trend::Falling) {
-        Ok(HalfCrossing::Separated { between, .. }) => TransitionPressure::Between(between.map(libm::exp)),
-        Ok(HalfCrossing::Found { extrapolated: false, .. }) => {
-            let found = half_crossing_interval(groups, Trend::Falling, RESAMPLINGS);
-            found.ok().flatten().map_or(bound, |found| TransitionPressure::Found(exponential(found)))
-        }
-        _ => bound,
-    }
-}
-
-/// Where what rises with p̂ passes a level.
-fn by_level(
-    at: &[f64],
-    sizes: &[usize],
-    level: f64,
-    values: impl Fn(&[Vec<usize>]) -> Option<Vec<f64>>,
-) -> TransitionPressure {
-    let weights: Vec<f64> = sizes.iter().map(|&size| size as f64).collect();
-    let rising = |groups: &[Vec<usize>]| Some(ascending(&values(groups)?, &weights));
-    let all: Vec<Vec<usize>> = sizes.iter().map(|&size| (0..size).collect()).collect();
-    let Some(whole) = rising(&all) else { return TransitionPressure::Unordered };
-    match crossing(at, &whole, level) {
-        Some(_) => {
-            let found = bootstrap(sizes, RESAMPLINGS, |groups| crossing(at, &rising(groups)?, level));
-            found.map_or(TransitionPressure::Unordered, |found| TransitionPressure::Found(exponential(found)))
-        }
-        None if whole.iter().all(|&value| value < level) => TransitionPressure::Above(at[at.len() - 1]),
-        None if whole.iter().all(|&value| value >= level) => TransitionPressure::Below(at[0]),
-        None => TransitionPressure::Unordered,
-    }
-}
-
-/// ln p̂ where ascending values pass the level.
-fn crossing(at: &[f64], values: &[f64], level: f64) -> Option<f64> {
-    let below = values.iter().rposition(|&value| value < level)?;
-    let (low, high) = (values[below], *values.get(below + 1)?);
-    let share = (level - low) / (high - low);
-    Some((1.0 - share) * libm::log(at[below]) + share * libm::log(at[below + 1]))
-}
-
-/// The nearest values that nowhere fall, by weighted least squares: neighbours that do are pooled.
-///
-/// Source: Ayer, Brunk, Ewing, Reid, Silverman (1955), Ann. Math. Stat. 26, 641 (pool adjacent violators).
-fn ascending(values: &[f64], weights: &[f64]) -> Vec<f64> {
-    // Mean, weight and number of members of every pool.
-    let mut pools: Vec<(f64, f64, usize)> = Vec::new();
-    for (&value, &weight) in values.iter().zip(weights) {
-        let mut last = (value, weight, 1);
-        while let Some(&(mean, of_pool, count)) = pools.last()
-            && mean > last.0
-        {
-            let both = of_pool + last.1;
-            last = ((mean * of_pool + last.0 * last.1) / both, both, count + last.2);
-            pools.pop();
-        }
-        pools.push(last);
-    }
-    pools.into_iter().flat_map(|(mean, _, count)| std::iter::repeat_n(mean, count)).collect()
-}
-
-/// The interval of e^x; the standard error to first order.
-fn exponential(of: BootstrapInterval) -> BootstrapInterval {
-    let best = libm::exp(of.best);
-    BootstrapInterval {
-        best,
-        standard_error: of.standard_error.map(|error| best * error),
-        interval: of.interval.map(|ends| ends.map(libm::exp)),
-        ..of
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn a_level_is_passed_between_two_cells_in_the_logarithm() {
-        let at = [1e6, 1e7, 1e8, 1e9];
-        let passed = crossing(&at, &[0.1, 0.2, 0.4, 0.5], 0.3).expect("between the second and the third");
-        assert!((passed.exp() / 10f64.powf(7.5) - 1.0).abs() < 1e-12);
-        assert_eq!(crossing(&at, &[0.1, 0.2, 0.25, 0.29], 0.3), None);
-        assert_eq!(crossing(&at, &[0.4, 0.5, 0.6, 0.7], 0.3), None);
-    }
-
-    #[test]
-    fn values_that_fall_are_pooled() {
-        assert_eq!(ascending(&[1.0, 2.0, 3.0], &[1.0; 3]), [1.0, 2.0, 3.0]);
-        assert_eq!(ascending(&[1.0, 4.0, 2.0, 5.0], &[1.0; 4]), [1.0, 3.0, 3.0, 5.0]);
-        // 4 has three times the weight of 2: (3·4 + 2)/4 = 3.5. A last low one pools all.
-        assert_eq!(ascending(&[1.0, 4.0, 2.0, 5.0], &[1.0, 3.0, 1.0, 1.0]), [1.0, 3.5, 3.5, 5.0]);
-        assert_eq!(ascending(&[3.0, 2.0, 1.0], &[1.0; 3]), [2.0; 3]);
-    }
-
-    #[test]
-    fn all_plastic_or_all_elastic_is_a_bound() {
-        let groups = |hits: [bool; 2]| hits.map(|hit| (1.0, vec![hit; 5])).to_vec();
-        assert_eq!(by_halves(&groups([true, true])), TransitionPressure::Above(libm::exp(1.0)));
-        assert_eq!(by_halves(&groups([false, false])), TransitionPressure::Below(libm::exp(1.0)));
-        let changing = [(0.0, vec![true; 5]), (2.0, vec![false; 5])];
-        assert_eq!(by_halves(&changing), TransitionPressure::Between([1.0, libm::exp(2.0)]));
+    fn cells_of_fewer_than_eight_samples_do_not_count() {
+        let of = |sizes: [usize; 3]| {
+            let cells = [1e6, 1e7, 1e8].into_iter().zip(sizes).map(|(at, size)| (at, size, ())).collect();
+            let found = estimate(Method::Angle, cells, |at, sizes, _| {
+                assert!(sizes.iter().all(|&size| size >= LEAST_SAMPLES));
+                TransitionPressure::Above(at[at.len() - 1])
+            });
+            found.expect("three cells")
+        };
+        let found = of([8, 30, 7]);
+        assert_eq!((found.pressure, found.measured), (TransitionPressure::Above(1e7), Some([1e6, 1e7])));
+        assert_eq!(found.sample_count, 8);
+        let few = of([7, 30, 7]);
+        assert_eq!(few.pressure, TransitionPressure::Uninformative { reason: CannotTell::FewSamples });
+        assert_eq!((few.measured, few.sample_count), (None, 7));
     }
 }

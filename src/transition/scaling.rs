@@ -5,6 +5,8 @@
 //! N^β p_c = C (N² d_0)^c            c = β/4
 //! ```
 //!
+//! Series of one law whose packings come to rest in other ways do not share a curve: each relaxer has exponents of its own.
+//!
 //! Source: the study, appendix D.
 
 use serde::Serialize;
@@ -14,6 +16,7 @@ use crate::fit::ensemble::{
     BootstrapInterval, CollapseOutcome, CollapseQuality, CollapseSettings, Curve, MeasuredPoint, PowerLaw,
     bootstrap_all, collapse, collapse_quality, fit_power_law,
 };
+use crate::relax::RelaxerChoice;
 use crate::study::Merged;
 use crate::transition::pressure::{Method, TransitionPressure};
 use crate::transition::series::{ANTICORRELATION, Series};
@@ -33,15 +36,19 @@ const OBSERVABLES: [&str; 5] = [
     "correlation_angle_at_0.2",
 ];
 
-/// How the curves of one observable of one law collapse.
+/// How the curves of one observable of one law and relaxer collapse.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Scaling {
     /// The law.
     pub law: LawChoice,
+    /// How packings came to rest after the inflation.
+    pub relaxer: RelaxerChoice,
     /// The observable, by its name in records.
     pub observable: &'static str,
     /// Curves: series of several pressures.
     pub curve_count: usize,
+    /// Samples of the cell with the fewest, of those on the curves.
+    pub sample_count: usize,
     /// a of N^a; absent where all sizes are one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size_exponent: Option<ExponentOutcome>,
@@ -73,8 +80,12 @@ pub enum ExponentOutcome {
 pub struct PressureLaw {
     /// The law.
     pub law: LawChoice,
+    /// How packings came to rest after the inflation.
+    pub relaxer: RelaxerChoice,
     /// How p_c is found.
     pub method: Method,
+    /// Samples of the cell with the fewest, of those p_c rests on.
+    pub sample_count: usize,
     /// (N² d_0, N^β p_c, its standard error).
     pub points: Vec<MeasuredPoint>,
     /// The fit; absent with fewer than three points.
@@ -87,25 +98,38 @@ pub(crate) fn beta(law: &LawChoice) -> f64 {
     2.0 * (law.exponent() - 1.0)
 }
 
+/// Laws with their relaxers, in the order of the series.
+pub(crate) fn laws_and_relaxers(series: &[Series]) -> Vec<(LawChoice, RelaxerChoice)> {
+    let mut all = Vec::new();
+    for one in series {
+        let own = (one.cell.law, one.cell.relaxer);
+        if !all.contains(&own) {
+            all.push(own);
+        }
+    }
+    all
+}
+
 /// One cell of a curve: p, and the values of its samples.
 type Values<'a> = Vec<(f64, &'a [f64])>;
 
 impl Scaling {
     pub(super) fn all(merged: &Merged, series: &[Series]) -> Vec<Scaling> {
-        let mut laws: Vec<LawChoice> = Vec::new();
-        for one in series {
-            if !laws.contains(&one.cell.law) {
-                laws.push(one.cell.law);
-            }
-        }
-        let of_law = |law: LawChoice| {
-            let own: Vec<&Series> = series.iter().filter(|it| it.cell.law == law && it.points.len() > 1).collect();
-            OBSERVABLES.iter().filter_map(move |observable| Self::of(merged, law, &own, observable)).collect::<Vec<_>>()
+        let of_group = |(law, relaxer): (LawChoice, RelaxerChoice)| {
+            let is_own = |it: &&Series| (it.cell.law, it.cell.relaxer) == (law, relaxer) && it.points.len() > 1;
+            let own: Vec<&Series> = series.iter().filter(is_own).collect();
+            let of = |observable: &&'static str| Self::of(merged, (law, relaxer), &own, observable);
+            OBSERVABLES.iter().filter_map(of).collect::<Vec<_>>()
         };
-        laws.into_iter().flat_map(of_law).collect()
+        laws_and_relaxers(series).into_iter().flat_map(of_group).collect()
     }
 
-    fn of(merged: &Merged, law: LawChoice, series: &[&Series], observable: &'static str) -> Option<Scaling> {
+    fn of(
+        merged: &Merged,
+        (law, relaxer): (LawChoice, RelaxerChoice),
+        series: &[&Series],
+        observable: &'static str,
+    ) -> Option<Scaling> {
         let curves: Vec<([f64; 2], Values<'_>)> = series
             .iter()
             .map(|one| {
@@ -129,10 +153,13 @@ impl Scaling {
             },
         };
         let mut outcomes = found.outcomes.into_iter();
+        let counts = curves.iter().flat_map(|(_, values)| values.iter().map(|(_, all)| all.len()));
         Some(Scaling {
             law,
+            relaxer,
             observable,
             curve_count: curves.len(),
+            sample_count: counts.min().unwrap_or(0),
             size_exponent: if varies(0) { outcomes.next() } else { None },
             inflation_exponent: if varies(1) { outcomes.next() } else { None },
             quality: found.quality,
@@ -197,7 +224,7 @@ impl PressureLaw {
     pub(super) fn all(series: &[Series]) -> Vec<PressureLaw> {
         let mut all: Vec<PressureLaw> = Vec::new();
         for one in series {
-            let (law, mobile) = (one.cell.law, one.mobile_count());
+            let (law, relaxer, mobile) = (one.cell.law, one.cell.relaxer, one.mobile_count());
             for estimate in &one.estimates {
                 let TransitionPressure::Found(found) = estimate.pressure else { continue };
                 let Some(error) = found.standard_error.filter(|error| *error > 0.0) else { continue };
@@ -208,9 +235,16 @@ impl PressureLaw {
                     y: scale * found.best,
                     error: scale * error,
                 };
-                match all.iter_mut().find(|it| it.law == law && it.method == estimate.method) {
-                    Some(own) => own.points.push(point),
-                    None => all.push(PressureLaw { law, method: estimate.method, points: vec![point], fit: None }),
+                let (method, sample_count) = (estimate.method, estimate.sample_count);
+                let is_own = |it: &&mut PressureLaw| (it.law, it.relaxer, it.method) == (law, relaxer, estimate.method);
+                match all.iter_mut().find(is_own) {
+                    Some(own) => {
+                        own.points.push(point);
+                        own.sample_count = own.sample_count.min(sample_count);
+                    }
+                    None => {
+                        all.push(PressureLaw { law, relaxer, method, sample_count, points: vec![point], fit: None });
+                    }
                 }
             }
         }

@@ -2,12 +2,13 @@
 
 use serde::Serialize;
 
-use crate::fit::ensemble::{BootstrapInterval, bootstrap_all};
+use crate::fit::ensemble::bootstrap;
 use crate::study::{Cell, CellSamples, Merged, NumberStatistics, Target};
 use crate::transition::RESAMPLINGS;
+use crate::transition::evidence::Sampled;
 use crate::transition::lengths::{Lengths, matching};
 use crate::transition::pressure::{MethodEstimate, TransitionPressure, estimates};
-use crate::transition::spectra::{AngleDivergence, CellSpectrum};
+use crate::transition::spectra::{AngleDivergence, CellSpectrum, likelihood_slope_of, slope_of};
 
 /// Cells that differ in the pressure alone, ascending in it.
 #[derive(Debug, Clone, Serialize)]
@@ -22,7 +23,7 @@ pub struct Series {
     pub divergence: AngleDivergence,
     /// p̂_c by every method that has its observable.
     pub estimates: Vec<MethodEstimate>,
-    /// G* and θ* at p̂_c by the slope of the spectrum, where there is one.
+    /// G* and θ* at p̂_c by the slope of the spectrum, by least squares, where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_transition: Option<AtPressure>,
     /// The same, with the slope, at the p̂_c that is published for Hertzian disks, 10⁸, where the series spans it.
@@ -30,9 +31,10 @@ pub struct Series {
     pub at_published: Option<AtPressure>,
     /// ℓ_s and ℓ_iso of every cell.
     pub lengths: Vec<Lengths>,
-    /// p where ℓ_iso is R/3.83 = 1/κ_1, the longest screening length, linear in logarithms between cells \[force / length\].
+    /// p where ℓ_iso is R/3.83 = 1/κ_1, the longest screening length, linear in logarithms between cells; its interval by drawing the
+    /// samples of all of them \[force / length\].
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub matching: Option<f64>,
+    pub matching: Option<Sampled>,
     /// Δp/p^((α−2)/(α−1)) of every cell that has it.
     pub pressure_changes: Vec<Option<NumberStatistics>>,
 }
@@ -57,13 +59,16 @@ pub struct AtPressure {
     pub reduced_pressure: f64,
     /// G*.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub anticorrelation: Option<BootstrapInterval>,
+    pub anticorrelation: Option<Sampled>,
     /// θ* \[rad\].
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub angle: Option<BootstrapInterval>,
-    /// s of S ∝ f^(−s).
+    pub angle: Option<Sampled>,
+    /// s of S ∝ f^(−s), by least squares in logarithms.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub slope: Option<BootstrapInterval>,
+    pub slope: Option<Sampled>,
+    /// The same by maximum likelihood.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub likelihood_slope: Option<Sampled>,
 }
 
 /// G*.
@@ -111,7 +116,7 @@ impl Series {
             points.iter().zip(&samples).map(|(point, samples)| Lengths::of(point, samples)).collect();
         Series {
             cell: samples[0].cell,
-            matching: matching(&lengths, &samples),
+            matching: matching(&points, &samples),
             pressure_changes: points
                 .iter()
                 .map(|point| merged.cells[point.cell].numbers.get("scaled_pressure_change").copied())
@@ -131,10 +136,10 @@ impl Series {
         self.cell.mobile_count()
     }
 
-    /// Its law, size and inflation in words.
+    /// Its law, size, inflation and relaxer in words.
     pub fn name(&self) -> String {
-        let Cell { law, disk_count, increase, .. } = self.cell;
-        format!("{} {disk_count} disks, d_0 = {increase}", law.name())
+        let Cell { law, disk_count, increase, relaxer, .. } = self.cell;
+        format!("{} {disk_count} disks, d_0 = {increase}, {}", law.name(), relaxer.description())
     }
 }
 
@@ -156,20 +161,24 @@ impl AtPressure {
             let mean = |side: usize, chosen: &[usize]| {
                 chosen.iter().map(|&i| values[side][i]).sum::<f64>() / chosen.len() as f64
             };
-            let found = bootstrap_all(&[values[0].len(), values[1].len()], RESAMPLINGS, |groups| {
-                Some(vec![between([mean(0, &groups[0]), mean(1, &groups[1])])])
-            });
-            found?.pop()
+            let sizes = [values[0].len(), values[1].len()];
+            let found =
+                bootstrap(&sizes, RESAMPLINGS, |groups| Some(between([mean(0, &groups[0]), mean(1, &groups[1])])))?;
+            Some(Sampled { found, sample_count: sizes[0].min(sizes[1]) })
         };
-        let slope = bootstrap_all(&[pair[0].powers.len(), pair[1].powers.len()], RESAMPLINGS, |groups| {
-            let slope = |side: usize| super::spectra::slope_of(&pair[side].powers, &groups[side]);
-            Some(vec![between([slope(0)?, slope(1)?])])
-        });
+        let of_powers = |of: fn(&[Vec<f64>], &[usize]) -> Option<f64>| {
+            let sizes = [pair[0].powers.len(), pair[1].powers.len()];
+            let slope = |side: usize, chosen: &[usize]| of(&pair[side].powers, chosen);
+            let found =
+                bootstrap(&sizes, RESAMPLINGS, |groups| Some(between([slope(0, &groups[0])?, slope(1, &groups[1])?])))?;
+            Some(Sampled { found, sample_count: sizes[0].min(sizes[1]) })
+        };
         Some(AtPressure {
             reduced_pressure,
             anticorrelation: of_number(ANTICORRELATION),
             angle: of_number(ANGLE),
-            slope: slope.and_then(|mut it| it.pop()),
+            slope: of_powers(slope_of),
+            likelihood_slope: of_powers(likelihood_slope_of),
         })
     }
 }

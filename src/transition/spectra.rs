@@ -1,14 +1,26 @@
 //! [`CellSpectrum`]: slope and crossover of the mean spectrum of a cell, and θ†(p̂).
+//!
+//! The slope is taken twice, of the same powers P̄ at f = 2 to 24:
+//!
+//! ```text
+//! least squares   Σ_f (ln P̄_f − ln E_f)²            likelihood   Σ_f (ln E_f + P̄_f/E_f)            E_f = A f^(−s)
+//! ```
+//!
+//! With δ = ln(P̄/E) a term of the second is 1 + ln P̄ + δ²/2 + δ³/6 + …: to second order both are the same, and weigh every f alike. They part where δ is
+//! not small. A power far above the line costs the likelihood e^δ, least squares δ²: a strong f = 2 or 3 makes the likelihood steeper. A power far
+//! below it, as removed leakage leaves at high f, costs least squares δ², the likelihood only |δ|: it makes least squares steeper. Bends that
+//! are smooth part them little. Where the two differ by more than their intervals, the mean spectrum has no one slope.
 
 use serde::Serialize;
 
 use crate::fit::angular::CrossoverOutcome;
 use crate::fit::ensemble::{
-    BootstrapInterval, DivergenceAt, DivergenceOutcome, MeanCrossover, MeanCrossoverSettings, MeasuredPoint, bootstrap,
-    crossover_interval, crossover_of_mean, fit_divergence, fit_divergence_at, slope_of_mean,
+    BootstrapInterval, DivergenceAt, DivergenceOutcome, MeanCrossover, MeanCrossoverSettings, MeanSlope, MeasuredPoint,
+    crossover_interval, crossover_of_mean, fit_divergence, fit_divergence_at, slope_interval, slope_of_mean,
 };
 use crate::study::{CellSamples, MeanCurve};
 use crate::transition::RESAMPLINGS;
+use crate::transition::evidence::LEAST_CELLS;
 use crate::transition::series::SeriesPoint;
 
 /// f from which to which a slope is taken: f = 1 is a mode of its own at high pressure, and above a few tens leakage removed is noise.
@@ -28,6 +40,9 @@ pub struct CellSpectrum {
     /// s of S ∝ f^(−s) by least squares in logarithms, f from 2 to 24.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slope: Option<BootstrapInterval>,
+    /// The same by maximum likelihood.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub likelihood_slope: Option<BootstrapInterval>,
     /// f† of the Lorentzian with exponent 1.5, f from 1 to 24.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossover: Option<MeanCrossover>,
@@ -41,10 +56,14 @@ pub struct CellSpectrum {
 pub struct AngleDivergence {
     /// Cells with a crossover.
     pub point_count: usize,
-    /// μ with p̂_c by the slope of the spectrum.
+    /// Those of them below p̂_c by the slope of the spectrum.
+    pub below_count: usize,
+    /// Samples of the cell with the fewest, of those below; 0 without one.
+    pub sample_count: usize,
+    /// μ with p̂_c by the slope of the spectrum, by least squares; absent with fewer than 5 cells below it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_transition: Option<DivergenceAt>,
-    /// μ and p̂_c together.
+    /// μ and p̂_c together; absent with fewer than 5 cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub free: Option<DivergenceOutcome>,
 }
@@ -67,11 +86,20 @@ fn window([lowest, highest]: [usize; 2], powers: &[Vec<f64>]) -> Option<[usize; 
     (highest >= lowest + 2).then_some([lowest, highest])
 }
 
-/// Slope of the mean spectrum of some of the samples.
-pub(super) fn slope_of(powers: &[Vec<f64>], chosen: &[usize]) -> Option<f64> {
+fn both_slopes(powers: &[Vec<f64>], chosen: &[usize]) -> Option<MeanSlope> {
     let window = window(SLOPE_WINDOW, powers)?;
     let rows: Vec<&[f64]> = chosen.iter().map(|&i| &powers[i][..window[1]]).collect();
-    slope_of_mean(&rows, window).ok()?.least_squares.exponent()
+    slope_of_mean(&rows, window).ok()
+}
+
+/// Slope of the mean spectrum of some of the samples, by least squares in logarithms.
+pub(super) fn slope_of(powers: &[Vec<f64>], chosen: &[usize]) -> Option<f64> {
+    both_slopes(powers, chosen)?.least_squares.exponent()
+}
+
+/// The same by maximum likelihood.
+pub(super) fn likelihood_slope_of(powers: &[Vec<f64>], chosen: &[usize]) -> Option<f64> {
+    both_slopes(powers, chosen)?.likelihood.exponent()
 }
 
 /// f† of the mean spectrum of some of the samples: 0 of a power law, at most [`LARGEST_CROSSOVER`].
@@ -87,7 +115,12 @@ pub(super) fn crossover_of(powers: &[Vec<f64>], chosen: &[usize]) -> Option<f64>
 impl CellSpectrum {
     pub(super) fn of(point: &SeriesPoint, samples: &CellSamples) -> Option<Self> {
         let powers = &samples.powers;
-        let slope = bootstrap(&[powers.len()], RESAMPLINGS, |groups| slope_of(powers, &groups[0]));
+        let [slope, likelihood_slope] = window(SLOPE_WINDOW, powers)
+            .and_then(|window| {
+                let rows: Vec<&[f64]> = powers.iter().map(|row| &row[..window[1]]).collect();
+                slope_interval(&rows, window, RESAMPLINGS).ok()
+            })
+            .unwrap_or_default();
         let settings = MeanCrossoverSettings::default();
         let (mut crossover, mut interval) = (None, None);
         if let Some(window) = window(CROSSOVER_WINDOW, powers) {
@@ -95,9 +128,10 @@ impl CellSpectrum {
             crossover = crossover_of_mean(&rows, window, &settings).ok();
             interval = crossover_interval(&rows, window, &settings, RESAMPLINGS).ok().flatten();
         }
-        (slope.is_some() || crossover.is_some()).then_some(CellSpectrum {
+        (slope.is_some() || likelihood_slope.is_some() || crossover.is_some()).then_some(CellSpectrum {
             point: *point,
             slope,
+            likelihood_slope,
             crossover,
             crossover_interval: interval,
         })
@@ -116,19 +150,31 @@ impl CellSpectrum {
 
 impl AngleDivergence {
     pub(super) fn of(spectra: &[CellSpectrum], critical: Option<f64>) -> Self {
-        let points: Vec<MeasuredPoint> = spectra
+        let points: Vec<(MeasuredPoint, usize)> = spectra
             .iter()
             .filter_map(|spectrum| {
                 let (y, error) = spectrum.angle()?;
-                Some(MeasuredPoint { x: spectrum.point.reduced_pressure, y, error })
+                let point = MeasuredPoint { x: spectrum.point.reduced_pressure, y, error };
+                Some((point, spectrum.point.sample_count))
             })
             .collect();
-        let below: Vec<MeasuredPoint> =
-            points.iter().copied().filter(|point| critical.is_some_and(|critical| point.x < critical)).collect();
+        AngleDivergence::through(&points, critical)
+    }
+
+    /// Through points with the samples of their cells.
+    fn through(points: &[(MeasuredPoint, usize)], critical: Option<f64>) -> Self {
+        let is_below = |point: &MeasuredPoint| critical.is_some_and(|critical| point.x < critical);
+        let own: Vec<(MeasuredPoint, usize)> = points.iter().copied().filter(|(point, _)| is_below(point)).collect();
+        let [all, below] = [points, &own].map(|own| own.iter().map(|(point, _)| *point).collect::<Vec<_>>());
+        let enough = |points: &[MeasuredPoint]| points.len() >= LEAST_CELLS;
         AngleDivergence {
-            point_count: points.len(),
-            at_transition: critical.and_then(|critical| fit_divergence_at(&below, critical).ok()),
-            free: fit_divergence(&points).ok(),
+            point_count: all.len(),
+            below_count: below.len(),
+            sample_count: own.iter().map(|(_, count)| *count).min().unwrap_or(0),
+            at_transition: critical
+                .filter(|_| enough(&below))
+                .and_then(|critical| fit_divergence_at(&below, critical).ok()),
+            free: enough(&all).then(|| fit_divergence(&all).ok()).flatten(),
         }
     }
 }
@@ -156,5 +202,60 @@ impl RingSlope {
             }
             crate::fit::ensemble::LeastSquaresSlope::NonPositivePower { .. } => None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both slopes of a spectrum without noise, f = 2 to 24.
+    fn slopes(spectrum: impl Fn(f64) -> f64) -> [f64; 2] {
+        let powers: Vec<f64> = (1..=24).map(|f| spectrum(f64::from(f))).collect();
+        let all = [powers];
+        [slope_of(&all, &[0]).expect("positive powers"), likelihood_slope_of(&all, &[0]).expect("a maximum")]
+    }
+
+    #[test]
+    fn smooth_bends_flatten_both_slopes_alike() {
+        let [line, likely] = slopes(|f| libm::pow(f, -1.5));
+        assert!((line - 1.5).abs() < 1e-12 && (likely - 1.5).abs() < 1e-6);
+        // A Lorentzian of f† = 2, and a white floor of a fifth of the power law at f = 24 or of ten times that: least squares are lower, by 0.004,
+        // 0.0001 and 0.006.
+        let [line, likely] = slopes(|f| 1.0 / (1.0 + libm::pow(f / 2.0, 1.5)));
+        assert!((line - 1.2875).abs() < 1e-3 && (likely - line - 0.0037).abs() < 5e-4, "{line} {likely}");
+        for (floor, expected, gap) in [(0.0017, 1.427, 1e-3), (0.017, 1.041, 1e-2)] {
+            let [line, likely] = slopes(|f| libm::pow(f, -1.5) + floor);
+            assert!((line - expected).abs() < 2e-2 && line < likely && likely - line < gap, "{floor}: {line} {likely}");
+        }
+    }
+
+    #[test]
+    fn a_strong_low_power_pulls_the_likelihood_and_a_lost_high_one_least_squares() {
+        // Four times the power at f = 2: 1.72 by least squares, 1.81 by likelihood.
+        let [line, likely] = slopes(|f| libm::pow(f, -1.5) * if f == 2.0 { 4.0 } else { 1.0 });
+        assert!((line - 1.7246).abs() < 1e-3 && (likely - 1.8109).abs() < 1e-3, "{line} {likely}");
+        // A tenth of it at f = 24: 1.68 and 1.57.
+        let [line, likely] = slopes(|f| libm::pow(f, -1.5) * if f == 24.0 { 0.1 } else { 1.0 });
+        assert!((line - 1.6758).abs() < 1e-3 && (likely - 1.5746).abs() < 1e-3, "{line} {likely}");
+    }
+
+    #[test]
+    fn a_divergence_is_fitted_from_five_cells_on() {
+        let point = |i: u32| {
+            let x = f64::from(i);
+            let y = libm::pow(10.5 - x, -0.9);
+            (MeasuredPoint { x, y, error: 0.02 * y }, 10 + i as usize)
+        };
+        let through = |count: u32| AngleDivergence::through(&(0..count).map(point).collect::<Vec<_>>(), Some(10.5));
+        let four = through(4);
+        assert_eq!((four.point_count, four.below_count, four.sample_count), (4, 4, 10));
+        assert!(four.at_transition.is_none() && four.free.is_none());
+        let five = through(5);
+        assert!((five.at_transition.expect("five cells").exponent.value - 0.9).abs() < 1e-12 && five.free.is_some());
+        // Five cells, four of them below.
+        let one_above = AngleDivergence::through(&(0..5).map(point).collect::<Vec<_>>(), Some(3.5));
+        assert_eq!((one_above.point_count, one_above.below_count), (5, 4));
+        assert!(one_above.at_transition.is_none() && one_above.free.is_some());
     }
 }

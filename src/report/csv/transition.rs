@@ -4,22 +4,24 @@ use std::fmt::Write as _;
 
 use crate::transition::Comparison;
 
-/// A row a number; what has no value or no interval leaves its fields empty.
+/// A row a number; what has no value, no interval or no reason leaves its fields empty.
 pub fn table(comparisons: &[Comparison]) -> String {
-    let mut text = String::from("quantity,of,value,low,high,published,verdict\n");
+    let mut text = String::from("quantity,of,value,low,high,published,verdict,samples,reason\n");
     let or_empty = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
     for one in comparisons {
         let (low, high) = (one.interval.map(|it| it[0]), one.interval.map(|it| it[1]));
         let _ = writeln!(
             text,
-            "\"{}\",\"{}\",{},{},{},{},{}",
+            "\"{}\",\"{}\",{},{},{},{},{},{},{}",
             one.quantity,
             one.of,
             or_empty(one.value),
             or_empty(low),
             or_empty(high),
             one.published,
-            one.verdict.name()
+            one.verdict.name(),
+            one.sample_count,
+            one.reason.map_or("", |reason| reason.words())
         );
     }
     text

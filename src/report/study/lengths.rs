@@ -16,8 +16,11 @@ pub(super) fn matching(subject: &Subject<'_>) -> Vec<Figure> {
             let interval = length.standard_error.map(|error| [length.mean - error, length.mean + error]);
             Some(PlotPoint { x: it.point.pressure, y: length.mean, interval })
         });
-        let isostatic = series.lengths.iter().filter_map(|it| Some((it.point.pressure, it.isostatic?)));
-        let isostatic = bare(isostatic);
+        let isostatic = series.lengths.iter().filter_map(|it| {
+            let found = it.isostatic?.found;
+            Some(PlotPoint { x: it.point.pressure, y: found.best, interval: found.interval })
+        });
+        let isostatic: Vec<PlotPoint> = isostatic.collect();
         let published =
             series.points.iter().map(|point| (point.pressure, 75.0 * libm::pow(point.pressure, -1.0 / 3.0)));
         let radius = series.points.iter().find_map(|point| subject.number(point.cell, "outer_radius"))?.mean;
@@ -100,12 +103,11 @@ fn penetration(all: &[&JammingSeries], threshold: f64, from_jamming: bool) -> Op
         });
         let points: Vec<PlotPoint> = points.collect();
         let mut label = format!("{} disks", series.cell.disk_count);
+        if all.iter().any(|other| other.cell.relaxer != series.cell.relaxer) {
+            label = format!("{label}, {}", series.cell.relaxer.description());
+        }
         if let Some(fit) = series.at_jamming.filter(|_| from_jamming) {
-            label = format!(
-                "{}, ν = {}",
-                series.cell.disk_count,
-                with_error(fit.exponent.value, fit.exponent.standard_error)
-            );
+            label = format!("{label}, ν = {}", with_error(fit.exponent.value, fit.exponent.standard_error));
             let line =
                 points.iter().map(|point| (point.x, fit.amplitude.value * libm::pow(point.x, -fit.exponent.value)));
             curves.push(Curve { label: String::new(), points: bare(line), look: Look::Line, colour });

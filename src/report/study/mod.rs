@@ -47,9 +47,9 @@ pub(super) fn reduced(value: f64) -> String {
     format!("p̂ = {}", significant(value, 1))
 }
 
-/// Size and, where they differ among series, law and inflation.
+/// Size and, where they differ among series, law, inflation and relaxer.
 pub(super) fn short(series: &Series, all: &[Series]) -> String {
-    let Cell { law, disk_count, increase, .. } = series.cell;
+    let Cell { law, disk_count, increase, relaxer, .. } = series.cell;
     let mut text = format!("{disk_count}");
     if all.iter().any(|other| other.cell.law != law) {
         text = format!("{} {text}", law.name());
@@ -57,12 +57,23 @@ pub(super) fn short(series: &Series, all: &[Series]) -> String {
     if all.iter().any(|other| other.cell.increase != increase) {
         text = format!("{text}, {increase}");
     }
+    if all.iter().any(|other| other.cell.relaxer != relaxer) {
+        text = format!("{text}, {}", relaxer.description());
+    }
     text
 }
 
 /// The colour of a series among all.
 pub(super) fn series_colour(index: usize, all: &[Series]) -> [u8; 3] {
     colour(index, all.len())
+}
+
+/// Words for a cell, with its relaxer where the study has several.
+pub(super) fn with_relaxer(text: String, cell: &Cell, merged: &Merged) -> String {
+    match merged.cells.iter().any(|other| other.cell.relaxer != cell.relaxer) {
+        true => format!("{text}, {}", cell.relaxer.description()),
+        false => text,
+    }
 }
 
 /// What a cell was prepared to, as SVG text.

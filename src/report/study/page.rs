@@ -2,14 +2,17 @@
 
 use std::fmt::Write as _;
 
-use crate::fit::ensemble::BootstrapInterval;
+use crate::fit::ensemble::{BootstrapInterval, DivergenceOutcome};
 use crate::report::figures::{Figure, escaped};
-use crate::report::number::{count, significant};
+use crate::report::number::{count, significant, with_error};
 use crate::report::page::{head, pictures};
 use crate::report::study::order::Abscissa;
 use crate::report::study::{Subject, angular, lengths, order, radial, scaling};
 use crate::study::{CellStatistics, Merged, NumberStatistics, PhaseCounts};
-use crate::transition::{Comparison, ExponentOutcome, Transition, TransitionPressure, Verdict, words};
+use crate::transition::{
+    CellSpectrum, Comparison, ExponentOutcome, LEAST_CELLS, LEAST_SAMPLES, Sampled, Series, Transition,
+    TransitionPressure, Verdict, words,
+};
 
 /// The page of a study. Two merges of the same samples give the same bytes.
 pub fn study_page(merged: &Merged, transition: &Transition) -> String {
@@ -25,6 +28,8 @@ pub fn study_page(merged: &Merged, transition: &Transition) -> String {
         }
     }
     html.push_str(&estimates(transition));
+    html.push_str(&slopes(transition));
+    html.push_str(&divergences(transition));
     html.push_str(&exponents(transition));
     html.push_str(&comparisons(transition));
     html.push_str(&cells(merged));
@@ -162,6 +167,7 @@ pub(super) fn pressure(found: TransitionPressure) -> String {
         TransitionPressure::Above(highest) => format!("above {}", significant(highest, 2)),
         TransitionPressure::Below(lowest) => format!("below {}", significant(lowest, 2)),
         TransitionPressure::Unordered => "not in one place".into(),
+        TransitionPressure::Uninformative { reason } => format!("cannot tell: {}", reason.words()),
     }
 }
 
@@ -173,15 +179,71 @@ fn estimates(transition: &Transition) -> String {
             rows.push(vec![series.name(), estimate.method.name().into(), pressure(estimate.pressure)]);
         }
         if let Some(at) = &series.at_transition {
-            let mut row = |name: &str, found: Option<BootstrapInterval>| {
-                rows.extend(found.map(|found| vec![series.name(), name.into(), interval(&found)]));
+            let mut row = |name: &str, found: Option<Sampled>| {
+                rows.extend(found.map(|it| vec![series.name(), name.into(), interval(&it.found)]));
             };
             row("G* at p̂_c by the slope", at.anticorrelation);
             row("θ* at p̂_c by the slope (rad)", at.angle);
         }
     }
-    let text = "κ and Δp: where half of the samples have κ above κ₁/2, or Δp below zero. G*, θ*, slope: where the mean passes its value for S ∼ f^(−1.5). f†: where it falls below 0.1, a power law from f = 1 on.";
-    table("Transition pressure p̂_c", text, &["Series", "By", "p̂_c or value (interval)"], &rows)
+    let text = format!(
+        "κ and Δp: where half of the samples have κ above κ₁/2, or Δp below zero. G*, θ*, slope: where the mean passes its value for S ∼ f^(−1.5). \
+         f†: where it falls below 0.1, a power law from f = 1 on. A cell counts with {LEAST_SAMPLES} samples."
+    );
+    table("Transition pressure p̂_c", &text, &["Series", "By", "p̂_c or value (interval)"], &rows)
+}
+
+/// The slope of the mean spectrum of every cell, both ways.
+fn slopes(transition: &Transition) -> String {
+    let or_none = |found: Option<BootstrapInterval>| found.map_or("none".into(), |found| interval(&found));
+    let of_series = |series: &Series| {
+        let row = |it: &CellSpectrum| {
+            let (at, count) = (significant(it.point.reduced_pressure, 2), it.point.sample_count.to_string());
+            vec![series.name(), at, count, or_none(it.slope), or_none(it.likelihood_slope)]
+        };
+        series.spectra.iter().map(row).collect::<Vec<_>>()
+    };
+    let rows: Vec<Vec<String>> = transition.series.iter().flat_map(of_series).collect();
+    let text = "s of S ∼ f^(−s), f from 2 to 24, by least squares in logarithms and by maximum likelihood. Both weigh every f alike where the powers lie near the line. \
+                A power far above it, as a strong f = 2, pulls the likelihood more; one far below it, as removed leakage leaves at high f, pulls least squares more. \
+                Where they differ by more than their intervals the spectrum has no one slope.";
+    table(
+        "Slope of S(f)",
+        text,
+        &["Series", "p̂", "Samples", "Least squares (interval)", "Likelihood (interval)"],
+        &rows,
+    )
+}
+
+/// μ of θ† of every series, or how many cells there are of those it needs.
+fn divergences(transition: &Transition) -> String {
+    let missing = |count: usize| format!("not fitted: {count} of {LEAST_CELLS} cells");
+    let row = |series: &Series| {
+        let found = &series.divergence;
+        let given = match &found.at_transition {
+            Some(fit) => with_error(fit.exponent.value, fit.exponent.standard_error),
+            None if found.below_count < LEAST_CELLS => missing(found.below_count),
+            None => "no fit".into(),
+        };
+        let free = match &found.free {
+            Some(DivergenceOutcome::Found(fit)) => {
+                let at = significant(fit.critical.best, 2);
+                format!("{}, p̂_c = {at}", with_error(fit.exponent.value, fit.exponent.standard_error))
+            }
+            Some(DivergenceOutcome::Unbounded { .. }) => "p̂_c unbounded".into(),
+            Some(DivergenceOutcome::AtLastPoint { .. }) => "p̂_c at the last cell".into(),
+            None if found.point_count < LEAST_CELLS => missing(found.point_count),
+            None => "no fit".into(),
+        };
+        vec![series.name(), found.point_count.to_string(), found.below_count.to_string(), given, free]
+    };
+    let with_spectra = transition.series.iter().filter(|series| !series.spectra.is_empty());
+    let rows: Vec<Vec<String>> = with_spectra.map(row).collect();
+    let text = format!(
+        "μ of θ† ∼ (p̂_c − p̂)^(−μ), with p̂_c by the slope (least squares) or fitted. Three numbers are fitted, so {LEAST_CELLS} cells are needed."
+    );
+    let heads = ["Series", "Cells with θ†", "Below p̂_c", "μ, p̂_c given", "μ, p̂_c fitted"];
+    table("Divergence of θ†", &text, &heads, &rows)
 }
 
 fn exponents(transition: &Transition) -> String {
@@ -201,7 +263,7 @@ fn exponents(transition: &Transition) -> String {
         .iter()
         .map(|one| {
             vec![
-                format!("{}, {} curves", one.law.name(), one.curve_count),
+                format!("{}, {}, {} curves", one.law.name(), one.relaxer.description(), one.curve_count),
                 words(one.observable),
                 outcome(one.size_exponent),
                 outcome(one.inflation_exponent),
@@ -211,13 +273,17 @@ fn exponents(transition: &Transition) -> String {
         })
         .collect();
     let text = "a and b with which the curves against p N^a d₀^(−b) lie on one. S is 1 where curves agree within their errors; in brackets the points it is made of.";
-    let heads = ["Law", "Of", "a", "b", "S at the best", "S at the published"];
+    let heads = ["Law and relaxer", "Of", "a", "b", "S at the best", "S at the published"];
     table("Collapse", text, &heads, &rows)
 }
 
 fn comparisons(transition: &Transition) -> String {
     let row = |one: &Comparison| {
-        let value = one.value.map_or("a bound only".into(), |value| significant(value, 3));
+        let value = match (one.value, one.verdict) {
+            (Some(value), _) => significant(value, 3),
+            (None, Verdict::Uninformative) => "none".into(),
+            (None, _) => "a bound only".into(),
+        };
         vec![
             one.quantity.clone(),
             one.of.clone(),
@@ -229,12 +295,12 @@ fn comparisons(transition: &Transition) -> String {
     };
     let rows: Vec<Vec<String>> = transition.comparisons.iter().map(row).collect();
     let heads = ["Quantity", "Of", "Found", "Interval", "Published", ""];
-    table(
-        "Beside the literature",
-        "A published value agrees where the interval holds it; else its distance is told in half widths of the interval.",
-        &heads,
-        &rows,
-    )
+    let text = format!(
+        "A published value agrees where the interval holds it; else its distance is told in half widths of the interval. Nothing is told without an interval, from cells of fewer \
+         than {LEAST_SAMPLES} samples, or where an interval that holds the value is too wide: a pressure by more than a factor of 10, any other number by more than the published value, or 0.1 \
+         where that is more."
+    );
+    table("Beside the literature", &text, &heads, &rows)
 }
 
 fn verdict(one: &Comparison) -> String {
@@ -251,7 +317,10 @@ fn verdict(one: &Comparison) -> String {
         },
         Verdict::Beyond => "beyond the range measured".into(),
         Verdict::Excluded => "excluded by the range measured".into(),
-        Verdict::Unknown => "no interval".into(),
+        Verdict::Uninformative => match one.reason {
+            Some(reason) => format!("cannot tell: {}", reason.words()),
+            None => one.verdict.name().into(),
+        },
     }
 }
 
@@ -274,7 +343,13 @@ fn cells(merged: &Merged) -> String {
             statistics.failures.iter().map(|(kind, count)| format!("{count} {}", kind.name())).collect();
         let phases = &statistics.phases;
         vec![
-            format!("{} {} disks, d_0 = {}", cell.law.name(), cell.disk_count, cell.increase),
+            format!(
+                "{} {} disks, d_0 = {}, {}",
+                cell.law.name(),
+                cell.disk_count,
+                cell.increase,
+                cell.relaxer.description()
+            ),
             format!("{} {}", name.replace('_', " "), significant(value, 3)),
             statistics.done_count.to_string(),
             failures.join(", "),
@@ -302,7 +377,7 @@ fn cells(merged: &Merged) -> String {
 
 fn mean(found: &NumberStatistics) -> String {
     match found.standard_error {
-        Some(error) => crate::report::number::with_error(found.mean, error),
+        Some(error) => with_error(found.mean, error),
         None => significant(found.mean, 3),
     }
 }

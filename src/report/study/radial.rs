@@ -5,7 +5,7 @@ use crate::reference::screened::Screened;
 use crate::reference::{Annulus, RadialSolution};
 use crate::report::figures::Figure;
 use crate::report::figures::plot::{Guide, Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare, colour};
-use crate::report::study::{Subject, series_colour, short, target};
+use crate::report::study::{Subject, series_colour, short, target, with_relaxer};
 use crate::study::{CellSamples, Single};
 use crate::transition::{FIRST_ZERO, Series};
 
@@ -27,7 +27,8 @@ pub(super) fn singles(subject: &Subject<'_>) -> Vec<Figure> {
         let radius = single.numbers.get("outer_radius").copied().unwrap_or(f64::NAN);
         let colour = colour(index, cells.len().clamp(5, MOST_CELLS));
         let points = bare(single.profile.iter().map(|[r, d]| (r / radius, r * d / unit)));
-        curves.push(Curve { label: target(&samples.cell), points, look: Look::Points, colour });
+        let label = with_relaxer(target(&samples.cell), &samples.cell, subject.merged);
+        curves.push(Curve { label, points, look: Look::Points, colour });
         if let Some(solution) = solution(subject, single, radius) {
             let at = |step: u32| 0.05 + 0.95 * f64::from(step) / f64::from(CURVE_POINTS);
             let points =
@@ -90,7 +91,7 @@ pub(super) fn means(subject: &Subject<'_>) -> Vec<Figure> {
         subject,
         format!("Mean radial profiles, {size} disks, d_0 = {increase}"),
         &spread(&at_base),
-        |it| target(&it.cell),
+        |it| with_relaxer(target(&it.cell), &it.cell, subject.merged),
     )
     .into_iter()
     .collect();
@@ -100,7 +101,9 @@ pub(super) fn means(subject: &Subject<'_>) -> Vec<Figure> {
         let own: Vec<&CellSamples> = all.iter().copied().filter(|it| it.cell.target == of).collect();
         if own.len() > 1 {
             let title = format!("Mean radial profiles by inflation, {size} disks, {}", target(&own[0].cell));
-            figures.extend(mean_figure(subject, title, &spread(&own), |it| format!("d_0 = {}", it.cell.increase)));
+            figures.extend(mean_figure(subject, title, &spread(&own), |it| {
+                with_relaxer(format!("d_0 = {}", it.cell.increase), &it.cell, subject.merged)
+            }));
         }
     }
     figures
@@ -158,7 +161,11 @@ pub(super) fn modes(subject: &Subject<'_>) -> Vec<Figure> {
         };
         let series: Vec<Curve> = names.iter().enumerate().filter_map(curve).collect();
         Plot {
-            title: format!("Angular modes, periodic box, {} disks, {}", samples.cell.disk_count, target(&samples.cell)),
+            title: format!(
+                "Angular modes, periodic box, {} disks, {}",
+                samples.cell.disk_count,
+                with_relaxer(target(&samples.cell), &samples.cell, subject.merged)
+            ),
             description:
                 "Shares of the angular modes of the radial displacement at half of the outer radius, sample by sample"
                     .into(),

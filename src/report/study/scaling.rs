@@ -3,21 +3,21 @@
 use std::f64::consts::PI;
 
 use crate::contact::LawChoice;
+use crate::relax::RelaxerChoice;
 use crate::report::figures::Figure;
 use crate::report::figures::palette::{BLUE, VERMILLION};
 use crate::report::figures::plot::{Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare};
 use crate::report::study::{Subject, series_colour, short};
-use crate::transition::{ANGLE, ANTICORRELATION, Method, SCALE_FREE_ANTICORRELATION, beta};
+use crate::transition::{
+    ANGLE, ANTICORRELATION, Method, SCALE_FREE_ANTICORRELATION, Series as Cells, beta, laws_and_relaxers,
+};
 
-/// Laws in the order of the study.
-fn laws(subject: &Subject<'_>) -> Vec<LawChoice> {
-    let mut laws = Vec::new();
-    for series in &subject.transition.series {
-        if !laws.contains(&series.cell.law) {
-            laws.push(series.cell.law);
-        }
+/// A law and, where the study has several, the relaxer, in words.
+fn words(law: LawChoice, relaxer: RelaxerChoice, subject: &Subject<'_>) -> String {
+    match subject.transition.series.iter().any(|series| series.cell.relaxer != relaxer) {
+        true => format!("{}, {}", law.name(), relaxer.description()),
+        false => law.name().into(),
     }
-    laws
 }
 
 /// Whether a study has several inflations.
@@ -26,19 +26,21 @@ fn several(subject: &Subject<'_>) -> bool {
     all.iter().any(|series| series.cell.increase != all[0].cell.increase)
 }
 
-/// G* and θ* against p N^(β/2)/d_0^(β/4), a figure a law.
+/// G* and θ* against p N^(β/2)/d_0^(β/4), a figure a law and relaxer.
 pub(super) fn with_inflation(subject: &Subject<'_>) -> Vec<Figure> {
     if !several(subject) {
         return Vec::new();
     }
     let all = &subject.transition.series;
     let mut figures = Vec::new();
-    for law in laws(subject) {
+    for (law, relaxer) in laws_and_relaxers(all) {
         let beta = beta(&law);
         for (name, title, label, unit) in [(ANTICORRELATION, "G*", "G* = −G(π)", 1.0), (ANGLE, "θ*", "θ* / π", PI)]
         {
             let mut curves = Vec::new();
-            for (index, series) in all.iter().enumerate().filter(|(_, series)| series.cell.law == law) {
+            for (index, series) in
+                all.iter().enumerate().filter(|(_, it)| (it.cell.law, it.cell.relaxer) == (law, relaxer))
+            {
                 let scale = libm::pow(series.mobile_count(), 0.5 * beta) / libm::pow(series.cell.increase, 0.25 * beta);
                 let points = subject.along(series, name, |point| point.pressure * scale);
                 let points = points.iter().map(|point| PlotPoint {
@@ -51,7 +53,7 @@ pub(super) fn with_inflation(subject: &Subject<'_>) -> Vec<Figure> {
             }
             let (a, b) = (0.5 * beta, 0.25 * beta);
             let plot = Plot {
-                title: format!("{title} of all sizes and inflations, {}", law.name()),
+                title: format!("{title} of all sizes and inflations, {}", words(law, relaxer, subject)),
                 description: format!("Mean {title} against p N^{a}/d_0^{b} of several sizes and inflations"),
                 x: PlotAxis::logarithmic(format!("p N^{a} / d₀^{b}")),
                 y: PlotAxis::linear(label),
@@ -69,13 +71,15 @@ pub(super) fn phase_diagram(subject: &Subject<'_>) -> Vec<Figure> {
     if !several(subject) {
         return Vec::new();
     }
-    laws(subject).into_iter().filter_map(|law| diagram(subject, law)).collect()
+    let all = laws_and_relaxers(&subject.transition.series);
+    all.into_iter().filter_map(|(law, relaxer)| diagram(subject, law, relaxer)).collect()
 }
 
-fn diagram(subject: &Subject<'_>, law: LawChoice) -> Option<Figure> {
+fn diagram(subject: &Subject<'_>, law: LawChoice, relaxer: RelaxerChoice) -> Option<Figure> {
     let beta = beta(&law);
     let (mut plastic, mut elastic) = (Vec::new(), Vec::new());
-    for series in subject.transition.series.iter().filter(|series| series.cell.law == law) {
+    let is_own = |series: &&Cells| (series.cell.law, series.cell.relaxer) == (law, relaxer);
+    for series in subject.transition.series.iter().filter(is_own) {
         let mobile = series.mobile_count();
         for point in &series.points {
             let Some(found) = subject.number(point.cell, ANTICORRELATION) else { continue };
@@ -92,7 +96,10 @@ fn diagram(subject: &Subject<'_>, law: LawChoice) -> Option<Figure> {
         },
         Curve { label: "G* above 0.293".into(), points: bare(elastic.into_iter()), look: Look::Points, colour: BLUE },
     ];
-    let law_of = |method| subject.transition.pressure_laws.iter().find(|it| it.law == law && it.method == method);
+    let law_of = |method| {
+        let mut all = subject.transition.pressure_laws.iter();
+        all.find(|it| (it.law, it.relaxer, it.method) == (law, relaxer, method))
+    };
     if let Some(found) = law_of(Method::Anticorrelation) {
         let points = bare(found.points.iter().map(|point| (point.y, point.x)));
         curves.push(Curve { label: "p_c by G*".into(), points, look: Look::Hollow, colour: [0x22; 3] });
@@ -116,7 +123,7 @@ fn diagram(subject: &Subject<'_>, law: LawChoice) -> Option<Figure> {
         }
     }
     Plot {
-        title: format!("Phase diagram, {}", law.name()),
+        title: format!("Phase diagram, {}", words(law, relaxer, subject)),
         description: "Cells below and above the scale-free value of G* in the plane of rescaled pressure and inflation, with the transition".into(),
         x: PlotAxis::logarithmic(format!("N^{beta} p (force / length)")),
         y: PlotAxis::logarithmic("N² d₀ (length)"),
