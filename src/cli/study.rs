@@ -288,6 +288,7 @@ mod transition {
             TransitionPressure::Above(highest) => format!("above {highest:.2e}"),
             TransitionPressure::Below(lowest) => format!("below {lowest:.2e}"),
             TransitionPressure::Unordered => "not in one place".into(),
+            TransitionPressure::Uninformative { reason } => format!("cannot tell: {}", reason.words()),
             found => {
                 let ends = found.interval().map_or(String::new(), |[low, high]| format!(" ({low:.2e} to {high:.2e})"));
                 found.best().map_or("none".into(), |best| format!("{best:.2e}{ends}"))
@@ -299,7 +300,8 @@ mod transition {
         let value = one.value.map_or("a bound".into(), number);
         let ends = one.interval.map_or(String::new(), |[low, high]| format!(" ({} to {})", number(low), number(high)));
         let published = number(one.published);
-        format!("{}, {}: {value}{ends}, published {published}: {}\n", one.quantity, one.of, one.verdict.name())
+        let reason = one.reason.map_or(String::new(), |reason| format!(", {}", reason.words()));
+        format!("{}, {}: {value}{ends}, published {published}: {}{reason}\n", one.quantity, one.of, one.verdict.name())
     }
 
     /// Four digits.

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::response::PhaseOutcome;
+use crate::response::{EvidenceCounts, PhaseOutcome};
 use crate::study::record::{Cell, FailureKind, Record, RecordOutcome};
 use crate::study::statistics::{CellStatistics, NumberStatistics, PhaseCounts};
 
@@ -24,6 +24,8 @@ pub struct CellSamples {
     pub failures: BTreeMap<FailureKind, usize>,
     /// Samples of every phase.
     pub phases: PhaseCounts,
+    /// Samples by what each kind of evidence says.
+    pub evidence: EvidenceCounts,
     /// Numbers by name \[unit in the table of names in the book\], of the samples that have them, in the order of the plan.
     pub numbers: BTreeMap<String, Vec<f64>>,
     /// P_f over the variance of the ring, f = 1, 2, …, of every sample that has it.
@@ -134,6 +136,7 @@ impl CellSamples {
             done_count: 0,
             failures: BTreeMap::new(),
             phases: PhaseCounts::default(),
+            evidence: EvidenceCounts::default(),
             numbers: BTreeMap::new(),
             powers: Vec::new(),
             stretching: Vec::new(),
@@ -164,6 +167,7 @@ impl CellSamples {
             PhaseOutcome::Undecided => &mut phases.undecided,
             PhaseOutcome::NotAtRest => &mut phases.not_at_rest,
         } += 1;
+        self.evidence.add(phase);
         for (name, &value) in numbers {
             self.numbers.entry(name.clone()).or_default().push(value);
         }
@@ -197,6 +201,7 @@ impl CellSamples {
             done_count: self.done_count,
             failures: self.failures.clone(),
             phases: self.phases,
+            evidence: self.evidence,
             numbers: self.numbers.iter().map(|(name, values)| (name.clone(), NumberStatistics::of(values))).collect(),
         }
     }

@@ -7,6 +7,7 @@ use rand_pcg::Pcg64;
 use serde::Serialize;
 
 use crate::observe::angular::quantile;
+use crate::response::EvidenceCounts;
 use crate::study::record::{Cell, FailureKind};
 
 /// Resamplings of a bootstrap: its ends at 2.5 and 97.5 % then stand on the 25th value from either end.
@@ -43,6 +44,8 @@ pub struct CellStatistics {
     pub failures: BTreeMap<FailureKind, usize>,
     /// Samples of every phase.
     pub phases: PhaseCounts,
+    /// Jammed samples by what each kind of evidence says.
+    pub evidence: EvidenceCounts,
     /// Every number.
     pub numbers: BTreeMap<String, NumberStatistics>,
 }

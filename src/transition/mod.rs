@@ -14,6 +14,7 @@
 //! # Source
 //! The study; what is taken from where stands with each number.
 
+mod calibration;
 mod crossing;
 mod evidence;
 mod lengths;
@@ -46,6 +47,7 @@ pub(crate) use scaling::{beta, laws_and_relaxers};
 #[cfg(feature = "plot")]
 pub(crate) use series::{ANGLE, ANTICORRELATION, PUBLISHED};
 
+use crate::response::Calibration;
 use crate::study::Merged;
 
 /// Resamplings of a bootstrap here: its ends then stand on the tenth value from either end.
@@ -64,6 +66,8 @@ pub struct Transition {
     pub jamming: Vec<JammingSeries>,
     /// What was found beside what is published.
     pub comparisons: Vec<Comparison>,
+    /// How often samples are called plastic or quasielastic, by which evidence, at which pressure.
+    pub calibration: Calibration,
 }
 
 impl Transition {
@@ -77,6 +81,7 @@ impl Transition {
         let pressure_laws = PressureLaw::all(&series);
         let jamming = JammingSeries::all(merged);
         let comparisons = literature::comparisons(&series, &scaling, &pressure_laws, &jamming);
-        Transition { series, scaling, pressure_laws, jamming, comparisons }
+        let calibration = calibration::calibration(merged, &series);
+        Transition { series, scaling, pressure_laws, jamming, comparisons, calibration }
     }
 }

@@ -5,6 +5,8 @@ mod analysis;
 mod any_field;
 #[cfg(feature = "cli")]
 mod command_line;
+#[cfg(all(feature = "fit", feature = "linear"))]
+mod ensembles;
 #[cfg(feature = "cli")]
 mod exact_command;
 #[cfg(feature = "cli")]

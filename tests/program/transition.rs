@@ -41,6 +41,7 @@ fn samples(cell: Cell, numbers: &[(&str, Vec<f64>)], powers: Vec<Vec<f64>>) -> C
         done_count: numbers.first().map_or(SAMPLES, |(_, values)| values.len()),
         failures: BTreeMap::new(),
         phases: PhaseCounts::default(),
+        evidence: Default::default(),
         numbers: numbers.iter().map(|(name, values)| ((*name).into(), values.clone())).collect(),
         powers,
         stretching: Vec::new(),

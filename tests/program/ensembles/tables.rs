@@ -16,6 +16,9 @@ pub struct Ensemble {
     pub transition: Transition,
 }
 
+/// What stands in a place of a table.
+type Quantity<'a> = &'a dyn Fn(&Series, &CellSamples) -> String;
+
 /// First zero of J_1: κ_1 R.
 const FIRST_ZERO: f64 = 3.831_705_970_207_512;
 
@@ -66,12 +69,12 @@ impl Ensemble {
     }
 
     /// A row a p̂, a column a relaxer and quantity.
-    fn by_pressure(&self, quantities: &[(&str, &dyn Fn(&Series, &CellSamples) -> String)]) -> String {
+    fn by_pressure(&self, quantities: &[(&str, Quantity<'_>)]) -> String {
         let series = self.series();
         let mut head = "| p̂ | samples |".to_string();
         for (name, _) in quantities {
             for one in &series {
-                write!(head, " {name}: {} |", relaxer(one)).expect("text");
+                write!(head, " {name}, {} |", relaxer(one)).expect("text");
             }
         }
         let mut table = head.clone() + "\n|" + &"---|".repeat(head.matches('|').count() - 1) + "\n";
@@ -95,7 +98,8 @@ impl Ensemble {
     /// Δp, κ and contacts.
     pub fn radial(&self) -> String {
         let pressure = |_: &Series, samples: &CellSamples| mean(samples, "scaled_pressure_change", 2);
-        let screened = |_: &Series, samples: &CellSamples| share(samples, |kappa, radius| kappa * radius >= 0.5 * FIRST_ZERO);
+        let screened =
+            |_: &Series, samples: &CellSamples| share(samples, |kappa, radius| kappa * radius >= 0.5 * FIRST_ZERO);
         let made = |_: &Series, samples: &CellSamples| mean(samples, "contacts_made", 0);
         self.by_pressure(&[("Δp/p^(1/3)", &pressure), ("κ ≥ κ₁/2", &screened), ("contacts made", &made)])
     }
@@ -189,26 +193,28 @@ pub fn calibration(ensembles: &[Ensemble]) -> Calibration {
     Calibration { ensembles: all.collect() }
 }
 
+/// In a word and a number: "FIRE", "constant 500", "viscoelastic 500".
 fn relaxer(one: &Series) -> String {
-    one.cell.relaxer.description()
+    one.cell.relaxer.description().replace(" and Newton", "").replace(" damping", "")
 }
 
-/// 3·10⁸.
+/// 3·10⁸, two digits.
 fn power(value: f64) -> String {
-    let exponent = value.log10().floor() as i32;
-    let digits: String = exponent.to_string().chars().map(|c| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(c as usize - '0' as usize).unwrap_or('⁻')).collect();
-    let mantissa = value / 10f64.powi(exponent);
-    match (mantissa * 10.0).round() {
-        10.0 => format!("10{digits}"),
-        tenths if tenths % 10.0 == 0.0 => format!("{}·10{digits}", tenths / 10.0),
-        tenths => format!("{:.1}·10{digits}", tenths / 10.0),
+    let written = format!("{value:.1e}");
+    let (mantissa, exponent) = written.split_once('e').expect("an exponent");
+    let raised = |digit: char| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(digit.to_digit(10).unwrap_or(0) as usize);
+    let exponent: String = exponent.chars().filter_map(raised).collect();
+    match mantissa.trim_end_matches(".0") {
+        "1" => format!("10{exponent}"),
+        mantissa => format!("{mantissa}·10{exponent}"),
     }
 }
 
 fn pressure(of: TransitionPressure) -> String {
     match of {
         TransitionPressure::Found(found) => {
-            let ends = found.interval.map_or(String::new(), |[low, high]| format!(" ({} to {})", power(low), power(high)));
+            let ends =
+                found.interval.map_or(String::new(), |[low, high]| format!(" ({} to {})", power(low), power(high)));
             power(found.best) + &ends
         }
         TransitionPressure::Between([low, high]) => format!("between {} and {}", power(low), power(high)),
