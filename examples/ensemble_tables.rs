@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ensembles.push(Ensemble::read(path, folder.path()));
     }
     if std::env::args().any(|argument| argument == "--calibration") {
-        println!("{}", serde_json::to_string_pretty(&calibration(&ensembles))?);
+        println!("{}", serde_json::to_string(&calibration(&ensembles))?);
         return Ok(());
     }
     for (title, table) in tables(&ensembles) {

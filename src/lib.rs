@@ -250,6 +250,8 @@ mod book {
     #[cfg(feature = "linear")]
     #[doc = include_str!("../book/src/protocol.md")]
     mod protocol {}
+    #[doc = include_str!("../book/src/plastic_phase.md")]
+    mod plastic_phase {}
     #[doc = include_str!("../book/src/scene.md")]
     mod scene {}
     #[doc = include_str!("../book/src/response.md")]

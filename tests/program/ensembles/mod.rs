@@ -32,7 +32,7 @@ fn tables_of_the_book_are_those_of_the_records() {
     for (title, table) in tables(&ensembles) {
         assert!(text.contains(&table), "{title} is not in the book:\n{table}");
     }
-    let expected = serde_json::to_string_pretty(&calibration(&ensembles)).expect("JSON") + "\n";
+    let expected = serde_json::to_string(&calibration(&ensembles)).expect("JSON") + "\n";
     let found = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("src/response/calibration.json"));
     assert_eq!(found.expect("there"), expected, "the calibration is not that of the records");
 }

@@ -87,7 +87,8 @@ impl Ensemble {
             for (_, of) in quantities {
                 for one in &series {
                     let cell = self.samples(one, target).filter(|samples| samples.done_count > 0);
-                    write!(table, " {} |", cell.map_or("–".into(), |samples| of(one, samples))).expect("text");
+                    let text = cell.map_or("–".into(), |samples| of(one, samples));
+                    write!(table, " {} |", text.replace('-', "−")).expect("text");
                 }
             }
             table.push('\n');
