@@ -124,9 +124,9 @@ fn along(pressure: f64, damping: DampingChoice, starts: &[Start]) -> Result<(), 
             let same = (inherent.energy / last.energy - 1.0).abs() < SAME_MINIMUM;
             column.push((stop.kinetic_share, inherent, same));
         }
-        columns[SHARES.len()].push((f64::NAN, last, true));
+        columns[SHARES.len()].push((0.0, last, true));
     }
-    for (share, column) in SHARES.iter().map(f64::to_string).chain(["end".into()]).zip(&columns) {
+    for (share, column) in SHARES.into_iter().chain([0.0]).zip(&columns) {
         let count = column.len() as f64;
         let kinetic = column.iter().map(|row| row.0).sum::<f64>() / count;
         let (change, error) = mean(column.iter().map(|row| row.1.pressure_change));
