@@ -12,9 +12,9 @@ use crate::processor::Vectors;
 #[cfg(feature = "linear")]
 use crate::protocol::{ProtocolSensitivity, ProtocolSummary};
 use crate::relax::{Cost, Criterion};
-use crate::response::Response;
 #[cfg(feature = "linear")]
-use crate::response::{Measurement, PhaseFrequency};
+use crate::response::Measurement;
+use crate::response::{PhaseFrequency, Response};
 use crate::scene::Scene;
 use crate::verdict::RestVerdict;
 
