@@ -127,10 +127,9 @@ impl Recipe {
     /// The study by a relaxer. Packings below jamming come to rest by FIRE all the same: damped dynamics would not end there.
     pub fn study_by(self, scale: Scale, relaxer: RelaxerChoice) -> Study {
         let mut study = self.of_scale(scale);
-        for relaxers in [&mut study.relaxers].into_iter().chain(study.parts.iter_mut().map(|part| &mut part.relaxers)) {
-            if *relaxers == [ProtocolChoice::default().relaxer()] {
-                *relaxers = vec![relaxer];
-            }
+        // Parts below jamming have a relaxer of their own.
+        if self != Recipe::Jamming {
+            study.relaxers = vec![relaxer];
         }
         study
     }
