@@ -1,8 +1,7 @@
-//! The tables of the chapter *Which dynamics make the plastic phase* and the calibration of phases, from `fixtures/ensembles`.
+//! The tables of the book that rest on `fixtures/ensembles`, and the calibration of phases: both are written where they stand.
 //!
 //! ```text
-//! cargo run --release --example ensemble_tables                  # the tables
-//! cargo run --release --example ensemble_tables -- --calibration > src/response/calibration.json
+//! cargo run --release --example ensemble_tables
 //! ```
 
 #[path = "../tests/program/ensembles/tables.rs"]
@@ -10,7 +9,7 @@ mod tables;
 
 use std::error::Error;
 
-use tables::{Ensemble, calibration, tables};
+use tables::{CHAPTERS, Ensemble, calibration, filled, tables};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut archives = Vec::new();
@@ -26,12 +25,17 @@ fn main() -> Result<(), Box<dyn Error>> {
         let folder = tempfile::tempdir()?;
         ensembles.push(Ensemble::read(path, folder.path()));
     }
-    if std::env::args().any(|argument| argument == "--calibration") {
-        println!("{}", serde_json::to_string(&calibration(&ensembles))?);
-        return Ok(());
+    let tables = tables(&ensembles);
+    let mut missing: Vec<&String> = tables.iter().map(|(title, _)| title).collect();
+    for chapter in CHAPTERS {
+        let path = format!("book/src/{chapter}");
+        let (text, found) = filled(&std::fs::read_to_string(&path)?, &tables);
+        std::fs::write(&path, text)?;
+        missing.retain(|title| !found.contains(title));
     }
-    for (title, table) in tables(&ensembles) {
-        println!("{title}\n\n{table}");
+    for title in missing {
+        println!("has no place in the book: <!-- {title} -->");
     }
+    std::fs::write("src/response/calibration.json", serde_json::to_string(&calibration(&ensembles))? + "\n")?;
     Ok(())
 }

@@ -4,6 +4,9 @@
 //! on the number of threads. Inside a thread pool, where samples of an ensemble already run side by side, everything stays on
 //! the thread it is on: a thread that waited for a piece would take up another sample meanwhile.
 
+#[cfg(feature = "parallel")]
+use std::sync::{Mutex, PoisonError};
+
 /// Fewest pieces that are worth waking other threads for.
 #[cfg(feature = "parallel")]
 const LEAST_PIECES: usize = 4;
@@ -37,16 +40,47 @@ pub fn fill<T: Send>(column: &mut Vec<T>, count: usize, make: impl Fn(usize) -> 
 }
 
 /// Applies `work` to every piece; the results in the order of the pieces.
+///
+/// # Panics
+/// If `work` does.
 pub fn each<T: Send, R: Send>(pieces: impl Iterator<Item = T>, work: impl Fn(T) -> R + Send + Sync) -> Vec<R> {
+    #[cfg(not(feature = "parallel"))]
+    return pieces.map(work).collect();
     #[cfg(feature = "parallel")]
     {
-        use rayon::prelude::*;
         let pieces: Vec<T> = pieces.collect();
         if !is_shared(pieces.len()) {
             return pieces.into_iter().map(work).collect();
         }
-        pieces.into_par_iter().with_max_len(1).map(work).collect()
+        let places: Vec<Mutex<Place<T, R>>> =
+            pieces.into_iter().map(|piece| Mutex::new(Place::Waiting(piece))).collect();
+        for_each_index(places.len(), &|index| {
+            let mut place = places[index].lock().unwrap_or_else(PoisonError::into_inner);
+            if let Place::Waiting(piece) = std::mem::replace(&mut *place, Place::Taken) {
+                *place = Place::Done(work(piece));
+            }
+        });
+        let result = |place: Mutex<Place<T, R>>| match place.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            Place::Done(result) => result,
+            Place::Waiting(_) | Place::Taken => unreachable!("every index comes once"),
+        };
+        places.into_iter().map(result).collect()
     }
-    #[cfg(not(feature = "parallel"))]
-    pieces.map(work).collect()
+}
+
+/// A piece of a computation that several threads share.
+#[cfg(feature = "parallel")]
+enum Place<T, R> {
+    Waiting(T),
+    Taken,
+    Done(R),
+}
+
+/// Calls `work` once for every index below `count`, on several threads.
+///
+/// Not generic: what a thread pool needs is compiled once, not for every piece of work.
+#[cfg(feature = "parallel")]
+fn for_each_index(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    use rayon::prelude::*;
+    (0..count).into_par_iter().with_max_len(1).for_each(work);
 }

@@ -11,7 +11,7 @@
 //!
 //! - `seeds FIRST`: packings from this seed on, in place of 1.
 //! - `unstressed`: the linear response of springs at rest, contact forces left out.
-//! - `relaxed D_0`, `damped D_0`: the disk grows by D_0 and the packing relaxes, by FIRE and Newton or by damped dynamics; else the linear response.
+//! - `relaxed D_0`, `damped D_0`: the disk grows by D_0 and the packing relaxes, by FIRE and Newton or by damped dynamics, viscoelastic of rate 500; else the linear response.
 //! - `figures DIR`: h_∥ r² over its plateau against r ΔZ and against r √ΔZ, geometric means, into two SVG files.
 //! - `held`: a circle with a held rim, its centre held or free; beside what is measured, what a point force makes of the difference.
 

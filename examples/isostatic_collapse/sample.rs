@@ -4,6 +4,7 @@ use std::error::Error;
 use std::fmt;
 use std::ops::Range;
 
+use jamscope::contact::damping::{DampingChoice, ViscoelasticDamping};
 use jamscope::contact::{Hertzian, PairLaw, Prestress};
 use jamscope::displacement::DisplacementField;
 use jamscope::inflation::{Boundary, Centre, Inflation, inflate};
@@ -32,11 +33,18 @@ impl fmt::Display for Growth {
             Growth::Linear(Prestress::Included) => write!(formatter, "linear response"),
             Growth::Linear(Prestress::LeftOut) => write!(formatter, "linear response of springs at rest"),
             Growth::Relaxed { increase, damped } => {
-                write!(formatter, "d_0 = {increase}, {}", if *damped { "damped dynamics" } else { "FIRE and Newton" })
+                write!(
+                    formatter,
+                    "d_0 = {increase}, {}",
+                    if *damped { "viscoelastic damping of rate 500" } else { "FIRE and Newton" }
+                )
             }
         }
     }
 }
+
+/// γ of damped dynamics. Source: the published study.
+const RATE: f64 = 500.0;
 
 /// Logarithmic width of a ring.
 const RING: f64 = 0.08;
@@ -165,7 +173,9 @@ fn relaxed(
         let centre = Centre::Label(state.packing.labels()[centre]);
         let inflation = Inflation { increase, boundary: Boundary::Periodic, centre, ..Inflation::default() };
         let inflated = if damped {
-            inflate(&inflation, state.packing, &law, &ImplicitDynamics::default(), 1, &mut ())
+            let damping = DampingChoice::Viscoelastic(ViscoelasticDamping { rate: RATE });
+            let dynamics = ImplicitDynamics { damping, ..ImplicitDynamics::default() };
+            inflate(&inflation, state.packing, &law, &dynamics, 1, &mut ())
         } else {
             inflate(&inflation, state.packing, &law, &Staged::default(), 1, &mut ())
         };

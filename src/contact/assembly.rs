@@ -20,7 +20,7 @@ use crate::contact::kinds::Classes;
 use crate::contact::law::PairLaw;
 use crate::contact::neighbours::{Disks, ListRoom, build_pairs, spatial_order};
 use crate::contact::pair_list::PairList;
-use crate::contact::stiffness::stiffness_rows;
+use crate::contact::stiffness::{Weight, stiffness_rows};
 use crate::contact::totals::Totals;
 use crate::contact::ways::Ways;
 use crate::packing::{Domain, Packing, PackingError};
@@ -415,12 +415,12 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     ///
     /// Sites shift every eigenvalue by −Γ; |Γ| is added for either sign, so that disks that run away do so in small steps.
     pub fn stiffness_bound(&self, row: &mut Vec<f64>) -> f64 {
-        let bound = self.row_bound(row, |_, _, stiffness| stiffness);
+        let bound = self.row_bound(row, None);
         if L::ON_SITE { bound + self.law.on_site_coupling().abs() } else { bound }
     }
 
-    /// Upper bound on the largest eigenvalue of a contact matrix with this weight (pair, overlap, stiffness) a contact.
-    pub fn row_bound(&self, row: &mut Vec<f64>, weight: impl Fn(usize, f64, f64) -> f64 + Sync) -> f64 {
+    /// Upper bound on the largest eigenvalue of a contact matrix with this weight a contact, or with the stiffness of each.
+    pub fn row_bound(&self, row: &mut Vec<f64>, weight: Option<&Weight<'_>>) -> f64 {
         row.resize(self.len(), 0.0);
         stiffness_rows(&self.law, self.pairs(), &self.displacements, self.mobile_count, weight, row);
         row[..self.mobile_count].iter().fold(0.0, |most, &value| if value > most { value } else { most })

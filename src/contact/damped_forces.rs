@@ -114,7 +114,7 @@ pub fn add_damping<const D: usize, C: DampingLaw>(
     forces: &mut [Vector<D>],
 ) -> f64 {
     let mut dissipation = 0.0;
-    walk(pairs, displacements, |&Walked { pair, ends, apart, distance, overlap, .. }| {
+    walk(pairs, displacements, &mut |&Walked { pair, ends, apart, distance, overlap, .. }| {
         if overlap > 0.0 {
             let (i, j) = (ends.0 as usize, ends.1 as usize);
             let damping = law.damping(damping_coefficient[pair], overlap);

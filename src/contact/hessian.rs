@@ -225,7 +225,7 @@ impl<const D: usize> Hessian<D> {
         let (pairs, law, prestress) = (assembly.pairs(), assembly.law(), self.prestress);
         self.links.clear();
         self.near.clear();
-        walk(pairs, &assembly.displacements, |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
+        walk(pairs, &assembly.displacements, &mut |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
             let reach = reach(pair);
             // Written so that NaN becomes an entry, and is refused there.
             if overlap <= -(reach + spare) {

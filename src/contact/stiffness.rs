@@ -2,14 +2,17 @@
 
 use crate::contact::columns::{Anchors, Columns};
 use crate::contact::law::PairLaw;
-use crate::contact::pair_list::{BLOCK, Block, PairList};
+use crate::contact::pair_list::{BLOCK, PairList};
 use crate::contact::rows::{ask_for_later_rows, gather, scatter_with};
 use crate::contact::tiles::Tile;
 use crate::processor;
 use crate::side_by_side;
 use crate::vector::{Vector, sum};
 
-/// Sums over the contacts of each disk: of the stiffness, or of what `weight` makes of (pair, overlap, stiffness).
+/// Weight of a contact: a function of (pair, overlap, stiffness).
+pub type Weight<'a> = dyn Fn(usize, f64, f64) -> f64 + Sync + 'a;
+
+/// Sums over the contacts of each disk: of the stiffness, or of a weight.
 ///
 /// The largest row sum bounds the largest eigenvalue of the stiffness matrix from above (Gershgorin): with masses 1,
 /// `λ ≤ max_i Σ_j 2 F'(δ_ij)`, the prestress part being negative. A contact with a held disk counts once.
@@ -21,7 +24,7 @@ pub fn stiffness_rows<const D: usize, L: PairLaw>(
     pairs: &PairList<D>,
     displacements: &[Vector<D>],
     mobile_count: usize,
-    weight: impl Fn(usize, f64, f64) -> f64 + Sync,
+    weight: Option<&Weight<'_>>,
     row: &mut [f64],
 ) {
     let task = Task { law, pairs, displacements, mobile_count, weight };
@@ -37,15 +40,15 @@ pub fn stiffness_rows<const D: usize, L: PairLaw>(
     }
 }
 
-struct Task<'a, const D: usize, L, W> {
+struct Task<'a, const D: usize, L> {
     law: &'a L,
     pairs: &'a PairList<D>,
     displacements: &'a [Vector<D>],
     mobile_count: usize,
-    weight: W,
+    weight: Option<&'a Weight<'a>>,
 }
 
-impl<const D: usize, L: PairLaw, W: Fn(usize, f64, f64) -> f64> Task<'_, D, L, W> {
+impl<const D: usize, L: PairLaw> Task<'_, D, L> {
     /// The rows of the disks of a tile, which begins with disk `offset`, from its own pairs; what the second disk of each pair
     /// across its border is due is returned.
     fn of_tile(&self, tile: &Tile, offset: usize, row: &mut [f64]) -> Vec<f64> {
@@ -53,15 +56,24 @@ impl<const D: usize, L: PairLaw, W: Fn(usize, f64, f64) -> f64> Task<'_, D, L, W
         row.fill(0.0);
         let mut across = vec![0.0; tile.border_pairs.len()];
         let mut columns = Columns::<D>::new();
-        let values = &mut [[0.0]; BLOCK];
+        let mut values = [[0.0]; BLOCK];
         for place in tile.inner.start..tile.border.end {
             let block = &pairs.blocks[place];
             ask_for_later_rows(pairs, block);
             gather(&mut columns.pull, pairs, block, (self.displacements, 0));
-            let (columns, anchors) = (&mut columns, Anchors::of(pairs, block));
-            processor::dispatch(Arithmetic { task: self, block, columns, anchors, values });
+            let anchors = Anchors::of(pairs, block);
+            let kernel = Arithmetic { law: self.law, columns: &mut columns, anchors, values: &mut values };
+            processor::dispatch(kernel);
+            for ((pair, value), &overlap) in block.pairs().zip(&mut values).zip(&columns.overlap) {
+                let weighted = match self.weight {
+                    Some(weight) if overlap > 0.0 => weight(pair, overlap, value[0]),
+                    None if overlap > 0.0 => value[0],
+                    _ => 0.0,
+                };
+                value[0] = if (pairs.second[pair] as usize) < mobile { 2.0 * weighted } else { weighted };
+            }
             if tile.inner.contains(&place) {
-                scatter_with(values, pairs, block, (row.as_chunks_mut::<1>().0, offset as u32), sum);
+                scatter_with(&values, pairs, block, (row.as_chunks_mut::<1>().0, offset as u32), sum);
                 continue;
             }
             for (&[value], pair) in values.iter().zip(block.pairs..block.pairs + block.pair_count) {
@@ -77,31 +89,24 @@ impl<const D: usize, L: PairLaw, W: Fn(usize, f64, f64) -> f64> Task<'_, D, L, W
     }
 }
 
-/// What each pair of a block adds to the rows of its disks.
-struct Arithmetic<'a, const D: usize, L, W> {
-    task: &'a Task<'a, D, L, W>,
-    block: &'a Block,
+/// Stiffness and overlap of each pair of a block.
+struct Arithmetic<'a, const D: usize, L> {
+    law: &'a L,
     columns: &'a mut Columns<D>,
     anchors: Anchors<'a, D>,
     values: &'a mut [[f64; 1]; BLOCK],
 }
 
-impl<const D: usize, L: PairLaw, W: Fn(usize, f64, f64) -> f64> pulp::WithSimd for Arithmetic<'_, D, L, W> {
+impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
-        let Task { law, mobile_count, ref weight, pairs, .. } = *self.task;
         self.columns.measure(simd, &self.anchors);
-        self.columns.press::<S, L, false>(simd, law, &self.anchors);
-        let (begin, count) = (self.block.pairs, self.block.pair_count);
-        let (overlap, force) = (&self.columns.overlap[..count], &self.columns.force[..count]);
-        let second = &pairs.second[begin..begin + count];
-        let values = &mut self.values[..count];
-        for k in 0..count {
-            let stiffness = law.stiffness(force[k], overlap[k]);
-            let value = if overlap[k] > 0.0 { weight(begin + k, overlap[k], stiffness) } else { 0.0 };
-            values[k] = [if (second[k] as usize) < mobile_count { 2.0 * value } else { value }];
+        self.columns.press::<S, L, false>(simd, self.law, &self.anchors);
+        let (overlap, force) = (&self.columns.overlap, &self.columns.force);
+        for (value, (&force, &overlap)) in self.values.iter_mut().zip(force.iter().zip(overlap)) {
+            value[0] = self.law.stiffness(force, overlap);
         }
     }
 }

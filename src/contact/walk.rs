@@ -24,7 +24,7 @@ pub struct Walked<const D: usize> {
 }
 
 /// Shows every listed pair to `look`, in the order of their numbers.
-pub fn walk<const D: usize>(pairs: &PairList<D>, displacements: &[Vector<D>], mut look: impl FnMut(&Walked<D>)) {
+pub fn walk<const D: usize>(pairs: &PairList<D>, displacements: &[Vector<D>], look: &mut dyn FnMut(&Walked<D>)) {
     let (mut moved, mut room) = ([[0.0; D]; BLOCK], Measured::default());
     let mut at = At { apart: [[0.0; BLOCK]; D], distance: [0.0; BLOCK], overlap: [0.0; BLOCK] };
     for block in &pairs.blocks {
@@ -102,7 +102,7 @@ mod tests {
         }
         let pairs = assembly.pairs();
         let mut met = Vec::new();
-        walk(pairs, &assembly.displacements, |at| {
+        walk(pairs, &assembly.displacements, &mut |at| {
             let (apart, distance, overlap) = geometry(pairs, at.pair, &assembly.displacements);
             assert_eq!((at.apart, at.distance, at.overlap), (apart, distance, overlap), "pair {}", at.pair);
             assert_eq!(at.ends, (pairs.first[at.pair], pairs.second[at.pair]));

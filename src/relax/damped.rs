@@ -392,7 +392,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         let stiffness = self.assembly.stiffness_bound(&mut self.row);
         let (law, coefficient) = (&self.damping, &self.damping_coefficient);
         let damping =
-            self.assembly.row_bound(&mut self.row, |pair, overlap, _| law.damping(coefficient[pair], overlap));
+            self.assembly.row_bound(&mut self.row, Some(&|pair, overlap, _| law.damping(coefficient[pair], overlap)));
         if stiffness == 0.0 {
             // No contact: as if one were pressed by a thousandth of a radius.
             let (law, radius) = (self.assembly.law(), self.assembly.radii()[0]);
@@ -415,7 +415,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         walk(
             assembly.pairs(),
             &assembly.displacements,
-            |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
+            &mut |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
                 let (i, j) = (ends.0 as usize, ends.1 as usize);
                 let closing = |of: &[Vector<D>]| {
                     let other = if j < mobile { of[j] } else { [0.0; D] };

@@ -325,7 +325,7 @@ fn floor_of<const D: usize, L: PairLaw>(
     // F = F' δ / (α − 1). The rows count a contact of two mobile disks twice (for Gershgorin), hence 2 u for 4 u; next to
     // held disks the estimate is low by half.
     let noise = |_: usize, overlap: f64, stiffness: f64| stiffness * (moved + overlap / (exponent - 1.0));
-    assembly.row_bound(row, noise);
+    assembly.row_bound(row, Some(&noise));
     let most =
         row.iter().zip(members).filter(|&(_, &member)| member).fold(0.0, |most, (&value, _)| larger(value, most));
     let sites =

@@ -98,8 +98,8 @@ impl<const D: usize> Shifted<D> {
         let displacements = &assembly.displacements;
         // F = F' δ / (α − 1).
         let across = |pair: usize, overlap: f64, stiffness: f64| stiffness * overlap / (power * pairs.distance(pair));
-        stiffness_rows(law, pairs, displacements, mobile, across, &mut self.prestress);
-        stiffness_rows(law, pairs, displacements, mobile, |_, _, stiffness| stiffness, &mut self.stiffness);
+        stiffness_rows(law, pairs, displacements, mobile, Some(&across), &mut self.prestress);
+        stiffness_rows(law, pairs, displacements, mobile, None, &mut self.stiffness);
         if L::ON_SITE && law.on_site_coupling() > 0.0 {
             self.prestress.iter_mut().for_each(|row| *row += law.on_site_coupling());
         }

@@ -252,7 +252,7 @@ impl Allowed<'_> {
 fn typical_overlap<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, overlaps: &mut Vec<f64>) -> f64 {
     let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
     overlaps.clear();
-    walk(assembly.pairs(), &assembly.displacements, |pair| {
+    walk(assembly.pairs(), &assembly.displacements, &mut |pair| {
         if pair.overlap > 0.0 {
             overlaps.push(pair.overlap);
         }

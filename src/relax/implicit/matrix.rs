@@ -150,7 +150,7 @@ impl<const D: usize> StepMatrix<D> {
             column.clear();
             column.resize(pairs.place_count(), 0.0);
         }
-        walk(pairs, &assembly.displacements, |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
+        walk(pairs, &assembly.displacements, &mut |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
             let margin = (OUTLOOK * larger(way(ends.0), way(ends.1))).min(terms.margin);
             self.margins[pair] = margin;
             if overlap <= -margin {

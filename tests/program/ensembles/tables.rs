@@ -1,10 +1,12 @@
 //! The tables of the chapter *Which dynamics make the plastic phase*, from the records in `fixtures/ensembles`.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use flate2::read::GzDecoder;
+use jamscope::contact::LawChoice;
 use jamscope::response::{Calibration, WordCounts};
 use jamscope::study::{CellSamples, Merged, NumberStatistics, Target, merge};
 use jamscope::transition::{Method, Series, Transition, TransitionPressure};
@@ -18,6 +20,9 @@ pub struct Ensemble {
 
 /// What stands in a place of a table.
 type Quantity<'a> = &'a dyn Fn(&Series, &CellSamples) -> String;
+
+/// Where the tables stand.
+pub const CHAPTERS: [&str; 3] = ["ensembles.md", "plastic_phase.md", "response.md"];
 
 /// First zero of J_1: κ_1 R.
 const FIRST_ZERO: f64 = 3.831_705_970_207_512;
@@ -43,9 +48,15 @@ impl Ensemble {
         Ensemble { name, merged, transition }
     }
 
-    /// The series with samples, one a relaxer.
-    fn series(&self) -> Vec<&Series> {
-        self.transition.series.iter().filter(|one| one.points.iter().any(|point| point.sample_count > 0)).collect()
+    /// The series with samples of one size: one a relaxer and an inflation.
+    fn series(&self, disk_count: usize) -> Vec<&Series> {
+        let has_samples = |one: &&Series| one.points.iter().any(|point| point.sample_count > 0);
+        self.transition.series.iter().filter(|one| one.cell.disk_count == disk_count).filter(has_samples).collect()
+    }
+
+    /// Numbers of disks, ascending.
+    fn disk_counts(&self) -> BTreeSet<usize> {
+        self.transition.series.iter().map(|one| one.cell.disk_count).collect()
     }
 
     fn samples(&self, series: &Series, target: Target) -> Option<&CellSamples> {
@@ -55,13 +66,18 @@ impl Ensemble {
         self.merged.samples.iter().find(own)
     }
 
-    /// Targets, ascending.
-    fn targets(&self) -> Vec<(f64, Target)> {
+    /// Targets of a size with their p̂, ascending.
+    fn targets(&self, disk_count: usize) -> Vec<(f64, Target)> {
         let mut all: Vec<(f64, Target)> = Vec::new();
         for samples in &self.merged.samples {
-            let target = samples.cell.target;
-            if !all.iter().any(|(_, other)| *other == target) && samples.done_count > 0 {
-                all.push((target.name_and_value().1, target));
+            let cell = &samples.cell;
+            let reduced = match cell.target {
+                Target::Pressure(pressure) => pressure * cell.mobile_count().powf(cell.law.exponent() - 1.0),
+                target => target.name_and_value().1,
+            };
+            let known = all.iter().any(|(_, other)| *other == cell.target);
+            if cell.disk_count == disk_count && !known && samples.done_count > 0 {
+                all.push((reduced, cell.target));
             }
         }
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -69,16 +85,17 @@ impl Ensemble {
     }
 
     /// A row a p̂, a column a relaxer and quantity.
-    fn by_pressure(&self, quantities: &[(&str, Quantity<'_>)]) -> String {
-        let series = self.series();
+    fn by_pressure(&self, disk_count: usize, quantities: &[(&str, Quantity<'_>)]) -> String {
+        let series = self.series(disk_count);
+        let names = names(&series);
         let mut head = "| p̂ | samples |".to_string();
         for (name, _) in quantities {
-            for one in &series {
-                write!(head, " {name}, {} |", relaxer(one)).expect("text");
+            for column in &names {
+                write!(head, " {name}, {column} |").expect("text");
             }
         }
         let mut table = head.clone() + "\n|" + &"---|".repeat(head.matches('|').count() - 1) + "\n";
-        for (value, target) in self.targets() {
+        for (value, target) in self.targets(disk_count) {
             let counts: Vec<usize> =
                 series.iter().filter_map(|one| Some(self.samples(one, target)?.done_count)).collect();
             let (least, most) = (counts.iter().min().unwrap_or(&0), counts.iter().max().unwrap_or(&0));
@@ -97,16 +114,17 @@ impl Ensemble {
     }
 
     /// Δp, κ and contacts.
-    pub fn radial(&self) -> String {
+    pub fn radial(&self, disk_count: usize) -> String {
         let pressure = |_: &Series, samples: &CellSamples| mean(samples, "scaled_pressure_change", 2);
         let screened =
             |_: &Series, samples: &CellSamples| share(samples, |kappa, radius| kappa * radius >= 0.5 * FIRST_ZERO);
         let made = |_: &Series, samples: &CellSamples| mean(samples, "contacts_made", 0);
-        self.by_pressure(&[("Δp/p^(1/3)", &pressure), ("κ ≥ κ₁/2", &screened), ("contacts made", &made)])
+        let name = if self.is_hookean() { "Δp" } else { "Δp/p^(1/3)" };
+        self.by_pressure(disk_count, &[(name, &pressure), ("κ ≥ κ₁/2", &screened), ("contacts made", &made)])
     }
 
     /// Slope, G*, θ*.
-    pub fn angular(&self) -> String {
+    pub fn angular(&self, disk_count: usize) -> String {
         let slope = |one: &Series, samples: &CellSamples| {
             let index = self.merged.samples.iter().position(|other| std::ptr::eq(other, samples));
             let spectrum = one.spectra.iter().find(|spectrum| Some(spectrum.point.cell) == index);
@@ -121,15 +139,18 @@ impl Ensemble {
             let over_pi: Vec<f64> = values.iter().map(|value| value / std::f64::consts::PI).collect();
             with_error(&NumberStatistics::of(&over_pi), 2)
         };
-        self.by_pressure(&[("slope", &slope), ("G*", &anticorrelation), ("θ*/π", &angle)])
+        self.by_pressure(disk_count, &[("slope", &slope), ("G*", &anticorrelation), ("θ*/π", &angle)])
     }
 
     /// p̂_c by every method.
-    pub fn critical(&self) -> String {
-        let series = self.series();
+    pub fn critical(&self, disk_count: usize) -> String {
+        let series = self.series(disk_count);
         let mut table = "| p̂_c by |".to_string();
-        series.iter().for_each(|one| write!(table, " {} |", relaxer(one)).expect("text"));
-        table += &format!(" published |\n|{}\n", "---|".repeat(series.len() + 2));
+        names(&series).iter().for_each(|name| write!(table, " {name} |").expect("text"));
+        // Published values are those of Hertzian disks.
+        let published = !self.is_hookean();
+        table += if published { " published |" } else { "" };
+        table += &format!("\n|{}\n", "---|".repeat(series.len() + 1 + usize::from(published)));
         let mut methods: Vec<Method> = Vec::new();
         for estimate in series.iter().flat_map(|one| &one.estimates) {
             if !methods.contains(&estimate.method) {
@@ -142,15 +163,22 @@ impl Ensemble {
                 let found = one.estimates.iter().find(|estimate| estimate.method == method);
                 write!(table, " {} |", found.map_or("–".into(), |found| pressure(found.pressure))).expect("text");
             }
-            let published = if matches!(method, Method::Wavenumber | Method::PressureChange) { 3e8 } else { 1e8 };
-            writeln!(table, " {} |", power(published)).expect("text");
+            if published {
+                let value = if matches!(method, Method::Wavenumber | Method::PressureChange) { 3e8 } else { 1e8 };
+                write!(table, " {} |", power(value)).expect("text");
+            }
+            table.push('\n');
         }
         table
     }
 
+    fn is_hookean(&self) -> bool {
+        self.transition.series.iter().any(|one| matches!(one.cell.law, LawChoice::Hookean(_)))
+    }
+
     /// What each kind of evidence says of how many samples: plastic, quasielastic.
     pub fn evidence(&self, relaxer_name: &str) -> String {
-        let mut table = "| p̂ | samples | together | profile | Δp | spectrum | contacts |\n".to_string();
+        let mut table = "| p̂ | samples | phase | profile | Δp | spectrum | contacts |\n".to_string();
         table += &format!("|{}\n", "---|".repeat(7));
         let words = |counts: WordCounts| format!("{}, {}", counts.plastic, counts.quasielastic);
         for ensemble in self.transition.calibration.ensembles.iter().filter(|it| it.relaxer == relaxer_name) {
@@ -178,9 +206,12 @@ impl Ensemble {
 pub fn tables(ensembles: &[Ensemble]) -> Vec<(String, String)> {
     let mut all = Vec::new();
     for one in ensembles {
-        all.push((format!("{}: radial", one.name), one.radial()));
-        all.push((format!("{}: angular", one.name), one.angular()));
-        all.push((format!("{}: p̂_c", one.name), one.critical()));
+        for disk_count in one.disk_counts() {
+            let title = |of: &str| format!("{}, {disk_count} disks: {of}", one.name);
+            all.push((title("radial"), one.radial(disk_count)));
+            all.push((title("angular"), one.angular(disk_count)));
+            all.push((title("p̂_c"), one.critical(disk_count)));
+        }
         if one.name.starts_with("damping") {
             all.push((format!("{}: evidence", one.name), one.evidence("viscoelastic 500")));
         }
@@ -194,9 +225,33 @@ pub fn calibration(ensembles: &[Ensemble]) -> Calibration {
     Calibration { ensembles: all.collect() }
 }
 
-/// In a word and a number: "FIRE", "constant 500", "viscoelastic 500".
-fn relaxer(one: &Series) -> String {
-    one.cell.relaxer.description().replace(" and Newton", "").replace(" damping", "")
+/// A text with every table that is marked in it by `<!-- TITLE -->` replaced by its table, and the titles that were found.
+pub fn filled(text: &str, tables: &[(String, String)]) -> (String, Vec<String>) {
+    let (mut out, mut found) = (String::new(), Vec::new());
+    let mut lines = text.lines().peekable();
+    while let Some(line) = lines.next() {
+        writeln!(out, "{line}").expect("text");
+        let marked = tables.iter().find(|(title, _)| line == format!("<!-- {title} -->"));
+        if let Some((title, table)) = marked {
+            while lines.next_if(|line| line.starts_with('|') || line.is_empty()).is_some() {}
+            writeln!(out, "\n{table}").expect("text");
+            found.push(title.clone());
+        }
+    }
+    (out, found)
+}
+
+/// What tells the series of a table apart, in a word and a number: "FIRE", "viscoelastic 500", "d_0 = 0.01".
+fn names(series: &[&Series]) -> Vec<String> {
+    let relaxer = |one: &Series| one.cell.relaxer.description().replace(" and Newton", "").replace(" damping", "");
+    let one_relaxer = series.iter().all(|one| one.cell.relaxer == series[0].cell.relaxer);
+    let one_increase = series.iter().all(|one| one.cell.increase == series[0].cell.increase);
+    let of = |one: &&Series| match (one_relaxer, one_increase) {
+        (true, false) => format!("d_0 = {}", one.cell.increase),
+        (_, true) => relaxer(one),
+        (false, false) => format!("{}, d_0 = {}", relaxer(one), one.cell.increase),
+    };
+    series.iter().map(of).collect()
 }
 
 /// 3·10⁸, two digits.

@@ -112,7 +112,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         blocks.clear();
         blocks.resize(assembly.len(), [[0.0; D]; D]);
         let mut ratio = 0.0;
-        walk(pairs, &assembly.displacements, |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
+        walk(pairs, &assembly.displacements, &mut |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
             if overlap + self.margin <= 0.0 {
                 return;
             }
@@ -289,7 +289,7 @@ mod tests {
             x = forces.iter().map(|f| scaled(-1.0 / length, *f)).collect();
         }
         let (assembly, rate) = (&motion.assembly, 500.0);
-        let rows = assembly.row_bound(&mut Vec::new(), |_, _, _| rate);
+        let rows = assembly.row_bound(&mut Vec::new(), Some(&|_, _, _| rate));
         assert!(value <= bound && bound < 1.4 * value, "{value}, bound {bound}");
         assert!(bound < 0.6 * rows, "{bound}, rows {rows}");
     }
