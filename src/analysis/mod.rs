@@ -92,20 +92,6 @@ impl Analysis {
         observables: &Observables,
         verdict: &VerdictSettings,
     ) -> Result<Self, PackingError> {
-        match law {
-            LawChoice::Hertzian(of) => Self::with_law(name, pair, (law, of), observables, verdict),
-            LawChoice::Hookean(of) => Self::with_law(name, pair, (law, of), observables, verdict),
-            LawChoice::PowerLaw(of) => Self::with_law(name, pair, (law, of), observables, verdict),
-        }
-    }
-
-    fn with_law<L: PairLaw>(
-        name: &str,
-        pair: Pair,
-        (choice, law): (&LawChoice, &L),
-        observables: &Observables,
-        verdict: &VerdictSettings,
-    ) -> Result<Self, PackingError> {
         let (centre, outer_radius) = (pair.centre, pair.outer_radius);
         let state = |packing| State::new(packing, law);
         let (before, after) = (state(&pair.before)?, state(&pair.after)?);
@@ -113,7 +99,7 @@ impl Analysis {
         let known = |state: &State<'_, 2>| StateAnalysis::of(state, &pair, law);
         let [first, second] = [known(&before)?, known(&after)?];
         let third = deflated.as_ref().map(known).transpose()?;
-        let pressure = PressureChange::between(first.pressure, second.pressure, choice.exponent());
+        let pressure = PressureChange::between(first.pressure, second.pressure, law.exponent());
         let inner_radius = pair.before.radii()[centre];
         let unjammed = [&before, &after].iter().any(|state| is_unjammed(state, law));
         let states = [(before.packing, before.network.backbone.as_slice()), (after.packing, &after.network.backbone)];
@@ -122,12 +108,12 @@ impl Analysis {
         let place = Place { centre, outer_radius: held.then_some(outer_radius) };
         let mut named = vec![("before", &before), ("after", &after)];
         named.extend(deflated.as_ref().map(|state| ("after the deflation", state)));
-        let verdict = RestVerdict::of(&named, law, choice, Some(place), verdict);
+        let verdict = RestVerdict::of(&named, law, law, Some(place), verdict);
         let subject = Subject { verdict, field, before, after, deflated, centre, pressure_change: pressure.change };
         let response = Response::of(subject, observables);
         Ok(Analysis {
             name: name.into(),
-            law: *choice,
+            law: *law,
             centre_label: pair.before.labels()[centre],
             inner_radius,
             increase: pair.after.radii()[centre] - inner_radius,

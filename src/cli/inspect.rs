@@ -5,7 +5,7 @@ use std::path::Path;
 use jamscope::certificate::Certificate;
 #[cfg(feature = "linear")]
 use jamscope::certificate::Stability;
-use jamscope::contact::{LawChoice, PairLaw};
+use jamscope::contact::LawChoice;
 use jamscope::io::read_packing;
 use jamscope::memory::Limit;
 use jamscope::observe::ForceDistribution;
@@ -96,27 +96,14 @@ pub fn inspect(
     inspection.map_err(|error| format!("{}: {error}", path.display()).into())
 }
 
+#[cfg_attr(not(feature = "linear"), allow(unused_variables, reason = "modes are of the feature `linear`"))]
 fn with_law<const D: usize>(
     packing: &Packing<D>,
     choice: LawChoice,
     mode_count: usize,
     settings: &VerdictSettings,
 ) -> Result<Inspection, Box<dyn std::error::Error>> {
-    match choice {
-        LawChoice::Hertzian(law) => of(packing, &law, choice, mode_count, settings),
-        LawChoice::Hookean(law) => of(packing, &law, choice, mode_count, settings),
-        LawChoice::PowerLaw(law) => of(packing, &law, choice, mode_count, settings),
-    }
-}
-
-#[cfg_attr(not(feature = "linear"), allow(unused_variables, reason = "modes are of the feature `linear`"))]
-fn of<const D: usize, L: PairLaw>(
-    packing: &Packing<D>,
-    law: &L,
-    choice: LawChoice,
-    mode_count: usize,
-    settings: &VerdictSettings,
-) -> Result<Inspection, Box<dyn std::error::Error>> {
+    let law = &choice;
     let largest = Limit { largest: (D * packing.len()) as u64, reason: "as many as coordinates of disks" };
     largest.check("--modes", mode_count, 8.0 * (D * packing.len()) as f64)?;
     let state = State::new(packing, law)?;

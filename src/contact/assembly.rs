@@ -169,7 +169,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             skins: narrowest..=widest,
             order,
         };
-        if L::ON_SITE {
+        if law.has_sites() {
             // An anchor is the position less the origin, rounded; the displacement has the rest.
             let from_site = |&disk: &u32| {
                 let position = packing.positions()[disk as usize];
@@ -188,7 +188,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// If `packing` is not the one the assembly was made from.
     pub fn placed(&self, mut packing: Packing<D>) -> Packing<D> {
         assert_eq!(packing.len(), self.order.len(), "an assembly belongs to the packing it was made from");
-        if L::ON_SITE && packing.sites().is_none() {
+        if self.law.has_sites() && packing.sites().is_none() {
             packing = packing.with_sites_here();
         }
         for (index, &disk) in self.order.iter().enumerate().take(self.mobile_count) {
@@ -249,7 +249,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     pub fn evaluate(&mut self) {
         let pairs = in_use(self.near_skin, &self.near_pairs, &self.pairs);
         forces::forces(&self.law, pairs, &self.displacements, &mut self.across, &mut self.forces);
-        if L::ON_SITE {
+        if self.law.has_sites() {
             let _ = self.add_on_site_forces();
         }
     }
@@ -287,7 +287,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         let pairs = in_use(self.near_skin, &self.near_pairs, &self.pairs);
         let mut totals =
             forces::forces_and_totals(&self.law, pairs, &self.displacements, &mut self.across, &mut self.forces);
-        if L::ON_SITE {
+        if self.law.has_sites() {
             totals.on_site_energy = self.add_on_site_forces();
             totals.energy += totals.on_site_energy;
         }
@@ -416,7 +416,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Sites shift every eigenvalue by −Γ; |Γ| is added for either sign, so that disks that run away do so in small steps.
     pub fn stiffness_bound(&self, row: &mut Vec<f64>) -> f64 {
         let bound = self.row_bound(row, None);
-        if L::ON_SITE { bound + self.law.on_site_coupling().abs() } else { bound }
+        bound + self.law.on_site_coupling().abs()
     }
 
     /// Upper bound on the largest eigenvalue of a contact matrix with this weight a contact, or with the stiffness of each.

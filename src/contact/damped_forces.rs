@@ -9,10 +9,10 @@
 use crate::contact::columns::{Anchors, Columns};
 use crate::contact::damping::DampingLaw;
 use crate::contact::law::PairLaw;
+use crate::contact::law_kernel::{LawKernel, dispatch};
 use crate::contact::pair_list::{BLOCK, PairList};
 use crate::contact::rows::{gather, scatter};
 use crate::contact::walk::{Walked, walk};
-use crate::processor;
 use crate::simd::lanes;
 use crate::vector::Vector;
 
@@ -41,15 +41,14 @@ pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
         gather(&mut apace, pairs, block, (velocities, 0));
         let (apace, coefficient) = (&apace[..block.pair_count], &damping_coefficient[listed]);
         let (damping, anchors) = (Damping { law: damping, coefficient, apace }, Anchors::of(pairs, block));
-        power += processor::dispatch(Arithmetic { law, damping, columns: &mut columns, anchors });
+        power += dispatch(law, Arithmetic { damping, columns: &mut columns, anchors });
         scatter(&columns.pull, pairs, block, (forces, 0));
     }
     power
 }
 
 /// The arithmetic of a block, which returns the power.
-struct Arithmetic<'a, const D: usize, L, C> {
-    law: &'a L,
+struct Arithmetic<'a, const D: usize, C> {
     damping: Damping<'a, D, C>,
     columns: &'a mut Columns<D>,
     anchors: Anchors<'a, D>,
@@ -63,13 +62,13 @@ struct Damping<'a, const D: usize, C> {
     apace: &'a [Vector<D>],
 }
 
-impl<const D: usize, L: PairLaw, C: DampingLaw> pulp::WithSimd for Arithmetic<'_, D, L, C> {
+impl<const D: usize, C: DampingLaw> LawKernel for Arithmetic<'_, D, C> {
     type Output = f64;
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) -> f64 {
+    fn run<S: pulp::Simd, L: PairLaw>(self, simd: S, law: &L) -> f64 {
         self.columns.measure(simd, &self.anchors);
-        self.columns.press::<S, L, false>(simd, self.law, &self.anchors);
+        self.columns.press::<S, L, false>(simd, law, &self.anchors);
         let mut power = [0.0; BLOCK];
         let count = self.damping.apace.len();
         self.damping.resist(self.columns, &mut power[..count]);

@@ -83,6 +83,35 @@ impl DampingLaw for MassDamping {
     }
 }
 
+/// The damping of a contact as one type: what a [`DampingChoice`] is under a contact law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ContactDamping {
+    /// c_ij = γ.
+    Constant(ConstantDamping),
+    /// c_ij = γ m_eff √(δ R_ij).
+    Viscoelastic(ViscoelasticDamping),
+    /// c_ij = γ m_eff.
+    Mass(MassDamping),
+}
+
+impl DampingLaw for ContactDamping {
+    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
+        match self {
+            ContactDamping::Constant(law) => law.coefficient(first_radius, second_radius),
+            ContactDamping::Viscoelastic(law) => law.coefficient(first_radius, second_radius),
+            ContactDamping::Mass(law) => law.coefficient(first_radius, second_radius),
+        }
+    }
+    #[inline(always)]
+    fn damping(&self, coefficient: f64, overlap: f64) -> f64 {
+        match self {
+            ContactDamping::Constant(law) => law.damping(coefficient, overlap),
+            ContactDamping::Viscoelastic(law) => law.damping(coefficient, overlap),
+            ContactDamping::Mass(law) => law.damping(coefficient, overlap),
+        }
+    }
+}
+
 /// A damping law chosen at run time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -101,6 +130,14 @@ impl Default for DampingChoice {
 }
 
 impl DampingChoice {
+    /// The damping of contacts of a law.
+    pub fn of_contacts(&self, law: &impl crate::contact::law::PairLaw) -> ContactDamping {
+        match self {
+            DampingChoice::Constant(damping) => ContactDamping::Constant(*damping),
+            DampingChoice::Viscoelastic(damping) => law.viscoelastic(damping.rate),
+        }
+    }
+
     /// γ of either law \[force / velocity, or 1 / (time length)\].
     pub fn rate(&self) -> f64 {
         match self {

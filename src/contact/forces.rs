@@ -18,11 +18,11 @@ use std::ops::Range;
 
 use crate::contact::columns::{Anchors, Columns};
 use crate::contact::law::PairLaw;
+use crate::contact::law_kernel::{LawKernel, dispatch};
 use crate::contact::pair_list::{BLOCK, Block, PairList};
 use crate::contact::rows::{ask_for_later_rows, gather, scatter};
 use crate::contact::tiles::Tile;
 use crate::contact::totals::{Tally, Totals};
-use crate::processor;
 use crate::side_by_side;
 use crate::vector::{Number, Vector, difference, sum};
 
@@ -142,7 +142,7 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Summed<'_, D, L> {
     ) -> &'a [Vector<D>; BLOCK] {
         let block = &self.pairs.blocks[block];
         fill(self.law, self.pairs, displacements, block, columns);
-        processor::dispatch(Tally { law: self.law, columns: &*columns, count: block.pair_count, totals });
+        dispatch(self.law, Tally { columns: &*columns, count: block.pair_count, totals });
         &columns.pull
     }
 }
@@ -257,24 +257,22 @@ pub(super) fn fill<const D: usize, L: PairLaw>(
 ) {
     ask_for_later_rows(pairs, block);
     gather(&mut columns.pull, pairs, block, displacements);
-    processor::dispatch(Arithmetic { law, columns, anchors: Anchors::of(pairs, block) });
+    dispatch(law, Arithmetic { columns, anchors: Anchors::of(pairs, block) });
 }
 
-/// The arithmetic of a block as a job that is compiled for each vector width the machine may have, and started for the widest
-/// it has. What only moves numbers is compiled once.
-struct Arithmetic<'a, const D: usize, L> {
-    law: &'a L,
+/// The arithmetic of a block, compiled for each law and each vector width the machine may have. What only moves numbers is compiled once.
+struct Arithmetic<'a, const D: usize> {
     columns: &'a mut Columns<D>,
     anchors: Anchors<'a, D>,
 }
 
-impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
+impl<const D: usize> LawKernel for Arithmetic<'_, D> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) {
+    fn run<S: pulp::Simd, L: PairLaw>(self, simd: S, law: &L) {
         self.columns.measure(simd, &self.anchors);
-        self.columns.press::<S, L, true>(simd, self.law, &self.anchors);
+        self.columns.press::<S, L, true>(simd, law, &self.anchors);
     }
 }
 

@@ -192,7 +192,7 @@ impl<const D: usize> Hessian<D> {
         }
         let same = self.pattern.clear_into::<D>(&mut self.matrix);
         let coupling = assembly.law().on_site_coupling();
-        if L::ON_SITE {
+        if assembly.law().has_sites() {
             let block: [Vector<D>; D] =
                 std::array::from_fn(|a| std::array::from_fn(|b| if a == b { -coupling } else { 0.0 }));
             for row in 0..self.disks.len() as u32 {

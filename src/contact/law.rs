@@ -12,7 +12,8 @@
 //! | [`Hookean`] | 2 | k' |
 //! | [`PowerLaw`] | any ≥ 2 | ε / σ_ij^α, σ_ij = R_i + R_j |
 //!
-//! The law is a type: the loop over contacts is compiled once for each and holds no branch on it.
+//! The law is a type: the arithmetic of a block of contacts is compiled once for each and holds no branch on it. [`LawChoice`] is a law as
+//! well, chosen at run time: it is resolved once a block, so what surrounds the arithmetic need not be compiled for every law.
 
 use std::slice::from_ref;
 
@@ -20,17 +21,20 @@ use pulp::Simd;
 use pulp::bytemuck::{cast_slice, cast_slice_mut};
 use serde::{Deserialize, Serialize};
 
-use crate::contact::damping::{DampingLaw, MassDamping, ViscoelasticDamping, effective_radius};
+use crate::contact::damping::{ContactDamping, MassDamping, ViscoelasticDamping, effective_radius};
 use crate::processor::Processor;
 use crate::simd::roots::square_roots;
 
 /// What happens where two disks touch: a pure function of the overlap and of a coefficient made once a pair.
 pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
-    /// The viscoelastic damping that goes with this law.
-    type Viscoelastic: DampingLaw;
+    /// The viscoelastic damping that goes with this law, with the rate γ.
+    fn viscoelastic(&self, rate: f64) -> ContactDamping;
 
-    /// That damping with the rate γ.
-    fn viscoelastic(&self, rate: f64) -> Self::Viscoelastic;
+    /// Shows `visitor` the law itself, or the one that it stands for.
+    #[inline(always)]
+    fn resolve<V: LawVisitor>(&self, visitor: V) -> V::Output {
+        visitor.visit(self)
+    }
 
     /// Coefficient c of a pair \[force / length^(α−1)\].
     fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64;
@@ -84,18 +88,30 @@ pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
     /// Whether all pairs have one coefficient, whatever their radii: the loop then reads one a block.
     const ONE_COEFFICIENT: bool = false;
 
-    /// Whether every disk has an energy −Γu²/2 of its displacement u from its site, see [`OnSite`](crate::contact::OnSite).
-    const ON_SITE: bool = false;
-
-    /// Γ of that energy, 0 without it \[force / length\].
+    /// Γ of an energy −Γu²/2 of the displacement u of every disk from its site, 0 without it, see [`OnSite`](crate::contact::OnSite)
+    /// \[force / length\].
     fn on_site_coupling(&self) -> f64 {
         0.0
+    }
+
+    /// Whether disks have sites: Γ is not 0.
+    fn has_sites(&self) -> bool {
+        self.on_site_coupling() != 0.0
     }
 
     /// The force of a disk pressed against its like by its own radius: the scale on which a force counts as none \[force\].
     fn force_scale(&self, radius: f64) -> f64 {
         self.force(self.coefficient(radius, radius), radius)
     }
+}
+
+/// What is done with a law whose type is known.
+pub trait LawVisitor {
+    /// What comes of it.
+    type Output;
+
+    /// Does it.
+    fn visit<L: PairLaw>(self, law: &L) -> Self::Output;
 }
 
 /// Hertzian contact.
@@ -153,10 +169,8 @@ impl Default for Hookean {
 }
 
 impl PairLaw for Hertzian {
-    type Viscoelastic = ViscoelasticDamping;
-    #[inline(always)]
-    fn viscoelastic(&self, rate: f64) -> ViscoelasticDamping {
-        ViscoelasticDamping { rate }
+    fn viscoelastic(&self, rate: f64) -> ContactDamping {
+        ContactDamping::Viscoelastic(ViscoelasticDamping { rate })
     }
     #[inline(always)]
     fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
@@ -187,11 +201,9 @@ impl PairLaw for Hertzian {
 }
 
 impl PairLaw for Hookean {
-    type Viscoelastic = MassDamping;
     const ONE_COEFFICIENT: bool = true;
-    #[inline(always)]
-    fn viscoelastic(&self, rate: f64) -> MassDamping {
-        MassDamping { rate }
+    fn viscoelastic(&self, rate: f64) -> ContactDamping {
+        ContactDamping::Mass(MassDamping { rate })
     }
     #[inline(always)]
     fn coefficient(&self, _first_radius: f64, _second_radius: f64) -> f64 {
@@ -222,10 +234,8 @@ impl PairLaw for Hookean {
 }
 
 impl PairLaw for PowerLaw {
-    type Viscoelastic = MassDamping;
-    #[inline(always)]
-    fn viscoelastic(&self, rate: f64) -> MassDamping {
-        MassDamping { rate }
+    fn viscoelastic(&self, rate: f64) -> ContactDamping {
+        ContactDamping::Mass(MassDamping { rate })
     }
     #[inline(always)]
     fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
@@ -317,6 +327,55 @@ impl LawChoice {
             LawChoice::Hookean(law) => law.exponent(),
             LawChoice::PowerLaw(law) => law.exponent(),
         }
+    }
+}
+
+/// The law that was chosen. Bits are those of that law.
+impl PairLaw for LawChoice {
+    #[inline(always)]
+    fn resolve<V: LawVisitor>(&self, visitor: V) -> V::Output {
+        match self {
+            LawChoice::Hertzian(law) => visitor.visit(law),
+            LawChoice::Hookean(law) => visitor.visit(law),
+            LawChoice::PowerLaw(law) => visitor.visit(law),
+        }
+    }
+
+    fn viscoelastic(&self, rate: f64) -> ContactDamping {
+        match self {
+            LawChoice::Hertzian(law) => law.viscoelastic(rate),
+            LawChoice::Hookean(law) => law.viscoelastic(rate),
+            LawChoice::PowerLaw(law) => law.viscoelastic(rate),
+        }
+    }
+
+    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
+        match self {
+            LawChoice::Hertzian(law) => law.coefficient(first_radius, second_radius),
+            LawChoice::Hookean(law) => law.coefficient(first_radius, second_radius),
+            LawChoice::PowerLaw(law) => law.coefficient(first_radius, second_radius),
+        }
+    }
+
+    fn coefficient_growth(&self, first_radius: f64, second_radius: f64) -> f64 {
+        match self {
+            LawChoice::Hertzian(law) => law.coefficient_growth(first_radius, second_radius),
+            LawChoice::Hookean(law) => law.coefficient_growth(first_radius, second_radius),
+            LawChoice::PowerLaw(law) => law.coefficient_growth(first_radius, second_radius),
+        }
+    }
+
+    #[inline(always)]
+    fn force(&self, coefficient: f64, overlap: f64) -> f64 {
+        match self {
+            LawChoice::Hertzian(law) => law.force(coefficient, overlap),
+            LawChoice::Hookean(law) => law.force(coefficient, overlap),
+            LawChoice::PowerLaw(law) => law.force(coefficient, overlap),
+        }
+    }
+
+    fn exponent(&self) -> f64 {
+        LawChoice::exponent(self)
     }
 }
 

@@ -17,6 +17,7 @@ mod joined;
 mod kinds;
 mod lacking;
 pub mod law;
+mod law_kernel;
 mod listed;
 mod measured;
 pub mod neighbours;

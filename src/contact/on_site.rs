@@ -9,13 +9,14 @@
 //! has. Γ < 0 ties every disk to its site. The site of a disk is where it was when the first relaxation with such a law
 //! began, and stays with the packing ([`Packing::sites`](crate::packing::Packing::sites)).
 //!
-//! The term is a type: [`PairLaw::ON_SITE`] is a constant, so the plain laws are compiled without any of this.
+//! Γ = 0 is a law without sites ([`PairLaw::on_site_coupling`]).
 //!
 //! What counts what: the energy of a relaxation is that of contacts and sites together. Pressure, stress and virial are
 //! those of the contacts alone, because a force from outside the packing has a virial that depends on the origin. The
 //! scale of the relative residual is the mean contact force, and a backbone is made by contacts alone.
 
-use crate::contact::law::PairLaw;
+use crate::contact::damping::ContactDamping;
+use crate::contact::law::{LawVisitor, PairLaw};
 
 /// A contact law with the energy −Γ u²/2 on every disk, u its displacement from its site.
 ///
@@ -28,8 +29,7 @@ use crate::contact::law::PairLaw;
 /// use jamscope::contact::{Hookean, OnSite, PairLaw};
 ///
 /// let tied = OnSite { law: Hookean { stiffness: 2.0 }, coupling: -0.5 };
-/// assert!(<OnSite<Hookean> as PairLaw>::ON_SITE && !<Hookean as PairLaw>::ON_SITE);
-/// assert_eq!(tied.on_site_coupling(), -0.5);
+/// assert_eq!((tied.on_site_coupling(), tied.law.on_site_coupling()), (-0.5, 0.0));
 /// assert_eq!(tied.force(tied.coefficient(0.5, 0.5), 0.1), 0.2);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,18 +41,17 @@ pub struct OnSite<L> {
 }
 
 impl<L: PairLaw> PairLaw for OnSite<L> {
-    type Viscoelastic = L::Viscoelastic;
-
-    const ONE_COEFFICIENT: bool = L::ONE_COEFFICIENT;
-
-    const ON_SITE: bool = true;
+    /// Of contacts sites change nothing.
+    #[inline(always)]
+    fn resolve<V: LawVisitor>(&self, visitor: V) -> V::Output {
+        self.law.resolve(visitor)
+    }
 
     /// Its own Γ, and that of the law within if that has one.
     fn on_site_coupling(&self) -> f64 {
         self.coupling + self.law.on_site_coupling()
     }
-    #[inline(always)]
-    fn viscoelastic(&self, rate: f64) -> L::Viscoelastic {
+    fn viscoelastic(&self, rate: f64) -> ContactDamping {
         self.law.viscoelastic(rate)
     }
     #[inline(always)]
@@ -66,10 +65,6 @@ impl<L: PairLaw> PairLaw for OnSite<L> {
     #[inline(always)]
     fn force(&self, coefficient: f64, overlap: f64) -> f64 {
         self.law.force(coefficient, overlap)
-    }
-    #[inline(always)]
-    fn forces<S: pulp::Simd>(&self, simd: S, coefficients: [S::f64s; 2], overlaps: [S::f64s; 2]) -> [S::f64s; 2] {
-        self.law.forces(simd, coefficients, overlaps)
     }
     #[inline(always)]
     fn exponent(&self) -> f64 {

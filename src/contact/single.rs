@@ -20,10 +20,10 @@ use crate::contact::advance::{Advanced, Movers, Reach, advance};
 use crate::contact::assembly::Assembly;
 use crate::contact::forces::{Across, Kernel, all_tiles};
 use crate::contact::law::PairLaw;
+use crate::contact::law_kernel::{LawKernel, dispatch};
 use crate::contact::pair_list::{BLOCK, PairList};
 use crate::contact::rounded::{Factors, InSingle, OfBlockInSingle, Rounded};
 use crate::contact::rows::{ask_for_later_rows, gather};
-use crate::processor;
 use crate::side_by_side::{self, PIECE};
 use crate::simd::ahead::Cache;
 use crate::simd::components;
@@ -95,7 +95,7 @@ pub struct Single<const D: usize> {
 impl<const D: usize> Single<D> {
     /// For the disks of an assembly; none for a law with sites, and for numbers near the ends of what double precision has.
     pub fn new<L: PairLaw>(assembly: &Assembly<D, L>) -> Option<Self> {
-        if L::ON_SITE {
+        if assembly.law().has_sites() {
             return None;
         }
         let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
@@ -268,9 +268,8 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Pressed<'_, D, L> {
     ) -> &'a [[f32; D]; BLOCK] {
         ask_for_later_rows(self.pairs, &self.pairs.blocks[block]);
         gather(&mut columns.pull, self.pairs, &self.pairs.blocks[block], ways);
-        let (law, listed) = (self.law, self.blocks.of_block(block));
-        let pair_count = self.pairs.blocks[block].pair_count;
-        processor::dispatch(Arithmetic { law, listed, columns, pair_count, asks: self.pairs.asks() });
+        let (listed, pair_count) = (self.blocks.of_block(block), self.pairs.blocks[block].pair_count);
+        dispatch(self.law, Arithmetic { listed, columns, pair_count, asks: self.pairs.asks() });
         &columns.pull
     }
 }
@@ -290,8 +289,7 @@ impl<const D: usize> Columns<D> {
     }
 }
 
-struct Arithmetic<'a, const D: usize, L> {
-    law: &'a L,
+struct Arithmetic<'a, const D: usize> {
     listed: OfBlockInSingle<'a, D>,
     columns: &'a mut Columns<D>,
     pair_count: usize,
@@ -299,22 +297,22 @@ struct Arithmetic<'a, const D: usize, L> {
     asks: Option<Cache>,
 }
 
-impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
+impl<const D: usize> LawKernel for Arithmetic<'_, D> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
+    fn run<S: Simd, L: PairLaw>(self, simd: S, law: &L) {
         match self.listed {
-            OfBlockInSingle::Each(block) => self.press(simd, block),
-            OfBlockInSingle::Packed(block, kinds) => self.press(simd, (block, kinds)),
+            OfBlockInSingle::Each(block) => self.press(simd, law, block),
+            OfBlockInSingle::Packed(block, kinds) => self.press(simd, law, (block, kinds)),
         }
     }
 }
 
-impl<const D: usize, L: PairLaw> Arithmetic<'_, D, L> {
+impl<const D: usize> Arithmetic<'_, D> {
     #[inline(always)]
-    fn press<S: Simd, A: InSingle<D>>(self, simd: S, listed: A) {
-        let Arithmetic { law, columns, pair_count, asks, .. } = self;
+    fn press<S: Simd, L: PairLaw, A: InSingle<D>>(self, simd: S, law: &L, listed: A) {
+        let Arithmetic { columns, pair_count, asks, .. } = self;
         let count = pair_count.div_ceil(S::F32_LANES).min(BLOCK / S::F32_LANES);
         let read = |column| &S::as_simd_f32s(column).0[..count];
         let (zero, one) = (simd.splat_f32s(0.0), simd.splat_f32s(1.0));
@@ -374,7 +372,7 @@ mod tests {
         for asks in [None, Some(Cache::First), Some(Cache::Second)] {
             for processor in Processor::all() {
                 let columns = &mut Columns { pull: *ways, ..Columns::new() };
-                processor.run(|| processor::dispatch(Arithmetic { law, listed, columns, pair_count: BLOCK, asks }));
+                processor.run(|| dispatch(law, Arithmetic { listed, columns, pair_count: BLOCK, asks }));
                 forces.push(columns.pull);
             }
         }

@@ -2,10 +2,10 @@
 
 use crate::contact::columns::{Anchors, Columns};
 use crate::contact::law::PairLaw;
+use crate::contact::law_kernel::{LawKernel, dispatch};
 use crate::contact::pair_list::{BLOCK, PairList};
 use crate::contact::rows::{ask_for_later_rows, gather, scatter_with};
 use crate::contact::tiles::Tile;
-use crate::processor;
 use crate::side_by_side;
 use crate::vector::{Vector, sum};
 
@@ -62,8 +62,7 @@ impl<const D: usize, L: PairLaw> Task<'_, D, L> {
             ask_for_later_rows(pairs, block);
             gather(&mut columns.pull, pairs, block, (self.displacements, 0));
             let anchors = Anchors::of(pairs, block);
-            let kernel = Arithmetic { law: self.law, columns: &mut columns, anchors, values: &mut values };
-            processor::dispatch(kernel);
+            dispatch(self.law, Arithmetic { columns: &mut columns, anchors, values: &mut values });
             for ((pair, value), &overlap) in block.pairs().zip(&mut values).zip(&columns.overlap) {
                 let weighted = match self.weight {
                     Some(weight) if overlap > 0.0 => weight(pair, overlap, value[0]),
@@ -90,23 +89,22 @@ impl<const D: usize, L: PairLaw> Task<'_, D, L> {
 }
 
 /// Stiffness and overlap of each pair of a block.
-struct Arithmetic<'a, const D: usize, L> {
-    law: &'a L,
+struct Arithmetic<'a, const D: usize> {
     columns: &'a mut Columns<D>,
     anchors: Anchors<'a, D>,
     values: &'a mut [[f64; 1]; BLOCK],
 }
 
-impl<const D: usize, L: PairLaw> pulp::WithSimd for Arithmetic<'_, D, L> {
+impl<const D: usize> LawKernel for Arithmetic<'_, D> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) {
+    fn run<S: pulp::Simd, L: PairLaw>(self, simd: S, law: &L) {
         self.columns.measure(simd, &self.anchors);
-        self.columns.press::<S, L, false>(simd, self.law, &self.anchors);
+        self.columns.press::<S, L, false>(simd, law, &self.anchors);
         let (overlap, force) = (&self.columns.overlap, &self.columns.force);
         for (value, (&force, &overlap)) in self.values.iter_mut().zip(force.iter().zip(overlap)) {
-            value[0] = self.law.stiffness(force, overlap);
+            value[0] = law.stiffness(force, overlap);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::contact::columns::Columns;
 use crate::contact::law::PairLaw;
+use crate::contact::law_kernel::LawKernel;
 use crate::contact::pair_list::BLOCK;
 use crate::simd::lanes;
 
@@ -53,19 +54,18 @@ impl<const D: usize> Totals<D> {
 }
 
 /// The sums over a block.
-pub(super) struct Tally<'a, const D: usize, L> {
-    pub law: &'a L,
+pub(super) struct Tally<'a, const D: usize> {
     pub columns: &'a Columns<D>,
     pub count: usize,
     pub totals: &'a mut Totals<D>,
 }
 
-impl<const D: usize, L: PairLaw> pulp::WithSimd for Tally<'_, D, L> {
+impl<const D: usize> LawKernel for Tally<'_, D> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) {
-        tally(simd, self.law, self.columns, self.count, self.totals);
+    fn run<S: pulp::Simd, L: PairLaw>(self, simd: S, law: &L) {
+        tally(simd, law, self.columns, self.count, self.totals);
     }
 }
 

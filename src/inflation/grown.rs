@@ -147,7 +147,7 @@ impl<const D: usize> Experiment<D> {
         match self {
             // Contact forces add up to nothing, so sites are at rest only where the centre of mass has not moved: nothing to
             // undo.
-            Experiment::Periodic { .. } if !L::ON_SITE => {
+            Experiment::Periodic { .. } if !law.has_sites() => {
                 let mut outcome = relaxer.relax(packing.clone(), law, trace)?;
                 outcome.state = with_centre_of_mass_of(&packing, outcome.state);
                 Ok(outcome)

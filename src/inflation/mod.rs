@@ -69,6 +69,24 @@ pub struct Inflation {
     pub on_site_coupling: Option<f64>,
 }
 
+impl Inflation {
+    /// A law with the sites of the inflation, if disks have any.
+    pub fn law_with_sites<L: PairLaw>(&self, law: &L) -> OnSite<L> {
+        OnSite { law: *law, coupling: self.on_site_coupling.unwrap_or(0.0) }
+    }
+
+    /// The same.
+    ///
+    /// # Errors
+    /// A coupling that is not finite.
+    pub(crate) fn checked_law_with_sites<L: PairLaw>(&self, law: &L) -> Result<OnSite<L>, InflationError> {
+        match self.on_site_coupling {
+            Some(coupling) if !coupling.is_finite() => Err(InflationError::CouplingNotFinite { coupling }),
+            _ => Ok(self.law_with_sites(law)),
+        }
+    }
+}
+
 impl Default for Inflation {
     /// Source: design §4 (d_0 = 0.1).
     fn default() -> Self {
@@ -268,23 +286,7 @@ pub fn inflate<const D: usize, L: PairLaw>(
     seed: u64,
     trace: &mut impl Trace,
 ) -> Result<Inflated<D>, InflationError> {
-    match inflation.on_site_coupling {
-        None => inflate_with(inflation, packing, law, relaxer, seed, trace),
-        Some(coupling) if coupling.is_finite() => {
-            inflate_with(inflation, packing, &OnSite { law: *law, coupling }, relaxer, seed, trace)
-        }
-        Some(coupling) => Err(InflationError::CouplingNotFinite { coupling }),
-    }
-}
-
-fn inflate_with<const D: usize, L: PairLaw>(
-    inflation: &Inflation,
-    packing: &Packing<D>,
-    law: &L,
-    relaxer: &impl Relaxer,
-    seed: u64,
-    trace: &mut impl Trace,
-) -> Result<Inflated<D>, InflationError> {
+    let law = &inflation.checked_law_with_sites(law)?;
     let grown = Grown::new(inflation, packing, law, relaxer, seed, trace)?;
     let after = grown.rest(Stage::Inflated, grown.packing.clone(), law, relaxer, trace)?;
     let deflated = if inflation.deflate {

@@ -108,7 +108,7 @@ impl<const D: usize> ElasticModuli<D> {
             return Err(LinearError::HeldDisks { held_count });
         }
         let volume = packing.domain().volume().ok_or(LinearError::NotPeriodic)?;
-        if L::ON_SITE {
+        if law.has_sites() {
             return Err(LinearError::OnSites { coupling: law.on_site_coupling() });
         }
         let network = ContactNetwork::new(packing, law)?;

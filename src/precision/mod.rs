@@ -27,7 +27,7 @@ mod settings;
 pub mod state;
 pub mod table;
 
-use crate::contact::{LawChoice, PairLaw};
+use crate::contact::PairLaw;
 use crate::memory::Memory;
 use crate::packing::Packing;
 use crate::run::{RunError, packing_of, thread_count};
@@ -69,11 +69,7 @@ pub fn measure(
     scene.check()?;
     settings.check()?;
     scene.check_memory(Memory::of_machine(), thread_count()).map_err(SceneError::from)?;
-    let samples = match &scene.law {
-        LawChoice::Hertzian(law) => of_scene(scene, law, settings, progress),
-        LawChoice::Hookean(law) => of_scene(scene, law, settings, progress),
-        LawChoice::PowerLaw(law) => of_scene(scene, law, settings, progress),
-    }?;
+    let samples = of_scene(scene, &scene.law, settings, progress)?;
     let (scene, settings) = (scene.clone(), settings.clone());
     Ok(PrecisionReport { jamscope_version: env!("CARGO_PKG_VERSION"), scene, settings, samples })
 }

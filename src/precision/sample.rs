@@ -1,8 +1,8 @@
 //! One sample: its inflated packing, the minima known of it, and a run for each rung of the ladders.
 
+use crate::contact::PairLaw;
 use crate::contact::damping::DampingChoice;
-use crate::contact::{OnSite, PairLaw};
-use crate::inflation::{Grown, InflationError};
+use crate::inflation::Grown;
 use crate::packing::{Packing, PackingError};
 use crate::precision::Progress;
 use crate::precision::choices::choice_tables;
@@ -23,23 +23,7 @@ pub(super) fn of_sample<L: PairLaw>(
     settings: &PrecisionSettings,
     progress: &dyn Progress,
 ) -> Result<SamplePrecision, RunError> {
-    match scene.inflation.on_site_coupling {
-        None => with_law(scene, sample, packing, law, settings, progress),
-        Some(coupling) if coupling.is_finite() => {
-            with_law(scene, sample, packing, &OnSite { law: *law, coupling }, settings, progress)
-        }
-        Some(coupling) => Err(InflationError::CouplingNotFinite { coupling }.into()),
-    }
-}
-
-fn with_law<L: PairLaw>(
-    scene: &Scene,
-    sample: &Sample,
-    packing: &Packing<2>,
-    law: &L,
-    settings: &PrecisionSettings,
-    progress: &dyn Progress,
-) -> Result<SamplePrecision, RunError> {
+    let law = &scene.inflation.checked_law_with_sites(law)?;
     let damping = damping_of(&sample.relaxer);
     let grown = Grown::new(&scene.inflation, packing, law, &sample.relaxer, sample.seed, &mut ())?;
     let rungs = if grown.before.criterion == Criterion::Unjammed {

@@ -92,7 +92,7 @@ pub(super) fn descend<const D: usize, L: PairLaw>(
     } else {
         (first, None, 0.0)
     };
-    if !L::ON_SITE && !start.held().contains(&true) {
+    if !law.has_sites() && !start.held().contains(&true) {
         outcome.state = with_centre_of_mass_of(start, outcome.state);
     }
     let network = ContactNetwork::new(&outcome.state, law)?;

@@ -25,7 +25,7 @@ mod spread;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{OnSite, PairLaw};
+use crate::contact::PairLaw;
 use crate::inflation::{Inflated, Inflation, Rest};
 use crate::packing::{Packing, PackingError, ball_volume};
 use crate::relax::{Cost, Stop, Trace};
@@ -165,7 +165,7 @@ impl<const D: usize> Compared<D> {
         for protocol in protocols {
             landings.push(descend::descend(start, law, protocol, settings, &pressure, trace)?);
         }
-        let floating = !L::ON_SITE && !start.held().contains(&true);
+        let floating = !law.has_sites() && !start.held().contains(&true);
         Ok(compare::compare(landings, settings, pressure_before, floating))
     }
 
@@ -192,12 +192,7 @@ impl<const D: usize> Compared<D> {
             Some(volume) => network.pressure(volume),
             None => network.cluster_pressure(ball_volume::<D>(inflated.outer_radius), |disk| disk > centre),
         };
-        match inflation.on_site_coupling {
-            None => Self::of_start(&start, law, protocols, settings, before, pressure, trace),
-            Some(coupling) => {
-                let law = OnSite { law: *law, coupling };
-                Self::of_start(&start, &law, protocols, settings, before, pressure, trace)
-            }
-        }
+        let law = inflation.law_with_sites(law);
+        Self::of_start(&start, &law, protocols, settings, before, pressure, trace)
     }
 }

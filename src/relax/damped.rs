@@ -109,12 +109,7 @@ impl Relaxer for DampedDynamics {
         law: &L,
         trace: &mut impl Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
-        match self.damping {
-            DampingChoice::Constant(damping) => self.relax_with(packing, law, &damping, trace),
-            DampingChoice::Viscoelastic(damping) => {
-                self.relax_with(packing, law, &law.viscoelastic(damping.rate), trace)
-            }
-        }
+        self.relax_with(packing, law, &self.damping.of_contacts(law), trace)
     }
 
     fn passing(&self, limit: f64) -> Option<Self> {
@@ -359,7 +354,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
     /// Net forces where the disks are, of damping by the predicted velocities; what is lost to it is returned.
     fn accelerate(&mut self) -> f64 {
         let Motion { assembly, damping, damping_coefficient, predicted, accelerations, .. } = self;
-        if L::ON_SITE {
+        if assembly.law().has_sites() {
             // Contacts and sites, then damping.
             assembly.evaluate();
             accelerations.copy_from_slice(&assembly.forces);
@@ -434,7 +429,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
             },
         );
         let most = |rows: &[f64]| rows[..mobile].iter().fold(0.0, |most, &row| larger(row, most));
-        let sites = if L::ON_SITE { law.on_site_coupling().abs() } else { 0.0 };
+        let sites = law.on_site_coupling().abs();
         let (stiffness, resistance) = (most(stiffness) + sites, most(resistance));
         if stiffness == 0.0 { self.stable_step() } else { longest_stable(stiffness, resistance) }
     }

@@ -158,7 +158,7 @@ impl Descent {
                 let forces = [&before[..], assembly.forces[..mobile].as_flattened()];
                 directions.learn(&Step { direction: &direction, length: reached.length, slopes, forces });
                 cost.step_count += 1;
-                if L::ON_SITE && monitor.ran_away(assembly) {
+                if assembly.law().has_sites() && monitor.ran_away(assembly) {
                     return Ok((Stop::NoMinimum, cost));
                 }
             } else {

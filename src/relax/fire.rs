@@ -298,7 +298,7 @@ impl Run<'_> {
                     }
                 };
                 let energy = totals.energy;
-                let higher = if L::ON_SITE {
+                let higher = if assembly.law().has_sites() {
                     // Energies of either sign: rounding is relative to what was added up.
                     energy - rest_energy > ENERGY_ROUNDING * (totals.energy_scale() + rest_scale)
                 } else {

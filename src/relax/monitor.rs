@@ -78,7 +78,7 @@ impl Monitor {
     pub fn with<const D: usize, L: PairLaw>(limit: ForceLimit, watch: Watch, assembly: &Assembly<D, L>) -> Self {
         let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
         let unjammed_force = UNJAMMED_FORCE * assembly.law().force_scale(radius);
-        let pushed = L::ON_SITE && assembly.law().on_site_coupling() > 0.0;
+        let pushed = assembly.law().on_site_coupling() > 0.0;
         let farthest =
             if pushed { RUNAWAY * assembly.radii().iter().copied().fold(0.0, f64::max) } else { f64::INFINITY };
         Monitor {
@@ -166,7 +166,7 @@ impl Monitor {
     /// Whether a disk pushed from its site is too far from it. To be asked after every new list as well: between two looks a
     /// disk may go a long way.
     pub fn ran_away<const D: usize, L: PairLaw>(&self, assembly: &Assembly<D, L>) -> bool {
-        L::ON_SITE && assembly.longest_way_from_site() >= self.farthest
+        assembly.law().has_sites() && assembly.longest_way_from_site() >= self.farthest
     }
 
     /// Determines the backbone and the residual on it (on all disks where there are forces but no backbone); whether it is
@@ -328,7 +328,10 @@ fn floor_of<const D: usize, L: PairLaw>(
     assembly.row_bound(row, Some(&noise));
     let most =
         row.iter().zip(members).filter(|&(_, &member)| member).fold(0.0, |most, (&value, _)| larger(value, most));
-    let sites =
-        if L::ON_SITE { assembly.law().on_site_coupling().abs() * assembly.longest_way_from_site() } else { 0.0 };
+    let sites = if assembly.law().has_sites() {
+        assembly.law().on_site_coupling().abs() * assembly.longest_way_from_site()
+    } else {
+        0.0
+    };
     (most + sites) * f64::EPSILON / mean
 }

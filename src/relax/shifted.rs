@@ -100,7 +100,7 @@ impl<const D: usize> Shifted<D> {
         let across = |pair: usize, overlap: f64, stiffness: f64| stiffness * overlap / (power * pairs.distance(pair));
         stiffness_rows(law, pairs, displacements, mobile, Some(&across), &mut self.prestress);
         stiffness_rows(law, pairs, displacements, mobile, None, &mut self.stiffness);
-        if L::ON_SITE && law.on_site_coupling() > 0.0 {
+        if law.on_site_coupling() > 0.0 {
             self.prestress.iter_mut().for_each(|row| *row += law.on_site_coupling());
         }
     }
@@ -110,7 +110,7 @@ impl<const D: usize> Shifted<D> {
         let coupling = assembly.law().on_site_coupling().abs();
         for (step, &force) in self.step.iter_mut().zip(&assembly.forces) {
             // Disks without rows feel their site at most.
-            *step = if L::ON_SITE && coupling > 0.0 { scaled(1.0 / coupling, force) } else { [0.0; D] };
+            *step = if coupling > 0.0 { scaled(1.0 / coupling, force) } else { [0.0; D] };
         }
         if self.hessian.matrix().dimension() == 0 {
             return Solved::Step;

@@ -7,9 +7,9 @@ mod report_data;
 use std::path::{Path, PathBuf};
 
 use crate::certificate::Certificate;
-use crate::contact::{ContactNetwork, LawChoice, OnSite, PairLaw};
+use crate::contact::{ContactNetwork, PairLaw};
 use crate::displacement::DisplacementField;
-use crate::inflation::{Boundary, Inflated, InflationError, Rest, inflate};
+use crate::inflation::{Boundary, Inflated, Inflation, InflationError, Rest, inflate};
 use crate::io::{ReadError, read_packing};
 use crate::memory::Memory;
 use crate::observe::PressureChange;
@@ -191,22 +191,8 @@ pub fn run_sample(
     index: usize,
     progress: &dyn Progress,
 ) -> Result<SampleResult, RunError> {
-    match scene.law {
-        LawChoice::Hertzian(law) => run_with(scene, sample, &law, index, progress),
-        LawChoice::Hookean(law) => run_with(scene, sample, &law, index, progress),
-        LawChoice::PowerLaw(law) => run_with(scene, sample, &law, index, progress),
-    }
-}
-
-fn run_with<L: PairLaw>(
-    scene: &Scene,
-    sample: &Sample,
-    law: &L,
-    index: usize,
-    progress: &dyn Progress,
-) -> Result<SampleResult, RunError> {
-    let (prepared, packing) = prepared(scene, sample, law, index, progress)?;
-    measure(scene, sample, (prepared, packing), law, index, progress)
+    let (prepared, packing) = prepared(scene, sample, &scene.law, index, progress)?;
+    measure(scene, sample, (prepared, packing), &scene.law, index, progress)
 }
 
 /// The packing of a sample with its summary.
@@ -255,7 +241,7 @@ pub(crate) fn measure<L: PairLaw>(
     Ok(SampleResult {
         packing,
         phase_frequency,
-        inflation: summary(&inflated, law, scene.inflation.on_site_coupling)?,
+        inflation: summary(&inflated, law, &scene.inflation)?,
         response,
         #[cfg(feature = "linear")]
         plastic_part,
@@ -305,16 +291,10 @@ fn subject<'a, L: PairLaw>(
 
 /// Whether the states of an inflation are at rest, under the pushes from sites too where there are some.
 fn verdict<L: PairLaw>(scene: &Scene, inflated: &Inflated<2>, law: &L) -> Result<RestVerdict, PackingError> {
-    match scene.inflation.on_site_coupling {
-        None => verdict_under(scene, inflated, law),
-        Some(coupling) => verdict_under(scene, inflated, &OnSite { law: *law, coupling }),
-    }
-}
-
-fn verdict_under<L: PairLaw>(scene: &Scene, inflated: &Inflated<2>, law: &L) -> Result<RestVerdict, PackingError> {
     fn state<'a, L: PairLaw>(rest: &'a Rest<2>, law: &L) -> Result<State<'a, 2>, PackingError> {
         State::new(rest.packing.get(), law)
     }
+    let law = &scene.inflation.law_with_sites(law);
     let (before, after) = (state(&inflated.before, law)?, state(&inflated.after, law)?);
     let deflated = inflated.deflated.as_ref().map(|rest| state(rest, law)).transpose()?;
     let mut named = vec![("before", &before), ("after", &after)];
@@ -446,15 +426,10 @@ fn packing_summary<L: PairLaw>(packing: &Packing<2>, law: &L, rest: RestSummary)
 fn summary<L: PairLaw>(
     inflated: &Inflated<2>,
     law: &L,
-    on_site_coupling: Option<f64>,
+    inflation: &Inflation,
 ) -> Result<InflationSummary, PackingError> {
-    let certificate = |rest: &Rest<2>| {
-        let (packing, criterion) = (rest.packing.get(), Some(rest.criterion));
-        match on_site_coupling {
-            None => Certificate::of(packing, law, criterion),
-            Some(coupling) => Certificate::of(packing, &OnSite { law: *law, coupling }, criterion),
-        }
-    };
+    let certificate =
+        |rest: &Rest<2>| Certificate::of(rest.packing.get(), &inflation.law_with_sites(law), Some(rest.criterion));
     let state = |rest: &Rest<2>| -> Result<StateSummary, PackingError> {
         Ok(StateSummary {
             pressure: rest.pressure,

@@ -1,6 +1,6 @@
 //! The plastic part of a sample in numbers.
 
-use crate::contact::{OnSite, PairLaw, Prestress};
+use crate::contact::{PairLaw, Prestress};
 use crate::inflation::{Boundary, Inflated, Inflation};
 use crate::linear::contact_changes::pressure_change;
 use crate::linear::{LinearError, LinearResponse};
@@ -16,18 +16,7 @@ pub(super) fn of<L: PairLaw>(
     law: &L,
     ring_width: f64,
 ) -> Result<PlasticSummary, LinearError> {
-    match inflation.on_site_coupling {
-        Some(coupling) => with_law(inflated, inflation.boundary, &OnSite { law: *law, coupling }, ring_width),
-        None => with_law(inflated, inflation.boundary, law, ring_width),
-    }
-}
-
-fn with_law<L: PairLaw>(
-    inflated: &Inflated<2>,
-    boundary: Boundary,
-    law: &L,
-    ring_width: f64,
-) -> Result<PlasticSummary, LinearError> {
+    let law = &inflation.law_with_sites(law);
     let (before, centre) = (inflated.before.packing.get(), inflated.centre);
     let response = LinearResponse::of_inflation(before, centre, law, Prestress::Included)?;
     let plastic = PlasticPart::of(inflated, &response);
@@ -35,7 +24,7 @@ fn with_law<L: PairLaw>(
     let increase = inflated.after.packing.get().radii()[centre] - inflated.inner_radius;
     // Openings of an inflation; a deflation opens contacts at the other sign.
     let openings = changes.iter().filter_map(|change| change.opens_at().filter(|_| increase > 0.0));
-    let per_increase = match boundary {
+    let per_increase = match inflation.boundary {
         Boundary::HeldRim { .. } => {
             pressure_change::<2>(&changes, ball_volume::<2>(inflated.outer_radius), |disk| disk > centre)
         }

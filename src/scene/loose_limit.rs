@@ -8,7 +8,7 @@
 //! ⟨F⟩ ≤ F(δ = R_max)             at a packing fraction: overlaps of a whole radius
 //! ```
 
-use crate::contact::{LawChoice, PairLaw};
+use crate::contact::PairLaw;
 use crate::relax::{ForceLimit, RelaxerChoice};
 use crate::scene::{Sample, Scene, SceneError, Source};
 use crate::verdict::LARGEST_RESIDUAL;
@@ -45,11 +45,7 @@ impl Scene {
             }
             Source::PackingFraction(_) | Source::File(_) => {
                 let largest = self.mixture.components.iter().map(|part| part.radius).fold(0.0, f64::max);
-                match self.law {
-                    LawChoice::Hertzian(law) => law.force_scale(largest),
-                    LawChoice::Hookean(law) => law.force_scale(largest),
-                    LawChoice::PowerLaw(law) => law.force_scale(largest),
-                }
+                self.law.force_scale(largest)
             }
         }
     }

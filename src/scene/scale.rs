@@ -37,12 +37,7 @@ impl Scene {
 
 /// δ/R of disks of radius R at a pressure, up to a factor of order one: p 2R = F(R) (δ/R)^(α−1).
 fn relative_overlap(law: &LawChoice, radius: f64, pressure: f64) -> f64 {
-    let force = match law {
-        LawChoice::Hertzian(law) => law.force_scale(radius),
-        LawChoice::Hookean(law) => law.force_scale(radius),
-        LawChoice::PowerLaw(law) => law.force_scale(radius),
-    };
-    libm::pow(2.0 * pressure / force * radius, 1.0 / (law.exponent() - 1.0))
+    libm::pow(2.0 * pressure / law.force_scale(radius) * radius, 1.0 / (law.exponent() - 1.0))
 }
 
 #[cfg(test)]

@@ -7,7 +7,6 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use crate::contact::{LawChoice, PairLaw};
 use crate::memory::Memory;
 use crate::run::{self, Progress};
 use crate::scene::Scene;
@@ -178,14 +177,7 @@ impl Progress for Deadline {
 fn run_task(task: &Task, time_limit: Option<f64>) -> Vec<Record> {
     let allowed = time_limit.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
     let deadline = Deadline(allowed.and_then(|allowed| Instant::now().checked_add(allowed)));
-    match task.law {
-        LawChoice::Hertzian(law) => run_with(task, &law, &deadline),
-        LawChoice::Hookean(law) => run_with(task, &law, &deadline),
-        LawChoice::PowerLaw(law) => run_with(task, &law, &deadline),
-    }
-}
-
-fn run_with<L: PairLaw>(task: &Task, law: &L, deadline: &Deadline) -> Vec<Record> {
+    let (law, deadline) = (&task.law, &deadline);
     let scenes = task.scenes();
     let Some(first) = scenes.first() else { return Vec::new() };
     let prepared = run::prepared(first, &first.sample[0], law, 0, deadline);

@@ -35,16 +35,9 @@ pub(super) fn other_laws<const D: usize>(
 }
 
 fn residual_under<const D: usize>(packing: &Packing<D>, law: &LawChoice) -> Option<f64> {
-    fn of<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> Option<f64> {
-        let state = State::new(packing, law).ok()?;
-        let balance = Balance::of(packing, &state.network, law);
-        Some(larger(balance.relative_residual(), balance.relative_residual_off_backbone().powi(2)))
-    }
-    match law {
-        LawChoice::Hertzian(law) => of(packing, law),
-        LawChoice::Hookean(law) => of(packing, law),
-        LawChoice::PowerLaw(law) => of(packing, law),
-    }
+    let state = State::new(packing, law).ok()?;
+    let balance = Balance::of(packing, &state.network, law);
+    Some(larger(balance.relative_residual(), balance.relative_residual_off_backbone().powi(2)))
 }
 
 /// Causes that fit, the likeliest first; at least one.
@@ -82,7 +75,7 @@ pub(super) fn causes<const D: usize, L: PairLaw>(
     {
         causes.push(Cause::FewDigits { digits, residual_bound });
     }
-    if state.packing.sites().is_some() && !L::ON_SITE {
+    if state.packing.sites().is_some() && !law.has_sites() {
         causes.push(Cause::Sites);
     }
     if causes.is_empty() {

@@ -1,13 +1,12 @@
-use jamscope::contact::{PairLaw, damping::MassDamping};
+use jamscope::contact::{PairLaw, damping::{ContactDamping, MassDamping}};
 
 /// A spring that stiffens, of stiffness k \[force / length\] and length s \[length\]; not a power of δ:
 /// F = k δ (1 + x), u = k δ² (1/2 + x/3), F' = k (1 + 2x) with x = δ/s.
 #[derive(Debug, Clone, Copy)]
 pub struct Stiffening(pub f64, pub f64);
 impl PairLaw for Stiffening {
-    type Viscoelastic = MassDamping;
-    fn viscoelastic(&self, rate: f64) -> MassDamping {
-        MassDamping { rate }
+    fn viscoelastic(&self, rate: f64) -> ContactDamping {
+        ContactDamping::Mass(MassDamping { rate })
     }
     fn coefficient(&self, _: f64, _: f64) -> f64 {
         self.0

@@ -318,7 +318,7 @@ fn a_run_reports_the_coupling_where_there_is_one() {
 #[test]
 fn laws_without_sites_know_nothing_of_them() {
     fn check<L: PairLaw>(law: L) {
-        assert!(!L::ON_SITE);
+        assert!(!law.has_sites());
         assert_eq!(law.on_site_coupling(), 0.0);
         let packing = random_points::<2>(20, &Mixture::default(), 0.9, 1).expect("possible");
         let outcome = fire(1e-6).relax(packing, &law, &mut ()).expect("apart");

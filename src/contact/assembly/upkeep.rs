@@ -39,7 +39,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Whether [`Assembly::advance`] does anything. Before a look at a short list it does not: should near pairs be picked then, forces are
     /// summed in their order.
     pub(in crate::contact) fn may_advance(&self) -> bool {
-        !L::ON_SITE && (self.pairs().is_long() || !self.looks_next())
+        !self.law.has_sites() && (self.pairs().is_long() || !self.looks_next())
     }
 
     /// Tells lists apart: the number of the one in use, and how often it was amended.

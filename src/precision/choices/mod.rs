@@ -53,17 +53,9 @@ pub(super) fn choice_tables<L: PairLaw>(
     let mut tables = fits::tables(state, grown, observables);
     #[cfg(not(feature = "fit"))]
     let (mut tables, _) = (Vec::new(), observables);
-    match damping {
-        DampingChoice::Constant(damping) => {
-            tables.push(trajectory::time_steps(grown, law, &damping)?);
-            tables.push(trajectory::skins(grown, law, &damping)?);
-        }
-        DampingChoice::Viscoelastic(damping) => {
-            let damping = law.viscoelastic(damping.rate);
-            tables.push(trajectory::time_steps(grown, law, &damping)?);
-            tables.push(trajectory::skins(grown, law, &damping)?);
-        }
-    }
+    let damping = damping.of_contacts(law);
+    tables.push(trajectory::time_steps(grown, law, &damping)?);
+    tables.push(trajectory::skins(grown, law, &damping)?);
     let wavenumber = state.measured.fitted.map_or(0.0, |fitted| fitted.wavenumber);
     tables.extend(angular::estimators(&state.field(grown)));
     tables.extend(routes::routes(grown, wavenumber));

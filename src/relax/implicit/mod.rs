@@ -25,7 +25,7 @@ pub mod tableau;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::PairLaw;
-use crate::contact::damping::{ConstantDamping, DampingChoice};
+use crate::contact::damping::{ConstantDamping, ContactDamping, DampingChoice};
 use crate::packing::{Packing, PackingError};
 use crate::relax::implicit::integration::Integration;
 use crate::relax::{ForceLimit, NetForce, Outcome, Relaxer, Trace};
@@ -128,12 +128,7 @@ impl Relaxer for ImplicitDynamics {
             finish: self.finish,
             step_limit: self.step_limit,
         };
-        match self.damping {
-            DampingChoice::Constant(damping) => run.relax(packing, law, &damping, Inertia::Massive, trace),
-            DampingChoice::Viscoelastic(damping) => {
-                run.relax(packing, law, &law.viscoelastic(damping.rate), Inertia::Massive, trace)
-            }
-        }
+        run.relax(packing, law, &self.damping.of_contacts(law), Inertia::Massive, trace)
     }
 
     fn passing(&self, limit: f64) -> Option<Self> {
@@ -156,7 +151,7 @@ impl Relaxer for GradientFlow {
             step_limit: self.step_limit,
         };
         // The unit of time is that of the friction: 1 is as good as any.
-        run.relax(packing, law, &ConstantDamping { rate: 0.0 }, Inertia::Friction(1.0), trace)
+        run.relax(packing, law, &ContactDamping::Constant(ConstantDamping { rate: 0.0 }), Inertia::Friction(1.0), trace)
     }
 
     fn passing(&self, limit: f64) -> Option<Self> {

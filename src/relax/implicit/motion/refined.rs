@@ -245,7 +245,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
 
     /// Whether the disks push each other only, and their momentum stays.
     fn is_free(&self) -> bool {
-        self.assembly.mobile_count() == self.assembly.len() && !L::ON_SITE
+        self.assembly.mobile_count() == self.assembly.len() && !self.assembly.law().has_sites()
     }
 
     /// Takes this momentum from all disks alike: bonds, and so forces, are as they were.

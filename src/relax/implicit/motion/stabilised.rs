@@ -103,7 +103,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     /// Since (x_i − x_j)² ≤ 2 x_i² + 2 x_j². In disks of six contacts about half of Gershgorin's rows, which add the c_ij
     /// as if all n were parallel.
     pub(in crate::relax::implicit) fn stiffness(&mut self) -> Option<Stiffness> {
-        if L::ON_SITE || self.inertia != Inertia::Massive {
+        if self.assembly.law().has_sites() || self.inertia != Inertia::Massive {
             return None;
         }
         let assembly = &self.assembly;
