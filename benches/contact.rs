@@ -3,7 +3,9 @@
 //! Times are per call; criterion's throughput is disks per second. `cargo bench --bench contact`.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use jamscope::contact::{Assembly, ContactNetwork, Hertzian, Hookean, PairLaw};
+use jamscope::forces::Assembly;
+use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::random_points;
 use jamscope::relax::{Fire, ForceLimit, Relaxer};

@@ -3,10 +3,12 @@
 //! Times are per call; criterion's throughput is disks per second. `cargo bench --bench linear`.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use jamscope::contact::{Assembly, Hertzian, Hessian, Members, OnSite, Prestress};
+use jamscope::forces::Assembly;
 use jamscope::inflation::Circle;
 use jamscope::lattice::Lattice;
+use jamscope::law::{Hertzian, OnSite};
 use jamscope::linear::{Analysis, LinearResponse};
+use jamscope::linear::{Hessian, Members, Prestress};
 
 /// Radii of circles that hold about 1 000, 5 500, 22 000 and 89 000 disks.
 const RADII: [f64; 4] = [16.0, 37.2, 74.4, 149.0];

@@ -3,9 +3,9 @@
 //! `cargo bench --bench relax`.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use jamscope::contact::Hertzian;
 use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
+use jamscope::law::Hertzian;
 use jamscope::packing::Packing;
 use jamscope::relax::{
     DampedDynamics, Fire, ForceLimit, NonlinearConjugateGradients, QuasiNewton, Relaxer, RelaxerChoice, StepBack,

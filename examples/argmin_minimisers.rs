@@ -23,9 +23,11 @@ use argmin_math::{
     ArgminAdd, ArgminDot, ArgminL1Norm, ArgminL2Norm, ArgminMinMax, ArgminMul, ArgminScaledAdd, ArgminSignum,
     ArgminSub, ArgminZeroLike,
 };
-use jamscope::contact::{Assembly, ContactNetwork, Hertzian};
+use jamscope::forces::Assembly;
 use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
+use jamscope::law::Hertzian;
+use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use jamscope::relax::{ForceLimit, NonlinearConjugateGradients, QuasiNewton, Relaxer, RelaxerChoice};
 use jamscope::vector::{Vector, larger, norm, scaled};

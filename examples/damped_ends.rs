@@ -16,10 +16,11 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
 
-use jamscope::contact::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
-use jamscope::contact::{ContactNetwork, Hertzian};
 use jamscope::inflation::{Centre, Circle, choose_centre};
 use jamscope::io::{read_packing, write_packing};
+use jamscope::law::Hertzian;
+use jamscope::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{

@@ -16,9 +16,10 @@ mod processor;
 use std::error::Error;
 use std::fmt::Write;
 
-use jamscope::contact::{ContactNetwork, Hertzian};
 use jamscope::inflation::{Centre, Circle, choose_centre};
 use jamscope::io::read_packing;
+use jamscope::law::Hertzian;
+use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use jamscope::relax::implicit::Finish;
 use jamscope::relax::{DampedDynamics, ForceLimit, ImplicitDynamics, Look, Relaxer};

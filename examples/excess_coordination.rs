@@ -18,7 +18,8 @@
 
 use std::error::Error;
 
-use jamscope::contact::{ContactNetwork, Hertzian};
+use jamscope::law::Hertzian;
+use jamscope::network::ContactNetwork;
 use jamscope::observe::ExcessCoordination;
 use jamscope::packing::Mixture;
 use jamscope::preparation::{Preparation, Target, prepare};

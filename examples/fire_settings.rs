@@ -14,8 +14,8 @@ mod inflated;
 
 use std::error::Error;
 
-use jamscope::contact::Hertzian;
 use jamscope::io::read_packing;
+use jamscope::law::Hertzian;
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::random_points;
 use jamscope::relax::{Fire, ForceLimit, Relaxer, Stop};

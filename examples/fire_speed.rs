@@ -17,8 +17,9 @@ mod tiled;
 
 use std::error::Error;
 
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw};
 use jamscope::io::read_packing;
+use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use jamscope::relax::{Fire, ForceLimit, Precision, Relaxer};
 

@@ -20,8 +20,9 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 
-use jamscope::contact::{ContactNetwork, Hertzian};
 use jamscope::io::{read_packing, write_packing};
+use jamscope::law::Hertzian;
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{Cost, Fire, ForceLimit, Outcome, Relaxer, Staged, Stop};

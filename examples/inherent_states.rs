@@ -13,9 +13,10 @@
 
 use std::error::Error;
 
-use jamscope::contact::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
-use jamscope::contact::{ContactNetwork, Hertzian};
 use jamscope::inflation::{Centre, Circle, choose_centre};
+use jamscope::law::Hertzian;
+use jamscope::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{ImplicitDynamics, Look, Relaxer, Staged, Trace};

@@ -12,10 +12,12 @@
 use std::error::Error;
 use std::time::Instant;
 
-use jamscope::contact::{Assembly, Hertzian, Hessian, Members, Prestress};
+use jamscope::forces::Assembly;
 use jamscope::inflation::{Centre, Circle, choose_centre};
 use jamscope::io::{read_packing, write_packing};
+use jamscope::law::Hertzian;
 use jamscope::linear::{Analysis, LinearResponse};
+use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{ForceLimit, Staged};

@@ -11,11 +11,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use jamscope::contact::{Hertzian, Hessian, Members, Prestress};
 use jamscope::io::read_packing;
+use jamscope::law::Hertzian;
 use jamscope::linear::Analysis;
 use jamscope::linear::iterative::{IncompleteFactor, IterationLimits, conjugate_gradients};
 use jamscope::linear::ordering::{minimum_degree, nested_dissection};
+use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{Fire, ForceLimit};

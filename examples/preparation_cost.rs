@@ -8,7 +8,7 @@
 
 use std::error::Error;
 
-use jamscope::contact::{Hertzian, PairLaw};
+use jamscope::law::{Hertzian, PairLaw};
 use jamscope::packing::{Mixture, Packing, PackingError};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{Cost, Fire, Outcome, Relaxer, Staged, Trace};

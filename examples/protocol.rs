@@ -13,9 +13,9 @@
 use std::error::Error;
 use std::time::Instant;
 
-use jamscope::contact::Hertzian;
 use jamscope::inflation::{Inflation, inflate};
 use jamscope::io::read_packing;
+use jamscope::law::Hertzian;
 use jamscope::protocol::{Compared, Protocol, ProtocolSettings, Spread};
 use jamscope::relax::{RelaxerChoice, Staged};
 

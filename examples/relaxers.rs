@@ -18,7 +18,7 @@ mod stored;
 
 use std::error::Error;
 
-use jamscope::contact::Hertzian;
+use jamscope::law::Hertzian;
 use jamscope::packing::Packing;
 use jamscope::relax::{
     Cost, Fire, ForceLimit, NonlinearConjugateGradients, QuasiNewton, Relaxer, RelaxerChoice, Staged, StepBack, Stop,

@@ -10,10 +10,11 @@
 use std::error::Error;
 use std::time::Instant;
 
-use jamscope::contact::{Hertzian, Prestress};
 use jamscope::displacement::DisplacementField;
 use jamscope::inflation::{Boundary, Inflation, inflate};
+use jamscope::law::Hertzian;
 use jamscope::linear::LinearResponse;
+use jamscope::linear::Prestress;
 use jamscope::observe::bond_changes::{BondChanges, BondSet};
 use jamscope::observe::contact_changes::ContactCycle;
 use jamscope::observe::fluctuations::{BondMeasure, Fluctuations};

@@ -10,7 +10,8 @@
 
 use std::error::Error;
 
-use jamscope::contact::{ContactNetwork, Hertzian, PairLaw};
+use jamscope::law::{Hertzian, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::Mixture;
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{Fire, ForceLimit, Relaxer};

@@ -18,9 +18,9 @@ mod inflated;
 
 use std::error::Error;
 
-use jamscope::contact::Hertzian;
-use jamscope::contact::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
 use jamscope::io::read_packing;
+use jamscope::law::Hertzian;
+use jamscope::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
 use jamscope::packing::Packing;
 use jamscope::relax::{Cost, DampedDynamics, ForceLimit, ImplicitDynamics, Newton, Outcome, Relaxer, Stop, TimeStep};
 

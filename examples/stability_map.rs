@@ -16,11 +16,13 @@
 
 use std::error::Error;
 
-use jamscope::contact::damped_forces::add_damping;
-use jamscope::contact::damping::{ConstantDamping, DampingLaw};
-use jamscope::contact::{ContactNetwork, Hertzian, Hessian, Members, PairLaw, Prestress};
+use jamscope::forces::damped::add_damping;
 use jamscope::inflation::{Centre, Circle, choose_centre};
 use jamscope::io::read_packing;
+use jamscope::law::damping::{ConstantDamping, DampingLaw};
+use jamscope::law::{Hertzian, PairLaw};
+use jamscope::linear::{Hessian, Members, Prestress};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::implicit::{ImplicitMotion, Inertia, Stepped};

@@ -14,10 +14,10 @@
 use std::error::Error;
 use std::time::Instant;
 
-use jamscope::contact::Hertzian;
-use jamscope::contact::damping::ConstantDamping;
 use jamscope::inflation::{Centre, Circle, choose_centre};
 use jamscope::io::read_packing;
+use jamscope::law::Hertzian;
+use jamscope::law::damping::ConstantDamping;
 use jamscope::packing::Packing;
 use jamscope::relax::Motion;
 use jamscope::relax::implicit::{ImplicitMotion, Inertia};

@@ -8,8 +8,9 @@
 //! FORCES.xyz has the net force on every disk as a column, energy and pressure in its comment line. JITTER moves every coordinate by
 //! a uniform random number up to that before both files are written (seed 1), so that forces are not those of a state at rest.
 
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean};
 use jamscope::io::{Column, read_packing, write_lammps_data, write_packing};
+use jamscope::law::{Hertzian, Hookean};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;

@@ -19,8 +19,9 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 
-use jamscope::contact::{ContactNetwork, Hertzian};
 use jamscope::io::read_packing;
+use jamscope::law::Hertzian;
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::random_points;
 use jamscope::relax::{Fire, ForceLimit, Precision, Relaxer, RelaxerChoice, Staged};

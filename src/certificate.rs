@@ -20,11 +20,13 @@
 
 use serde::Serialize;
 
-use crate::contact::{Assembly, ContactNetwork, PairLaw};
+use crate::forces::assembly::Assembly;
+use crate::law::pair_law::PairLaw;
 #[cfg(feature = "linear")]
-use crate::contact::{Hessian, Members, Prestress};
+use crate::linear::hessian::{Hessian, Members, Prestress};
 #[cfg(feature = "linear")]
 use crate::linear::{Analysis, LinearError, pinned};
+use crate::network::ContactNetwork;
 use crate::packing::{Packing, PackingError};
 use crate::relax::{Criterion, rounding_floor};
 use crate::vector::{extended_sum, larger, norm};
@@ -41,7 +43,7 @@ const SCALING: f64 = 7.62939453125e-6;
 /// # Example
 /// ```
 /// use jamscope::certificate::{Certificate, Support};
-/// use jamscope::contact::Hertzian;
+/// use jamscope::law::Hertzian;
 /// use jamscope::io::read_packing;
 ///
 /// let packing = read_packing::<2>("fixtures/packings/hertz_N1000_p1.xyz")?;

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! *Derivation.* Along a bond n the force changes by B (u_j − u_i), B = F' n nᵀ − (F/b)(1 − n nᵀ), the block of the
-//! [Hessian](crate::contact::hessian). A wave u = U exp(i k·r) gives ω² U = Σ_n B (1 − cos b k·n) U → ½ b² Σ_n (k·n)² B U
+//! [Hessian](crate::linear::hessian). A wave u = U exp(i k·r) gives ω² U = Σ_n B (1 − cos b k·n) U → ½ b² Σ_n (k·n)² B U
 //! for small k. Over the six directions (k·n)² n nᵀ averages to k² (3/8 along k, 1/8 across), (k·n)² (1 − n nᵀ) to k² (1/8
 //! along, 3/8 across). Six times ½ is three: ω² = (b² k²/8)(9F' − 3F/b) along k and (b² k²/8)(3F' − 9F/b) across. These are
 //! the moduli in the equation of motion; forces at rest are in them. Their difference is the bulk modulus,
@@ -36,9 +36,9 @@
 
 use std::f64::consts::PI;
 
-use crate::contact::PairLaw;
 use crate::inflation::Circle;
 use crate::inflation::circle::RIM_WIDTH;
+use crate::law::pair_law::PairLaw;
 use crate::packing::{Domain, Packing, PackingError};
 use crate::vector::{Vector, two_product, two_sum};
 
@@ -64,7 +64,8 @@ pub enum Arrangement {
 ///
 /// # Example
 /// ```
-/// use jamscope::contact::{ContactNetwork, Hookean};
+/// use jamscope::law::Hookean;
+/// use jamscope::network::ContactNetwork;
 /// use jamscope::lattice::Lattice;
 ///
 /// let lattice = Lattice::triangular(0.5, 0.05)?;

@@ -17,7 +17,7 @@
 //! 200 disks far from jamming answer as an elastic medium does.
 //!
 //! ```
-//! use jamscope::contact::Hertzian;
+//! use jamscope::law::Hertzian;
 //! use jamscope::displacement::DisplacementField;
 //! use jamscope::inflation::{Inflation, inflate};
 //! use jamscope::observe::RadialProfile;
@@ -60,8 +60,11 @@
 //! | [`memory`] | how much of it a count may take | [`Memory`](memory::Memory) |
 //! | [`packing`] | centres, radii, domain, which disks are held | [`Packing`](packing::Packing) |
 //! | [`io`] | packings in files | [`read_packing`](io::read_packing) |
-//! | [`contact`] | laws, damping, sites, neighbour list, hot loop, contact network, Hessian | [`ContactNetwork`](contact::ContactNetwork) |
-//! | `linear` (feature `linear`) | factorisations, the response to an infinitesimal inflation, elastic moduli, modes | `linear::LinearResponse`, `linear::ElasticModuli` |
+//! | [`law`] | force and energy of one contact, damping, sites | [`PairLaw`](law::PairLaw), [`Hertzian`](law::Hertzian) |
+//! | [`neighbours`] | which pairs may touch: cells, Verlet lists | [`PairList`](neighbours::PairList) |
+//! | [`forces`] | positions and forces of a packing that moves; the loop over contacts | [`Assembly`](forces::Assembly) |
+//! | [`network`] | who touches whom, rattlers, coordination, pressure | [`ContactNetwork`](network::ContactNetwork) |
+//! | `linear` (feature `linear`) | Hessian, factorisations, the response to an infinitesimal inflation, elastic moduli, modes | `linear::LinearResponse`, `linear::ElasticModuli` |
 //! | [`relax`] | bringing a packing to rest | [`Relaxer`](relax::Relaxer), [`Fire`](relax::Fire) |
 //! | [`certificate`] | what is known of a state at rest | [`Certificate`](certificate::Certificate) |
 //! | [`preparation`] | random points to a packing at a packing fraction or a pressure | [`prepare`](preparation::prepare) |
@@ -108,18 +111,22 @@
 
 pub mod analysis;
 pub mod certificate;
-pub mod contact;
 pub mod displacement;
 #[cfg(feature = "fit")]
 pub mod fit;
+pub mod forces;
 pub mod inflation;
 pub mod io;
 pub mod lattice;
+pub mod law;
 #[cfg(feature = "linear")]
 pub mod linear;
 pub mod memory;
+pub mod neighbours;
+pub mod network;
 pub mod observe;
 pub mod packing;
+mod parallel;
 #[cfg(feature = "linear")]
 pub mod plastic;
 #[cfg(feature = "linear")]
@@ -134,7 +141,6 @@ pub mod report;
 pub mod response;
 pub mod run;
 pub mod scene;
-mod side_by_side;
 mod simd;
 #[cfg(feature = "linear")]
 pub mod sparse;
@@ -252,6 +258,8 @@ mod book {
     mod protocol {}
     #[doc = include_str!("../book/src/plastic_phase.md")]
     mod plastic_phase {}
+    #[doc = include_str!("../book/src/ensembles.md")]
+    mod ensembles {}
     #[doc = include_str!("../book/src/scene.md")]
     mod scene {}
     #[doc = include_str!("../book/src/response.md")]

@@ -6,10 +6,11 @@
 //!
 //! A smooth packing leaves d_0² there; contacts that open, close, or rearrange leave what plasticity is.
 
-use crate::contact::{ContactNetwork, PairLaw};
 use crate::displacement::DisplacementField;
 use crate::inflation::{Inflated, displacement};
+use crate::law::pair_law::PairLaw;
 use crate::linear::LinearResponse;
+use crate::network::ContactNetwork;
 use crate::packing::{Packing, PackingError};
 use crate::relax::{Cost, Relaxed, Relaxer, Stop};
 use crate::vector::{Vector, difference, dot, scaled};

@@ -20,7 +20,8 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{ContactNetwork, PairLaw};
+use crate::law::pair_law::PairLaw;
+use crate::network::ContactNetwork;
 use crate::packing::{Domain, Mixture, Packing, PackingError, ball_volume};
 use crate::relax::{Cost, Criterion, Outcome, Relaxed, Relaxer, Residual, Stop, Trace};
 

@@ -7,11 +7,12 @@ mod tiled;
 
 use std::sync::Once;
 
-use jamscope::contact::advance::Advanced;
-use jamscope::contact::damped_forces::{add_damping, damped_forces};
-use jamscope::contact::damping::{ConstantDamping, DampingLaw};
-use jamscope::contact::{Assembly, Hertzian, PairLaw};
+use jamscope::forces::Assembly;
+use jamscope::forces::advance::Advanced;
+use jamscope::forces::damped::{add_damping, damped_forces};
 use jamscope::io::read_packing;
+use jamscope::law::damping::{ConstantDamping, DampingLaw};
+use jamscope::law::{Hertzian, PairLaw};
 use jamscope::packing::Packing;
 use jamscope::processor::{Processor, Vectors};
 use jamscope::relax::{Fire, ForceLimit, Precision, Relaxer};

@@ -4,9 +4,9 @@ use std::error::Error;
 use std::f64::consts::PI;
 use std::time::Instant;
 
-use jamscope::contact::Hertzian;
 use jamscope::displacement::DisplacementField;
 use jamscope::inflation::{Boundary, Inflated, Inflation, inflate};
+use jamscope::law::Hertzian;
 use jamscope::observe::angular::{RingSample, RingSettings};
 use jamscope::observe::multipoles::{MultipoleFit, MultipoleSettings, Multipoles};
 use jamscope::observe::{ContactCycle, PressureChange};

@@ -2,10 +2,11 @@
 
 use std::error::Error;
 
-use jamscope::contact::{Hertzian, Prestress};
 use jamscope::displacement::{DisplacementField, Moved};
 use jamscope::inflation::Circle;
+use jamscope::law::Hertzian;
 use jamscope::linear::LinearResponse;
+use jamscope::linear::Prestress;
 use jamscope::observe::State;
 use jamscope::observe::bond_changes::BondChanges;
 use jamscope::observe::fluctuations::Fluctuations;

@@ -22,7 +22,8 @@ mod sample;
 use std::error::Error;
 use std::path::PathBuf;
 
-use jamscope::contact::{Hertzian, Prestress};
+use jamscope::law::Hertzian;
+use jamscope::linear::Prestress;
 use jamscope::linear::{ElasticModuli, LinearError};
 use jamscope::observe::IsostaticLength;
 use jamscope::observe::isostatic::Scale;

@@ -4,11 +4,12 @@ use std::error::Error;
 use std::fmt;
 use std::ops::Range;
 
-use jamscope::contact::damping::{DampingChoice, ViscoelasticDamping};
-use jamscope::contact::{Hertzian, PairLaw, Prestress};
 use jamscope::displacement::DisplacementField;
 use jamscope::inflation::{Boundary, Centre, Inflation, inflate};
+use jamscope::law::damping::{DampingChoice, ViscoelasticDamping};
+use jamscope::law::{Hertzian, PairLaw};
 use jamscope::linear::LinearResponse;
+use jamscope::linear::Prestress;
 use jamscope::observe::bond_changes::{BondChange, BondChanges, BondSet};
 use jamscope::observe::fluctuations::Fluctuations;
 use jamscope::observe::{ExcessCoordination, State};

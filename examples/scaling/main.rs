@@ -19,12 +19,14 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use jamscope::contact::damping::ConstantDamping;
-use jamscope::contact::{Assembly, Hertzian, Hessian, Members, Prestress};
 use jamscope::displacement::DisplacementField;
+use jamscope::forces::Assembly;
 use jamscope::inflation::{Centre, Circle, choose_centre};
 use jamscope::io::read_packing;
+use jamscope::law::Hertzian;
+use jamscope::law::damping::ConstantDamping;
 use jamscope::linear::{Analysis, LinearResponse};
+use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::observe::{AngularProfile, RadialProfile};
 use jamscope::packing::Packing;
 use jamscope::relax::implicit::{ImplicitMotion, Inertia};

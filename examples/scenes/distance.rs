@@ -2,7 +2,8 @@
 
 use std::error::Error;
 
-use jamscope::contact::{ContactNetwork, Hertzian};
+use jamscope::law::Hertzian;
+use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use jamscope::vector::{larger, norm};
 

@@ -2,8 +2,8 @@
 
 use std::error::Error;
 
-use jamscope::contact::Hertzian;
 use jamscope::inflation::{Centre, Circle, choose_centre};
+use jamscope::law::Hertzian;
 use jamscope::packing::Packing;
 
 /// The packing cut to a circle around a small disk of its backbone, which has grown by 0.1.

@@ -17,9 +17,9 @@ use serde::Serialize;
 pub use pair::{AnalysisError, Pair, PairSettings};
 
 use crate::certificate::Certificate;
-use crate::contact::{LawChoice, PairLaw};
 use crate::displacement::DisplacementField;
 use crate::inflation::Boundary;
+use crate::law::pair_law::{LawChoice, PairLaw};
 use crate::observe::PressureChange;
 use crate::observe::state::State;
 use crate::packing::{PackingError, ball_volume};

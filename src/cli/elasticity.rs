@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Formatter;
 
-use jamscope::contact::{PairLaw, Prestress};
+use jamscope::law::PairLaw;
+use jamscope::linear::Prestress;
 use jamscope::linear::moduli::Stiffness;
 use jamscope::linear::{ElasticModuli, VibrationalModes};
 use jamscope::packing::Packing;

@@ -5,8 +5,8 @@ use std::path::Path;
 use jamscope::certificate::Certificate;
 #[cfg(feature = "linear")]
 use jamscope::certificate::Stability;
-use jamscope::contact::LawChoice;
 use jamscope::io::read_packing;
+use jamscope::law::LawChoice;
 use jamscope::memory::Limit;
 use jamscope::observe::ForceDistribution;
 use jamscope::observe::force_distribution::PERCENTILES;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use jamscope::contact::{Hertzian, Hookean, LawChoice, PairLaw, PowerLaw};
 use jamscope::io::read_properties;
+use jamscope::law::{Hertzian, Hookean, LawChoice, PairLaw, PowerLaw};
 
 /// A law as the command line names it.
 #[derive(Debug, Clone, Copy, PartialEq)]

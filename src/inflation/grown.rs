@@ -1,14 +1,15 @@
 //! [`Grown`]: the moment of an inflation at which the disk has grown and nothing has moved yet.
 
-use crate::contact::{ContactNetwork, PairLaw};
 use crate::inflation::{Boundary, Circle, Inflation, InflationError, Rest, Stage, choose_centre, displacement};
+use crate::law::pair_law::PairLaw;
+use crate::network::ContactNetwork;
 use crate::packing::{Packing, PackingError};
 use crate::relax::{Criterion, Outcome, Relaxer, Stop, Trace};
 use crate::vector::{norm, scaled, sum};
 
 /// A packing at rest whose disk has grown: what any relaxer can start from.
 ///
-/// Where disks have sites the law is one with them ([`OnSite`](crate::contact::OnSite)), here and below.
+/// Where disks have sites the law is one with them ([`OnSite`](crate::law::on_site::OnSite)), here and below.
 #[derive(Debug, Clone)]
 pub struct Grown<const D: usize> {
     experiment: Experiment<D>,

@@ -14,7 +14,9 @@ use serde::{Deserialize, Serialize};
 pub use circle::Circle;
 pub use grown::Grown;
 
-use crate::contact::{ContactNetwork, OnSite, PairLaw};
+use crate::law::on_site::OnSite;
+use crate::law::pair_law::PairLaw;
+use crate::network::ContactNetwork;
 use crate::packing::{Packing, PackingError};
 use crate::relax::{Cost, Criterion, Relaxed, Relaxer, Residual, Stop, Trace};
 

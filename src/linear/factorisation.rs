@@ -25,7 +25,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
-use crate::contact::Hessian;
+use crate::linear::hessian::Hessian;
 use crate::linear::{Factorisation, LinearError, ordering};
 use crate::sparse::SymmetricMatrix;
 use crate::vector::larger;

@@ -1,4 +1,4 @@
-//! Linear algebra of packings at rest: sparse factorisations of the [`Hessian`](crate::contact::Hessian), the answer
+//! Linear algebra of packings at rest: sparse factorisations of the [`Hessian`](crate::linear::hessian::Hessian), the answer
 //! to an infinitesimal inflation or strain, and vibrational modes.
 //!
 //! Start from [`LinearResponse`], [`ElasticModuli`] or [`VibrationalModes`], or from [`Analysis`] for a matrix of one's own.
@@ -6,7 +6,8 @@
 //! with its backward error.
 //!
 //! ```
-//! use jamscope::contact::{Hertzian, Hessian, Members, Prestress};
+//! use jamscope::law::Hertzian;
+//! use jamscope::linear::{Hessian, Members, Prestress};
 //! use jamscope::lattice::Lattice;
 //! use jamscope::linear::Analysis;
 //!
@@ -28,6 +29,7 @@
 pub mod contact_changes;
 mod dissection;
 pub mod factorisation;
+pub mod hessian;
 pub mod iterative;
 mod lanczos;
 pub mod modes;
@@ -38,13 +40,14 @@ pub mod solution;
 
 pub use contact_changes::ContactChange;
 pub use factorisation::Analysis;
+pub use hessian::{Hessian, Members, Prestress};
 pub use modes::VibrationalModes;
 pub use moduli::ElasticModuli;
 pub use response::LinearResponse;
 pub use solution::{Factorisation, Solution};
 
-use crate::contact::ContactNetwork;
 use crate::memory::TooLarge;
+use crate::network::ContactNetwork;
 use crate::packing::{Packing, PackingError};
 
 /// The packing with the first disk of its backbone held, where nothing holds it: no rigid motion is left, and since

@@ -4,7 +4,7 @@
 //! K e = λ e        λ = ω² for masses 1        participation ratio (Σ_i |e_i|²)² / (N Σ_i |e_i|⁴)
 //! ```
 //!
-//! K is the [Hessian](crate::contact::hessian) of the backbone. Its lowest eigenvalues are the largest of (K + s)⁻¹, which one
+//! K is the [Hessian](crate::linear::hessian) of the backbone. Its lowest eigenvalues are the largest of (K + s)⁻¹, which one
 //! sparse factorisation applies; s is small against ‖K‖ and large enough for K + s to be positive definite, so at a saddle
 //! the negative eigenvalues come first. Whether any was missed is not left to chance: the negative pivots of K − μ count all
 //! eigenvalues below a bound μ (Sylvester), and the search goes on until as many have been found.
@@ -15,8 +15,8 @@
 
 use faer::{Mat, Side};
 
-use crate::contact::PairLaw;
-use crate::contact::hessian::{Hessian, Members, Prestress};
+use crate::law::pair_law::PairLaw;
+use crate::linear::hessian::{Hessian, Members, Prestress};
 use crate::linear::lanczos::{dot, largest, norm};
 use crate::linear::{Analysis, LinearError};
 use crate::memory::Memory;
@@ -57,7 +57,8 @@ pub struct Mode<const D: usize> {
 ///
 /// # Example
 /// ```
-/// use jamscope::contact::{Hookean, Prestress};
+/// use jamscope::law::Hookean;
+/// use jamscope::linear::Prestress;
 /// use jamscope::lattice::Lattice;
 /// use jamscope::linear::VibrationalModes;
 ///

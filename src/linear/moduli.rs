@@ -8,7 +8,7 @@
 //! K u^(ab) = Ξ^(ab)        Ξ_i^(ab) = −Σ_j B e^(ab) r_ij        e^(ab) = (e_a e_bᵀ + e_b e_aᵀ)/2
 //! ```
 //!
-//! B is the block of a contact in the [Hessian](crate::contact::hessian), its force at rest (prestress) included; u = 0 gives
+//! B is the block of a contact in the [Hessian](crate::linear::hessian), its force at rest (prestress) included; u = 0 gives
 //! the affine (Born) part, and C = C_affine − (1/V) Ξ·K⁻¹ Ξ. The sum over d is used because an error of u enters it squared
 //! and because a soft packing, whose two parts nearly cancel, comes out without the cancellation.
 //!
@@ -28,9 +28,10 @@
 
 use faer::{Mat, Side};
 
-use crate::contact::hessian::{Hessian, Members, Prestress, contact_block};
-use crate::contact::{ContactNetwork, PairLaw};
+use crate::law::pair_law::PairLaw;
+use crate::linear::hessian::{Hessian, Members, Prestress, contact_block};
 use crate::linear::{Analysis, LinearError, pinned};
+use crate::network::ContactNetwork;
 use crate::packing::Packing;
 use crate::vector::{Vector, dot, larger, norm};
 
@@ -70,7 +71,8 @@ pub struct Shear {
 ///
 /// # Example
 /// ```
-/// use jamscope::contact::{Hertzian, Prestress};
+/// use jamscope::law::Hertzian;
+/// use jamscope::linear::Prestress;
 /// use jamscope::lattice::Lattice;
 /// use jamscope::linear::ElasticModuli;
 ///

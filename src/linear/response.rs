@@ -11,10 +11,12 @@
 //! [`inflate`](crate::inflation::inflate) for d_0 → 0 as long as no contact opens or closes; u may be one at a saddle as
 //! well, which no relaxer reaches.
 
-use crate::contact::forces::geometry;
-use crate::contact::hessian::{Hessian, Members, Prestress};
-use crate::contact::{Assembly, ContactNetwork, PairLaw};
+use crate::forces::assembly::Assembly;
+use crate::forces::elastic::geometry;
+use crate::law::pair_law::PairLaw;
+use crate::linear::hessian::{Hessian, Members, Prestress};
 use crate::linear::{Analysis, LinearError};
+use crate::network::ContactNetwork;
 use crate::packing::Packing;
 use crate::vector::{Vector, difference, scaled, sum};
 

@@ -12,10 +12,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::{Contact, PairLaw};
 use crate::inflation::{Inflated, displacement};
+use crate::law::pair_law::PairLaw;
 #[cfg(feature = "linear")]
 use crate::linear::LinearResponse;
+use crate::network::Contact;
 use crate::observe::contact_changes::merged;
 use crate::observe::state::{State, common_backbone};
 use crate::packing::PackingError;
@@ -68,7 +69,7 @@ impl<const D: usize> BondChanges<D> {
     /// The bonds of an inflation.
     ///
     /// # Errors
-    /// As [`ContactNetwork::new`](crate::contact::ContactNetwork::new).
+    /// As [`ContactNetwork::new`](crate::network::ContactNetwork::new).
     pub fn of_inflation<L: PairLaw>(inflated: &Inflated<D>, law: &L, set: BondSet) -> Result<Self, PackingError> {
         let before = State::new(inflated.before.packing.get(), law)?;
         let after = State::new(inflated.after.packing.get(), law)?;

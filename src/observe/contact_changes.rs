@@ -16,8 +16,9 @@ use std::cmp::Ordering;
 
 use serde::Serialize;
 
-use crate::contact::{Contact, PairLaw};
 use crate::inflation::Inflated;
+use crate::law::pair_law::PairLaw;
+use crate::network::Contact;
 use crate::observe::state::{State, common_backbone};
 use crate::packing::PackingError;
 use crate::vector::Vector;
@@ -65,7 +66,7 @@ impl<const D: usize> ContactChanges<D> {
     /// From the state before an inflation to the one after.
     ///
     /// # Errors
-    /// As [`ContactNetwork::new`](crate::contact::ContactNetwork::new).
+    /// As [`ContactNetwork::new`](crate::network::ContactNetwork::new).
     pub fn of_inflation<L: PairLaw>(inflated: &Inflated<D>, law: &L) -> Result<Self, PackingError> {
         let before = State::new(inflated.before.packing.get(), law)?;
         let after = State::new(inflated.after.packing.get(), law)?;
@@ -156,7 +157,7 @@ impl<const D: usize> ContactCycle<D> {
     /// The cycle of an inflation; none if the disk was not deflated.
     ///
     /// # Errors
-    /// As [`ContactNetwork::new`](crate::contact::ContactNetwork::new).
+    /// As [`ContactNetwork::new`](crate::network::ContactNetwork::new).
     pub fn of<L: PairLaw>(inflated: &Inflated<D>, law: &L) -> Result<Option<Self>, PackingError> {
         let Some(deflated) = &inflated.deflated else { return Ok(None) };
         let states = [&inflated.before, &inflated.after, deflated];

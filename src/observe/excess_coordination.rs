@@ -9,13 +9,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::ContactNetwork;
+use crate::network::ContactNetwork;
 
 /// ΔZ of a backbone.
 ///
 /// # Example
 /// ```
-/// use jamscope::contact::{ContactNetwork, Hertzian};
+/// use jamscope::law::Hertzian;
+/// use jamscope::network::ContactNetwork;
 /// use jamscope::io::read_packing;
 /// use jamscope::observe::ExcessCoordination;
 ///

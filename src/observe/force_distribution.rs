@@ -6,7 +6,7 @@
 
 use serde::Serialize;
 
-use crate::contact::ContactNetwork;
+use crate::network::ContactNetwork;
 
 /// Width of a bin of P in F/⟨F⟩ \[1\].
 pub const BIN_WIDTH: f64 = 0.1;

@@ -12,8 +12,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::PairLaw;
 use crate::inflation::{Inflated, Rest};
+use crate::law::pair_law::PairLaw;
 
 /// Δp of an inflation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -1,6 +1,7 @@
 //! [`State`]: a packing with its contacts, for observables that compare two of them.
 
-use crate::contact::{Contact, ContactNetwork, PairLaw};
+use crate::law::pair_law::PairLaw;
+use crate::network::{Contact, ContactNetwork};
 use crate::packing::{Packing, PackingError};
 use crate::vector::{Vector, difference, norm, scaled, sum};
 

@@ -204,7 +204,7 @@ impl<const D: usize> Packing<D> {
         Ok(self)
     }
 
-    /// The same packing with every disk's site where the disk is now, see [`OnSite`](crate::contact::OnSite).
+    /// The same packing with every disk's site where the disk is now, see [`OnSite`](crate::law::on_site::OnSite).
     #[must_use]
     pub fn with_sites_here(mut self) -> Self {
         self.sites = Some(self.positions.iter().copied().zip(self.corrections.iter().copied()).collect());

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::contact::damping::DampingChoice;
+use crate::law::damping::DampingChoice;
 use crate::precision::settings::PrecisionSettings;
 use crate::relax::implicit::Finish;
 use crate::relax::{

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use crate::contact::PairLaw;
-use crate::contact::damping::DampingChoice;
 use crate::inflation::Grown;
+use crate::law::damping::DampingChoice;
+use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::precision::state::{Errors, Measured, State};
 use crate::relax::implicit::Finish;

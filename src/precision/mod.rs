@@ -27,7 +27,7 @@ mod settings;
 pub mod state;
 pub mod table;
 
-use crate::contact::PairLaw;
+use crate::law::pair_law::PairLaw;
 use crate::memory::Memory;
 use crate::packing::Packing;
 use crate::run::{RunError, packing_of, thread_count};

@@ -1,8 +1,8 @@
 //! One sample: its inflated packing, the minima known of it, and a run for each rung of the ladders.
 
-use crate::contact::PairLaw;
-use crate::contact::damping::DampingChoice;
 use crate::inflation::Grown;
+use crate::law::damping::DampingChoice;
+use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::precision::Progress;
 use crate::precision::choices::choice_tables;

@@ -2,11 +2,12 @@
 
 use serde::Serialize;
 
-use crate::contact::{ContactNetwork, PairLaw};
 use crate::displacement::DisplacementField;
 #[cfg(feature = "fit")]
 use crate::fit::profile::{Decision, ProfileFit, ProfileFitSettings, fit_radial_profile};
 use crate::inflation::{Grown, displacement};
+use crate::law::pair_law::PairLaw;
+use crate::network::ContactNetwork;
 #[cfg(feature = "fit")]
 use crate::observe::RadialProfile;
 use crate::packing::{Packing, PackingError};

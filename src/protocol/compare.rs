@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use crate::contact::ContactNetwork;
 use crate::inflation::{Rest, displacement};
+use crate::network::ContactNetwork;
 use crate::protocol::descend::Landing;
 use crate::protocol::{Compared, Ending, ProtocolSensitivity, ProtocolSettings, Spreads};
 use crate::relax::Criterion;

@@ -1,9 +1,10 @@
 //! The protocols, and one of them from start to rest.
 
-use crate::contact::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
-use crate::contact::{ContactNetwork, PairLaw};
 use crate::inflation::grown::with_centre_of_mass_of;
 use crate::inflation::{Rest, displacement};
+use crate::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
+use crate::law::pair_law::PairLaw;
+use crate::network::ContactNetwork;
 use crate::packing::{Packing, PackingError};
 use crate::protocol::{Ending, ProtocolSettings};
 use crate::relax::{

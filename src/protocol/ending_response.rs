@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use crate::contact::PairLaw;
 use crate::displacement::DisplacementField;
 use crate::inflation::Inflated;
+use crate::law::pair_law::PairLaw;
 use crate::observe::ContactChanges;
 use crate::observe::angular::{AngularCorrelation, CorrelationSettings, RingSample, RingSettings};
 use crate::packing::PackingError;

@@ -25,8 +25,8 @@ mod spread;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::PairLaw;
 use crate::inflation::{Inflated, Inflation, Rest};
+use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError, ball_volume};
 use crate::relax::{Cost, Stop, Trace};
 
@@ -158,7 +158,7 @@ impl<const D: usize> Compared<D> {
         protocols: &[Protocol],
         settings: &ProtocolSettings,
         pressure_before: f64,
-        pressure: impl Fn(&crate::contact::ContactNetwork<D>) -> f64,
+        pressure: impl Fn(&crate::network::ContactNetwork<D>) -> f64,
         trace: &mut impl Trace,
     ) -> Result<Self, PackingError> {
         let mut landings = Vec::with_capacity(protocols.len());
@@ -188,7 +188,7 @@ impl<const D: usize> Compared<D> {
         let start = inflated.before.packing.get().clone().with_radius(centre, radius)?;
         let before = inflated.before.pressure;
         let domain = *start.domain();
-        let pressure = |network: &crate::contact::ContactNetwork<D>| match domain.volume() {
+        let pressure = |network: &crate::network::ContactNetwork<D>| match domain.volume() {
             Some(volume) => network.pressure(volume),
             None => network.cluster_pressure(ball_volume::<D>(inflated.outer_radius), |disk| disk > centre),
         };

@@ -22,11 +22,11 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::PairLaw;
-use crate::contact::assembly::Assembly;
-use crate::contact::damped_forces::{add_damping, damped_forces};
-use crate::contact::damping::{DampingChoice, DampingLaw};
-use crate::contact::walk::{Walked, walk};
+use crate::forces::assembly::Assembly;
+use crate::forces::damped::{add_damping, damped_forces};
+use crate::law::damping::{DampingChoice, DampingLaw};
+use crate::law::pair_law::PairLaw;
+use crate::neighbours::for_each_pair::{Walked, walk};
 use crate::packing::{Packing, PackingError};
 use crate::relax::energy_balance::{Energies, EnergyBalance};
 use crate::relax::explicit_step::ExplicitStep;
@@ -449,8 +449,8 @@ fn longest_stable(stiffness: f64, damping: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::Hookean;
-    use crate::contact::damping::ConstantDamping;
+    use crate::law::damping::ConstantDamping;
+    use crate::law::pair_law::Hookean;
     use crate::packing::Domain;
 
     /// Two disks pressed together, Hookean with damping: the overlap is a damped oscillator,

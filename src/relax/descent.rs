@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use crate::contact::assembly::Assembly;
-use crate::contact::law::PairLaw;
+use crate::forces::assembly::Assembly;
+use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::relax::flat::dot_product;
 use crate::relax::line_search::{Line, search};

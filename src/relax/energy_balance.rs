@@ -18,7 +18,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::totals::Totals;
+use crate::forces::totals::Totals;
 use crate::vector::larger;
 
 /// ε. Explicit steps of 0.9 of their bound leave 0.02 to 0.04 of the energy in motion unaccounted for while the front of a blow spreads, and less

@@ -9,8 +9,8 @@
 //! become the stiffest of all. So the bound is taken where the disks are going to be. The number M of steps between two checks is
 //! halved where the step got much shorter, and doubled where it did not.
 
-use crate::contact::PairLaw;
-use crate::contact::damping::DampingLaw;
+use crate::law::damping::DampingLaw;
+use crate::law::pair_law::PairLaw;
 use crate::relax::damped::Motion;
 
 /// Fewest steps between two checks of the bound.

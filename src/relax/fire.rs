@@ -26,9 +26,9 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::PairLaw;
-use crate::contact::advance::Advanced;
-use crate::contact::assembly::Assembly;
+use crate::forces::advance::Advanced;
+use crate::forces::assembly::Assembly;
+use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::relax::fire::motion::{Motion, Step};
 use crate::relax::flat::Products;

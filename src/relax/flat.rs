@@ -1,8 +1,8 @@
 //! Sums over flat columns in a fixed order, in lanes the compiler can turn into vector instructions. Long columns are cut into
 //! pieces of a fixed length, which may be worked on side by side; their sums are added in order.
 
+use crate::parallel;
 use crate::processor;
-use crate::side_by_side;
 use crate::simd::lanes::{self, Summed};
 use crate::simd::real::Real;
 use crate::vector::larger;
@@ -49,7 +49,7 @@ pub fn products<T: Summed>(force: &[T], velocity: &[T]) -> Products {
     if force.len() <= PIECE {
         return of_piece((force, velocity));
     }
-    let pieces = side_by_side::each(force.chunks(PIECE).zip(velocity.chunks(PIECE)), of_piece);
+    let pieces = parallel::each(force.chunks(PIECE).zip(velocity.chunks(PIECE)), of_piece);
     pieces.iter().fold(Products::ZERO, |sum, piece| sum.with(piece))
 }
 
@@ -89,7 +89,7 @@ pub fn kick_and_drift<T: Real>(
         return piece(((force, velocity), displacement));
     }
     let pieces = force.chunks(PIECE).zip(velocity.chunks_mut(PIECE)).zip(displacement.chunks_mut(PIECE));
-    side_by_side::each(pieces, piece).into_iter().fold(0.0, larger)
+    parallel::each(pieces, piece).into_iter().fold(0.0, larger)
 }
 
 struct KickAndDrift<'a, T> {

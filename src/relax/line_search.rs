@@ -12,9 +12,9 @@
 //! # Source
 //! Hager, Zhang (2005), SIAM J. Optim. 16, 170, §4 (Wolfe's conditions by slopes alone where energies cannot tell).
 
-use crate::contact::assembly::Assembly;
-use crate::contact::law::PairLaw;
-use crate::contact::totals::Totals;
+use crate::forces::assembly::Assembly;
+use crate::forces::totals::Totals;
+use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::fire::ENERGY_ROUNDING;
 use crate::relax::flat::{combine, dot_product};
@@ -167,7 +167,7 @@ pub fn acceptance<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::law::Hookean;
+    use crate::law::pair_law::Hookean;
     use crate::packing::{Domain, Packing};
 
     /// A disk pressed to the right by one at −0.9, one at 1.5 in its way and one at 3.3 beyond: at 2.4 the slope is zero too,

@@ -26,8 +26,8 @@ pub mod staged;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::PairLaw;
-use crate::contact::damping::DampingChoice;
+use crate::law::damping::DampingChoice;
+use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 
 pub use conjugate_gradients::NonlinearConjugateGradients;

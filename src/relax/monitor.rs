@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use crate::contact::assembly::Assembly;
-use crate::contact::law::PairLaw;
-use crate::contact::network::{Links, Peeling};
-use crate::contact::totals::Totals;
+use crate::forces::assembly::Assembly;
+use crate::forces::totals::Totals;
+use crate::law::pair_law::PairLaw;
+use crate::network::{Links, Peeling};
 use crate::packing::Packing;
 use crate::relax::{
     Cost, Criterion, EnergyAccount, ForceLimit, Look, Outcome, RUNAWAY, Residual, Stop, Trace, UNJAMMED_FORCE,

@@ -4,7 +4,7 @@
 //! (K + S) s = F        u ← u + a s        S ≥ 0 diagonal, → 0 near a minimum;  a ≤ 1
 //! ```
 //!
-//! K is the [`Hessian`](crate::contact::Hessian). Where K + S has no Cholesky factor S is raised, so s always points
+//! K is the [`Hessian`](crate::linear::hessian::Hessian). Where K + S has no Cholesky factor S is raised, so s always points
 //! downhill. The whole step is tried first; where contacts that close on the way make it climb, the lowest point along it is
 //! sought. A step counts if the energy has fallen by a share of what the forces promise; where that is less than energies can
 //! tell apart, the work of the forces along the step decides. How well the quadratic model predicted the fall sets S for the
@@ -23,8 +23,8 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::PairLaw;
-use crate::contact::assembly::Assembly;
+use crate::forces::assembly::Assembly;
+use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::relax::monitor::{Monitor, Watch};
 use crate::relax::{ForceLimit, Outcome, Relaxer, Stop, Trace};

@@ -14,7 +14,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::PairLaw;
+use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::relax::descent::{Descent, Directions, Step, Turn};
 use crate::relax::flat::{combine, dot_product};

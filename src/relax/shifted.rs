@@ -15,10 +15,10 @@
 //! translations of a periodic box; (η + θ) k_i a rattler along directions in which none of its contacts does, so that it does
 //! not run into its neighbours. No entry of S is below 10⁻¹² of the largest k_i.
 
-use crate::contact::assembly::Assembly;
-use crate::contact::hessian::{Hessian, Members, Prestress, StiffContact};
-use crate::contact::law::PairLaw;
-use crate::contact::stiffness::stiffness_rows;
+use crate::forces::assembly::Assembly;
+use crate::forces::stiffness_bound::stiffness_rows;
+use crate::law::pair_law::PairLaw;
+use crate::linear::hessian::{Hessian, Members, Prestress, StiffContact};
 use crate::linear::{Analysis, LinearError};
 use crate::sparse::SymmetricMatrix;
 use crate::vector::{Vector, larger, norm, scaled};

@@ -9,8 +9,8 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::PairLaw;
-use crate::contact::assembly::Assembly;
+use crate::forces::assembly::Assembly;
+use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::relax::monitor::Monitor;
 use crate::relax::newton::{Descent, End, Patience, WATCH};

@@ -211,7 +211,7 @@ fn by_spectrum(_response: &Response) -> Option<Phase> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Hertzian, LawChoice};
+    use crate::law::pair_law::{Hertzian, LawChoice};
     use crate::observe::state::State;
     use crate::packing::{Domain, Packing};
     use crate::verdict::{RestVerdict, VerdictSettings};

@@ -7,11 +7,12 @@ mod report_data;
 use std::path::{Path, PathBuf};
 
 use crate::certificate::Certificate;
-use crate::contact::{ContactNetwork, PairLaw};
 use crate::displacement::DisplacementField;
 use crate::inflation::{Boundary, Inflated, Inflation, InflationError, Rest, inflate};
 use crate::io::{ReadError, read_packing};
+use crate::law::pair_law::PairLaw;
 use crate::memory::Memory;
+use crate::network::ContactNetwork;
 use crate::observe::PressureChange;
 use crate::observe::state::State;
 use crate::packing::{Packing, PackingError};

@@ -1,8 +1,9 @@
 //! The plastic part of a sample in numbers.
 
-use crate::contact::{PairLaw, Prestress};
 use crate::inflation::{Boundary, Inflated, Inflation};
+use crate::law::pair_law::PairLaw;
 use crate::linear::contact_changes::pressure_change;
+use crate::linear::hessian::Prestress;
 use crate::linear::{LinearError, LinearResponse};
 use crate::observe::RadialProfile;
 use crate::packing::ball_volume;

@@ -8,7 +8,7 @@
 //! ⟨F⟩ ≤ F(δ = R_max)             at a packing fraction: overlaps of a whole radius
 //! ```
 
-use crate::contact::PairLaw;
+use crate::law::pair_law::PairLaw;
 use crate::relax::{ForceLimit, RelaxerChoice};
 use crate::scene::{Sample, Scene, SceneError, Source};
 use crate::verdict::LARGEST_RESIDUAL;

@@ -27,8 +27,8 @@ pub use observables::{PlasticPartSettings, ProtocolSettings};
 pub use observables::{ProfileFitSettings, SpectrumFitSettings};
 pub use protocol::ProtocolChoice;
 
-use crate::contact::law::LawChoice;
 use crate::inflation::Inflation;
+use crate::law::pair_law::LawChoice;
 use crate::packing::Mixture;
 use crate::relax::RelaxerChoice;
 use crate::verdict::VerdictSettings;

@@ -10,7 +10,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
+use crate::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
 use crate::relax::{Fire, RelaxerChoice};
 #[cfg(feature = "linear")]
 use crate::relax::{ImplicitDynamics, Staged};

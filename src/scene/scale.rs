@@ -2,8 +2,8 @@
 //!
 //! A relaxation whose answer lies below rounding does not fail, it goes on to its last step. So it is refused before.
 
-use crate::contact::LawChoice;
-use crate::contact::law::PairLaw;
+use crate::law::pair_law::LawChoice;
+use crate::law::pair_law::PairLaw;
 use crate::scene::{Scene, SceneError, Source};
 use crate::vector::larger;
 

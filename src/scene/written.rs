@@ -2,8 +2,8 @@
 
 use serde::Deserialize;
 
-use crate::contact::law::LawChoice;
 use crate::inflation::Inflation;
+use crate::law::pair_law::LawChoice;
 use crate::packing::Mixture;
 use crate::relax::RelaxerChoice;
 use crate::scene::protocol::ProtocolChoice;

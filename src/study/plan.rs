@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
 
-use crate::contact::LawChoice;
 use crate::inflation::Boundary;
+use crate::law::pair_law::LawChoice;
 use crate::memory::{Memory, TooLarge};
 use crate::scene::Scene;
 use crate::scene::reduced_pressure::mobile_count;

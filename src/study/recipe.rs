@@ -5,8 +5,8 @@
 
 use serde::Serialize;
 
-use crate::contact::{Hertzian, Hookean, LawChoice};
 use crate::inflation::Boundary;
+use crate::law::pair_law::{Hertzian, Hookean, LawChoice};
 use crate::relax::{Fire, RelaxerChoice};
 use crate::scene::{Observables, ProtocolChoice, Scene};
 use crate::study::settings::{Part, Seeds, Study, Target};

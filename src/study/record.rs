@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::LawChoice;
 #[cfg(feature = "fit")]
 use crate::fit::angular::{CrossoverOutcome, SlopeOutcome};
 use crate::inflation::{Boundary, InflationError};
+use crate::law::pair_law::LawChoice;
 use crate::observe::isostatic::IsostaticOutcome;
 use crate::observe::multipoles::MultipoleFit;
 use crate::preparation::PreparationError;

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::LawChoice;
 use crate::inflation::Boundary;
+use crate::law::pair_law::LawChoice;
 use crate::memory::{Limit, TooLarge};
 use crate::relax::RelaxerChoice;
 use crate::scene::reduced_pressure::reduction;

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use crate::contact::{ContactNetwork, PairLaw};
+use crate::law::pair_law::PairLaw;
+use crate::network::ContactNetwork;
 use crate::packing::Packing;
 use crate::relax::UNJAMMED_FORCE;
 use crate::vector::{larger, norm};

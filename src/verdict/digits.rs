@@ -6,7 +6,8 @@
 
 use serde::Serialize;
 
-use crate::contact::{ContactNetwork, PairLaw};
+use crate::law::pair_law::PairLaw;
+use crate::network::ContactNetwork;
 use crate::packing::{Domain, Packing};
 use crate::vector::{larger, norm};
 

@@ -1,6 +1,6 @@
 //! What is likely where states are not at rest: their forces under other laws, and where the unbalanced disks are.
 
-use crate::contact::{Hertzian, Hookean, LawChoice, PairLaw, PowerLaw};
+use crate::law::pair_law::{Hertzian, Hookean, LawChoice, PairLaw, PowerLaw};
 use crate::observe::state::State;
 use crate::packing::{Packing, ball_volume};
 use crate::vector::{Vector, dot, larger, norm};

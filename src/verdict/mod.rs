@@ -19,7 +19,7 @@ pub use balance::{Balance, StateBalance};
 pub use cause::{Cause, OtherLaw};
 pub use digits::Digits;
 
-use crate::contact::{LawChoice, PairLaw};
+use crate::law::pair_law::{LawChoice, PairLaw};
 use crate::observe::state::State;
 
 /// A residual above this counts as rest nowhere: neither by a limit of a relaxer nor by that of a verdict \[1\].
@@ -83,7 +83,7 @@ pub enum Decision {
 ///
 /// # Example
 /// ```
-/// use jamscope::contact::{Hookean, LawChoice};
+/// use jamscope::law::{Hookean, LawChoice};
 /// use jamscope::io::read_packing;
 /// use jamscope::observe::state::State;
 /// use jamscope::verdict::{Cause, RestVerdict, VerdictSettings};

@@ -3,10 +3,11 @@
 mod stiffening;
 mod swirl;
 
-use jamscope::contact::{ContactNetwork, Hertzian, PairLaw};
 use jamscope::displacement::{DisplacementField, MeasuredOn, Moved};
 use jamscope::inflation::{Inflation, inflate};
 use jamscope::io::read_packing;
+use jamscope::law::{Hertzian, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare, random_points};
 use jamscope::reference::{Annulus, RadialSolution, elastic::Elastic};

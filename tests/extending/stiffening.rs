@@ -1,4 +1,5 @@
-use jamscope::contact::{PairLaw, damping::{ContactDamping, MassDamping}};
+use jamscope::law::PairLaw;
+use jamscope::law::damping::{ContactDamping, MassDamping};
 
 /// A spring that stiffens, of stiffness k \[force / length\] and length s \[length\]; not a power of δ:
 /// F = k δ (1 + x), u = k δ² (1/2 + x/3), F' = k (1 + 2x) with x = δ/s.

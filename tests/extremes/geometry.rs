@@ -1,6 +1,8 @@
 //! Where disks stand: at one point, at the end of the numbers, in the smallest box, an ulp or a subnormal overlap apart.
 
-use jamscope::contact::{Assembly, ContactNetwork, Hertzian, Hookean, PairLaw};
+use jamscope::forces::Assembly;
+use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing, PackingError};
 use jamscope::relax::{Criterion, Fire, Relaxer, Stop};
 use jamscope::vector::two_sum;

@@ -1,8 +1,8 @@
 //! Inflations from 10⁻¹⁴ to half a length, of packings far from and below jamming.
 
-use jamscope::contact::Hertzian;
 use jamscope::displacement::DisplacementField;
 use jamscope::inflation::{Inflated, Inflation, InflationError, inflate};
+use jamscope::law::Hertzian;
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::Criterion;

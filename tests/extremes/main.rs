@@ -14,7 +14,7 @@ mod small_systems;
 #[path = "../scenes/square_lattice.rs"]
 mod square_lattice;
 
-use jamscope::contact::PairLaw;
+use jamscope::law::PairLaw;
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::random_points;
 use jamscope::relax::{

@@ -1,6 +1,7 @@
 //! Pressures over eight decades, radii a thousand times apart, three disks, nothing but rattlers.
 
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw};
+use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Component, Mixture, PackingError};
 use jamscope::preparation::{Preparation, PreparationError, Prepared, Target, prepare};
 use jamscope::relax::Criterion;

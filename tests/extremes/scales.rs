@@ -1,7 +1,8 @@
 //! Stiffness constants over forty decades, lengths over a hundred and more.
 
-use jamscope::contact::damping::{ConstantDamping, DampingChoice};
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw, PowerLaw};
+use jamscope::law::damping::{ConstantDamping, DampingChoice};
+use jamscope::law::{Hertzian, Hookean, PairLaw, PowerLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing, PackingError};
 use jamscope::relax::{Criterion, DampedDynamics, ForceLimit, Relaxer, RelaxerChoice, Stop};
 

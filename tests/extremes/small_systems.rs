@@ -4,8 +4,10 @@
 use std::f64::consts::PI;
 
 use crate::square_lattice::square_lattice;
-use jamscope::contact::damping::ConstantDamping;
-use jamscope::contact::{Assembly, ContactNetwork, Hertzian, Hookean, PairLaw, PowerLaw};
+use jamscope::forces::Assembly;
+use jamscope::law::damping::ConstantDamping;
+use jamscope::law::{Hertzian, Hookean, PairLaw, PowerLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::{
     Criterion, Fire, ForceLimit, Motion, NonlinearConjugateGradients, Outcome, QuasiNewton, Relaxer, RelaxerChoice,

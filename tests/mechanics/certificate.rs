@@ -8,9 +8,10 @@ use crate::scenes::random_disks;
 #[cfg(feature = "linear")]
 use jamscope::certificate::Stability;
 use jamscope::certificate::{Certificate, Support};
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw};
 use jamscope::inflation::{Circle, choose_centre};
 use jamscope::io::read_packing;
+use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::Criterion;
 
@@ -133,7 +134,7 @@ fn bucklers_are_disks_of_the_backbone_with_three_contacts_on_it() {
         let network = ContactNetwork::new(&packing, &law).expect("apart");
         let touches = |disk: usize| {
             let ends =
-                |contact: &&jamscope::contact::Contact<2>| [contact.first, contact.second].contains(&(disk as u32));
+                |contact: &&jamscope::network::Contact<2>| [contact.first, contact.second].contains(&(disk as u32));
             network.backbone_contacts().filter(ends).count()
         };
         let members = (0..packing.len()).filter(|&disk| network.backbone[disk]);
@@ -205,7 +206,7 @@ fn what_holds_the_packing_decides_how_many_contacts_it_needs() {
 #[test]
 fn negative_eigenvalues_are_those_of_dense_algebra() {
     use faer::{Mat, Side};
-    use jamscope::contact::{Hessian, Members, Prestress};
+    use jamscope::linear::{Hessian, Members, Prestress};
     fn check<const D: usize>(packing: &Packing<D>, law: Hookean) -> usize {
         let hessian = Hessian::new(packing, &law, Members::Backbone, Prestress::Included).expect("apart");
         let (dimension, norm) = (hessian.matrix().dimension(), hessian.matrix().norm());

@@ -1,10 +1,11 @@
 //! No relaxation gains energy: damped motions from the blow of an inflation, energies in the costs, and states that no relaxation can
 //! lead to.
 
-use jamscope::contact::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
-use jamscope::contact::{ContactNetwork, Hertzian};
 use jamscope::inflation::{Boundary, Inflation, inflate};
 use jamscope::io::read_packing;
+use jamscope::law::Hertzian;
+use jamscope::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use jamscope::relax::implicit::Finish;
 use jamscope::relax::{

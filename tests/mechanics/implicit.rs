@@ -1,10 +1,11 @@
 //! Implicit damped dynamics and gradient flow: closed forms and orders, energy balance, contacts on the way, the minimum that
 //! explicit dynamics finds, named ends, and the work of fixed scenes.
 
-use jamscope::contact::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw};
 use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
+use jamscope::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
+use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::implicit::{Finish, ImplicitMotion, Inertia, Stepped};
 use jamscope::relax::{

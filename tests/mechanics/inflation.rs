@@ -2,11 +2,12 @@
 
 use std::sync::OnceLock;
 
-use jamscope::contact::{ContactNetwork, Hertzian, PairLaw};
 use jamscope::displacement::{DisplacementField, MeasuredOn};
 use jamscope::inflation::{
     Boundary, Centre, Circle, Inflated, Inflation, InflationError, Stage, choose_centre, inflate,
 };
+use jamscope::law::{Hertzian, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Mixture, Packing, PackingError};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{Criterion, Fire, ForceLimit, Outcome, Relaxer, Stop, Trace};

@@ -5,9 +5,10 @@
 
 use std::fmt::Debug;
 
-use jamscope::contact::damped_forces::damped_forces;
-use jamscope::contact::damping::{ConstantDamping, DampingLaw};
-use jamscope::contact::{Assembly, Hertzian, Hookean, OnSite, PairLaw, PowerLaw};
+use jamscope::forces::Assembly;
+use jamscope::forces::damped::damped_forces;
+use jamscope::law::damping::{ConstantDamping, DampingLaw};
+use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw, PowerLaw};
 use jamscope::packing::Packing;
 use jamscope::processor::{Processor, Vectors};
 use jamscope::relax::{DampedDynamics, Fire, ForceLimit, NonlinearConjugateGradients, Precision, QuasiNewton, Relaxer};

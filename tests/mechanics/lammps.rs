@@ -5,11 +5,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use jamscope::contact::damped_forces::add_damping;
-use jamscope::contact::damping::{ConstantDamping, DampingChoice, DampingLaw};
-use jamscope::contact::{Assembly, ContactNetwork, Hertzian, Hookean, PairLaw};
+use jamscope::forces::Assembly;
+use jamscope::forces::damped::add_damping;
 use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
+use jamscope::law::damping::{ConstantDamping, DampingChoice, DampingLaw};
+use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::{DampedDynamics, Fire, ForceLimit, NetForce, Relaxer};
 use jamscope::vector::{Vector, difference, larger, norm};

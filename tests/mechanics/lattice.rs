@@ -3,13 +3,14 @@
 
 use std::f64::consts::PI;
 
-use jamscope::contact::{
-    Assembly, ContactNetwork, Hertzian, Hessian, Hookean, Members, OnSite, PairLaw, PowerLaw, Prestress,
-};
 use jamscope::displacement::DisplacementField;
+use jamscope::forces::Assembly;
 use jamscope::inflation::Circle;
 use jamscope::lattice::{Lattice, LatticeError};
+use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw, PowerLaw};
 use jamscope::linear::LinearResponse;
+use jamscope::linear::{Hessian, Members, Prestress};
+use jamscope::network::ContactNetwork;
 use jamscope::observe::RadialProfile;
 use jamscope::packing::Packing;
 use jamscope::reference::angular_modes::AngularSolution;

@@ -5,9 +5,10 @@ use std::f64::consts::PI;
 use crate::scenes::published::{BALLS, DISKS, HARMONIC, published};
 use crate::scenes::random_disks::{disks, periodic};
 use faer::{Mat, Side};
-use jamscope::contact::{Hertzian, Hessian, Hookean, Members, OnSite, PairLaw, Prestress};
 use jamscope::io::read_packing;
 use jamscope::lattice::Lattice;
+use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw};
+use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::linear::{LinearError, VibrationalModes};
 use jamscope::packing::{Domain, Packing};
 

@@ -2,10 +2,12 @@
 
 use crate::scenes::published::{BALLS, DISKS, HARMONIC, published};
 use crate::scenes::random_disks::{disks, periodic};
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean, OnSite, PairLaw, PowerLaw, Prestress};
 use jamscope::lattice::Lattice;
+use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw, PowerLaw};
+use jamscope::linear::Prestress;
 use jamscope::linear::moduli::Tensor;
 use jamscope::linear::{ElasticModuli, LinearError};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare};
 use jamscope::relax::{Fire, ForceLimit, Relaxer};

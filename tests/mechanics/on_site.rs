@@ -1,9 +1,11 @@
 //! The on-site term: closed forms of one disk, sites across new anchors, energies of either sign, and disks that run away.
 
-use jamscope::contact::damping::{ConstantDamping, DampingChoice};
-use jamscope::contact::{Assembly, ContactNetwork, Hertzian, Hookean, OnSite, PairLaw};
 use jamscope::displacement::DisplacementField;
+use jamscope::forces::Assembly;
 use jamscope::inflation::{Boundary, Inflation, InflationError, Stage, inflate};
+use jamscope::law::damping::{ConstantDamping, DampingChoice};
+use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare, random_points};
 use jamscope::relax::{Criterion, DampedDynamics, Fire, ForceLimit, Look, Outcome, Relaxer, Stop};

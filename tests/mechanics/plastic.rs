@@ -1,11 +1,13 @@
 //! Linear responses to forces and moved disks, the changes of contacts and pressure that go with them, and the plastic part.
 
-use jamscope::contact::{ContactNetwork, Hertzian, Hessian, Hookean, Members, PairLaw, Prestress};
 use jamscope::inflation::{Boundary, Centre, Circle, Inflated, Inflation, inflate};
 use jamscope::io::read_packing;
 use jamscope::lattice::Lattice;
+use jamscope::law::{Hertzian, Hookean, PairLaw};
 use jamscope::linear::contact_changes::pressure_change;
+use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::linear::{LinearError, LinearResponse};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Packing, ball_volume};
 use jamscope::plastic::{LinearRangeSearch, PlasticPart, linear_range};
 use jamscope::relax::{Fire, ForceLimit, Relaxed, Relaxer};

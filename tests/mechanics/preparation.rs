@@ -2,9 +2,10 @@
 
 use std::cell::RefCell;
 
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw};
 use jamscope::displacement::DisplacementField;
 use jamscope::inflation::{Boundary, Inflation, inflate};
+use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Component, Mixture, Packing, PackingError};
 use jamscope::preparation::{Preparation, PreparationError, Prepared, Target, prepare, random_points};
 use jamscope::relax::{Criterion, Fire, ForceLimit, Outcome, Relaxer, Stop, Trace};

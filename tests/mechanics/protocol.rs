@@ -1,10 +1,11 @@
 //! Several relaxers from one start: one minimum where there is but one, two where inertia throws a disk through a gap, and what
 //! a scene and its report make of it.
 
-use jamscope::contact::damping::{ConstantDamping, DampingChoice};
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean};
 use jamscope::inflation::{Boundary, Inflation, inflate};
 use jamscope::io::read_packing;
+use jamscope::law::damping::{ConstantDamping, DampingChoice};
+use jamscope::law::{Hertzian, Hookean};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::protocol::{Compared, Protocol, ProtocolSettings, ProtocolSummary, Spread, chosen};
 use jamscope::relax::{

@@ -1,7 +1,9 @@
 //! Relaxers: closed forms, energies on the way, agreement with each other, outcomes, units, and work.
 
-use jamscope::contact::damping::{ConstantDamping, DampingChoice};
-use jamscope::contact::{Assembly, ContactNetwork, Hertzian, Hookean, PairLaw};
+use jamscope::forces::Assembly;
+use jamscope::law::damping::{ConstantDamping, DampingChoice};
+use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::random_points;
 use jamscope::relax::{

@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
-use jamscope::contact::damped_forces::add_damping;
-use jamscope::contact::damping::{ConstantDamping, DampingLaw};
-use jamscope::contact::hessian::{Hessian, Members, Prestress};
-use jamscope::contact::{ContactNetwork, Hertzian, PairLaw};
+use jamscope::forces::damped::add_damping;
 use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
+use jamscope::law::damping::{ConstantDamping, DampingLaw};
+use jamscope::law::{Hertzian, PairLaw};
+use jamscope::linear::hessian::{Hessian, Members, Prestress};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use jamscope::relax::implicit::{ImplicitMotion, Inertia, Stepped};
 use jamscope::relax::{ForceLimit, Motion, Newton, Relaxer};

@@ -4,9 +4,9 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use jamscope::analysis::{Analysis, AnalysisError, Pair, PairSettings};
-use jamscope::contact::LawChoice;
 use jamscope::inflation::Boundary;
 use jamscope::io::read_packing;
+use jamscope::law::LawChoice;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::RelaxerChoice;
 use jamscope::report::write;

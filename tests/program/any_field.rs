@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use jamscope::contact::{Hertzian, LawChoice, PowerLaw};
+use jamscope::law::{Hertzian, LawChoice, PowerLaw};
 use jamscope::observe::angular::{CorrelationEstimator, FrequencyLimit, SpectrumEstimator};
 use jamscope::observe::isostatic::{IsostaticRule, Normalisation};
 use jamscope::relax::{DampedDynamics, Fire, NonlinearConjugateGradients, QuasiNewton, RelaxerChoice, TimeStep};

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use jamscope::contact::{Hertzian, Hookean, LawChoice};
 use jamscope::inflation::Boundary;
+use jamscope::law::{Hertzian, Hookean, LawChoice};
 use jamscope::processor::Processor;
 use jamscope::relax::{Fire, RelaxerChoice};
 use jamscope::run::{SampleOutcome, run};

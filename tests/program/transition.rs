@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use jamscope::contact::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
-use jamscope::contact::{Hertzian, LawChoice};
 use jamscope::fit::ensemble::DivergenceOutcome;
 use jamscope::inflation::Boundary;
+use jamscope::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
+use jamscope::law::{Hertzian, LawChoice};
 use jamscope::observe::angular::synthetic::{SyntheticSettings, gaussian_rings};
 use jamscope::observe::angular::{PowerSpectrum, SpectrumSettings};
 use jamscope::relax::{DampedDynamics, NetForce, RelaxerChoice};

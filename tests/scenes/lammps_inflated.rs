@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::path::PathBuf;
 
-use jamscope::contact::ContactNetwork;
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::vector::{Vector, difference, larger, norm};
 

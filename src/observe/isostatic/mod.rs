@@ -18,8 +18,8 @@ use serde::{Deserialize, Serialize};
 
 pub use settings::{IsostaticError, IsostaticRule, IsostaticSettings, Normalisation, Scale, Tail};
 
-use crate::contact::PairLaw;
 use crate::inflation::Inflated;
+use crate::law::pair_law::PairLaw;
 use crate::observe::ExcessCoordination;
 use crate::observe::bond_changes::BondChanges;
 use crate::observe::fluctuations::{FluctuationRing, Fluctuations};

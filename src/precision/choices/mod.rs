@@ -12,9 +12,9 @@ mod trajectory;
 
 use serde::Serialize;
 
-use crate::contact::PairLaw;
-use crate::contact::damping::DampingChoice;
 use crate::inflation::Grown;
+use crate::law::damping::DampingChoice;
+use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::precision::state::State;
 use crate::scene::Observables;

@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use crate::contact::PairLaw;
-use crate::contact::assembly::{Assembly, SKIN};
-use crate::contact::damping::DampingLaw;
+use crate::forces::assembly::{Assembly, SKIN};
 use crate::inflation::{Grown, displacement};
+use crate::law::damping::DampingLaw;
+use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::precision::choices::{ChoiceRow, ChoiceTable};
 use crate::relax::Motion;

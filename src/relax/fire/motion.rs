@@ -1,9 +1,9 @@
 //! Velocities and steps of FIRE, in double precision or, while disks are far from rest, in single.
 
-use crate::contact::PairLaw;
-use crate::contact::advance::Advanced;
-use crate::contact::assembly::Assembly;
-use crate::contact::single::{Single, Units};
+use crate::forces::advance::Advanced;
+use crate::forces::assembly::Assembly;
+use crate::forces::single::{Single, Units};
+use crate::law::pair_law::PairLaw;
 use crate::relax::flat::{Products, combine, kick_and_drift, products};
 use crate::simd::lanes::Summed;
 use crate::simd::real::Real;

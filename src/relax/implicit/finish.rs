@@ -5,8 +5,8 @@
 //! it than a tenth of an overlap. Otherwise the motion goes on until its kinetic energy has fallen to a quarter, and the minimum is
 //! taken if Newton's method leads to it again. Rattlers fly on for ever; their energy does not count.
 
-use crate::contact::PairLaw;
-use crate::contact::damping::DampingLaw;
+use crate::law::damping::DampingLaw;
+use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::implicit::motion::ImplicitMotion;
 use crate::relax::monitor::Monitor;

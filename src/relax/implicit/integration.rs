@@ -2,11 +2,11 @@
 
 use std::time::Instant;
 
-use crate::contact::PairLaw;
-use crate::contact::assembly::Assembly;
-use crate::contact::damping::DampingLaw;
-use crate::contact::totals::Totals;
-use crate::contact::walk::walk;
+use crate::forces::assembly::Assembly;
+use crate::forces::totals::Totals;
+use crate::law::damping::DampingLaw;
+use crate::law::pair_law::PairLaw;
+use crate::neighbours::for_each_pair::walk;
 use crate::packing::{Packing, PackingError};
 use crate::relax::energy_balance::{Energies, EnergyBalance};
 use crate::relax::implicit::Finish;

@@ -8,13 +8,13 @@
 //! times its way in the last step that was not taken back. Where the mass term dominates, the diagonal and an incomplete factor are
 //! enough, and conjugate gradients need a few products; elsewhere a Cholesky factor serves all stages.
 
-use crate::contact::PairLaw;
-use crate::contact::assembly::Assembly;
-use crate::contact::damping::DampingLaw;
-use crate::contact::hessian::{Hessian, Members, Prestress};
-use crate::contact::walk::{Walked, walk};
+use crate::forces::assembly::Assembly;
+use crate::law::damping::DampingLaw;
+use crate::law::pair_law::PairLaw;
+use crate::linear::hessian::{Hessian, Members, Prestress};
 use crate::linear::iterative::{IncompleteFactor, IterationLimits, conjugate_gradients};
 use crate::linear::{Analysis, Factorisation, LinearError};
+use crate::neighbours::for_each_pair::{Walked, walk};
 use crate::relax::implicit::motion::{Inertia, Work};
 use crate::sparse::SymmetricMatrix;
 use crate::vector::{Vector, larger, norm, scaled};

@@ -24,8 +24,8 @@ pub mod tableau;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::PairLaw;
-use crate::contact::damping::{ConstantDamping, ContactDamping, DampingChoice};
+use crate::law::damping::{ConstantDamping, ContactDamping, DampingChoice};
+use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::relax::implicit::integration::Integration;
 use crate::relax::{ForceLimit, NetForce, Outcome, Relaxer, Trace};

@@ -5,7 +5,7 @@
 //! (m/(hγ)² + (ζ + C)/(hγ) + K) U_i = r_v + (m/(hγ) + ζ + C) r_u        r_u, r_v the right sides of the stage
 //! ```
 //!
-//! C is the matrix of the contact damping, K the [`Hessian`](crate::contact::Hessian); m = 1, ζ = 0 for damped dynamics, m = 0, C = 0 for gradient
+//! C is the matrix of the contact damping, K the [`Hessian`](crate::linear::hessian::Hessian); m = 1, ζ = 0 for damped dynamics, m = 0, C = 0 for gradient
 //! flow, which then has no velocities. The matrix is symmetric, and one factorisation serves all stages. What it leaves out
 //! (how C turns and grows with u) and what it holds beside (contacts that may close during the step) costs no order: see
 //! [`super::tableau`]. It is positive definite but for the prestress in K, which is left out where it would not be.
@@ -16,11 +16,11 @@ mod refined;
 mod rosenbrock;
 mod stabilised;
 
-use crate::contact::PairLaw;
-use crate::contact::assembly::Assembly;
-use crate::contact::damped_forces::add_damping;
-use crate::contact::damping::DampingLaw;
-use crate::contact::totals::Totals;
+use crate::forces::assembly::Assembly;
+use crate::forces::damped::add_damping;
+use crate::forces::totals::Totals;
+use crate::law::damping::DampingLaw;
+use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::relax::flat::products;
 use crate::relax::implicit::matrix::StepMatrix;

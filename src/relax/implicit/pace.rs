@@ -13,8 +13,8 @@
 //! that is the stabilised one, or the explicit one where oscillations are hardly damped. After a stretch of explicit steps an
 //! implicit one of 2 E h_x/V is tried; where it fails at once, the next stretch is twice as long.
 
-use crate::contact::PairLaw;
-use crate::contact::damping::DampingLaw;
+use crate::law::damping::DampingLaw;
+use crate::law::pair_law::PairLaw;
 use crate::relax::explicit_step::ExplicitStep;
 use crate::relax::implicit::chebyshev::Stiffness;
 use crate::relax::implicit::motion::ImplicitMotion;

@@ -1,8 +1,8 @@
 //! Stretches of explicit steps, each of about the work of an implicit one.
 
-use crate::contact::PairLaw;
-use crate::contact::damping::DampingLaw;
-use crate::contact::totals::Totals;
+use crate::forces::totals::Totals;
+use crate::law::damping::DampingLaw;
+use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::energy_balance::{Energies, EnergyBalance};
 use crate::relax::implicit::growth::{LARGEST_GROWTH, SMALLEST_GROWTH, growth};

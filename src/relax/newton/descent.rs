@@ -1,9 +1,9 @@
 //! Steps of Newton's method on an assembly: a direction from the shifted Hessian, a point along it that is low enough, and what
 //! that says of the shift.
 
-use crate::contact::PairLaw;
-use crate::contact::assembly::Assembly;
-use crate::contact::totals::Totals;
+use crate::forces::assembly::Assembly;
+use crate::forces::totals::Totals;
+use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::line_search::acceptance;
 use crate::relax::monitor::Monitor;

@@ -1,6 +1,7 @@
 //! Few disks whose rest is known in closed form.
 
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw, PowerLaw};
+use jamscope::law::{Hertzian, Hookean, PairLaw, PowerLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::{Cost, RelaxerChoice};
 use jamscope::vector::{norm, sum};

@@ -1,6 +1,6 @@
 //! Units do not matter.
 
-use jamscope::contact::{Hertzian, Hookean, PairLaw};
+use jamscope::law::{Hertzian, Hookean, PairLaw};
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::{Cost, Criterion, RelaxerChoice, Stop};
 use jamscope::vector::{Vector, scaled};

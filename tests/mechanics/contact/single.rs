@@ -1,7 +1,8 @@
 //! The loop in single precision against the one in double.
 
-use jamscope::contact::single::Single;
-use jamscope::contact::{Assembly, Hertzian, Hookean, PairLaw, PowerLaw};
+use jamscope::forces::Assembly;
+use jamscope::forces::single::Single;
+use jamscope::law::{Hertzian, Hookean, PairLaw, PowerLaw};
 use jamscope::packing::{Domain, Packing};
 use jamscope::vector::{difference, norm};
 
@@ -51,7 +52,7 @@ fn pulls<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, disk: usize) -> 
     let (law, pairs) = (assembly.law(), assembly.pairs());
     let with = pairs.numbers().filter(|&k| pairs.first[k] as usize == disk || pairs.second[k] as usize == disk);
     with.map(|k| {
-        let (_, _, overlap) = jamscope::contact::forces::geometry(pairs, k, &assembly.displacements);
+        let (_, _, overlap) = jamscope::forces::elastic::geometry(pairs, k, &assembly.displacements);
         law.force(pairs.coefficient(k), overlap.max(0.0))
     })
     .sum()

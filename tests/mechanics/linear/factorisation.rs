@@ -1,10 +1,11 @@
 //! Factorisations and conjugate gradients against dense algebra, in every order of elimination, and what they refuse.
 
-use jamscope::contact::{Hertzian, Hessian, Hookean, Members, OnSite, Prestress};
 use jamscope::lattice::Lattice;
+use jamscope::law::{Hertzian, Hookean, OnSite};
 use jamscope::linear::iterative::{IncompleteFactor, IterationLimits, conjugate_gradients};
 use jamscope::linear::ordering::{minimum_degree, nested_dissection};
 use jamscope::linear::{Analysis, LinearError, LinearResponse};
+use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare, random_points};
 use jamscope::vector::larger;

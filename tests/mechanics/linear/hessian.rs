@@ -1,8 +1,9 @@
 //! The Hessian against closed forms, differences of forces, and one made anew.
 
-use jamscope::contact::{
-    Assembly, ContactNetwork, Hertzian, Hessian, Hookean, Members, OnSite, PairLaw, PowerLaw, Prestress,
-};
+use jamscope::forces::Assembly;
+use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw, PowerLaw};
+use jamscope::linear::{Hessian, Members, Prestress};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::preparation::random_points;
 use jamscope::vector::{Vector, difference, larger};

@@ -1,10 +1,12 @@
 //! The linear response as the limit of relaxations.
 
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean, OnSite, PairLaw, PowerLaw, Prestress};
 use jamscope::displacement::{DisplacementField, MeasuredOn};
 use jamscope::inflation::{Boundary, Centre, Circle, Inflation, inflate};
 use jamscope::lattice::Lattice;
+use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw, PowerLaw};
+use jamscope::linear::Prestress;
 use jamscope::linear::{LinearError, LinearResponse};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use jamscope::preparation::random_points;
 use jamscope::relax::Relaxer;

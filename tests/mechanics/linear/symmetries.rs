@@ -3,7 +3,8 @@
 //!
 //! Random cases come from proptest with a fixed seed, so every run sees the same ones; a failure prints its case.
 
-use jamscope::contact::{Hertzian, Hessian, Hookean, Members, OnSite, PairLaw, PowerLaw, Prestress};
+use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw, PowerLaw};
+use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::packing::{Domain, Packing};
 use jamscope::sparse::SymmetricMatrix;
 use jamscope::vector::{Vector, larger};

@@ -1,6 +1,7 @@
 //! One minimum, however it is reached: other relaxers, other places, other names, other units.
 
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw};
+use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::relax::{Fire, ForceLimit};
 
 use super::all;

@@ -1,6 +1,7 @@
 //! Few disks, and rows of springs, whose rest is known in closed form.
 
-use jamscope::contact::{Assembly, Hookean, OnSite};
+use jamscope::forces::Assembly;
+use jamscope::law::{Hookean, OnSite};
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::{ForceLimit, NonlinearConjugateGradients, QuasiNewton, RelaxerChoice, Stop};
 use rand::{RngExt, SeedableRng};

@@ -1,6 +1,6 @@
 //! The way down: the energy only falls, no step is too long.
 
-use jamscope::contact::{Hertzian, Hookean, PairLaw};
+use jamscope::law::{Hertzian, Hookean, PairLaw};
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::{Fire, ForceLimit, Look, NonlinearConjugateGradients, QuasiNewton, Relaxer, RelaxerChoice, Stop};
 use jamscope::vector::norm;

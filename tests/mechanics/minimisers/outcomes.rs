@@ -1,6 +1,6 @@
 //! The rounding floor, named ends, and the settings in a scene.
 
-use jamscope::contact::{Hertzian, Hookean};
+use jamscope::law::{Hertzian, Hookean};
 use jamscope::packing::{Domain, Packing, PackingError};
 use jamscope::relax::{
     Criterion, Fire, ForceLimit, NonlinearConjugateGradients, QuasiNewton, RelaxerChoice, StepBack, Stop, Uphill,

@@ -1,6 +1,6 @@
 //! Steps of FIRE in single precision: the state it leaves, and how far it goes.
 
-use jamscope::contact::{Hertzian, Hookean, OnSite, PairLaw};
+use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw};
 use jamscope::packing::Packing;
 use jamscope::relax::{Criterion, Fire, ForceLimit, Outcome, Precision, Stop};
 

@@ -1,6 +1,6 @@
 //! The work of fixed scenes.
 
-use jamscope::contact::Hertzian;
+use jamscope::law::Hertzian;
 use jamscope::relax::{Criterion, RelaxerChoice, Stop};
 
 use super::all;

@@ -2,7 +2,8 @@
 //!
 //! Random cases come from proptest with a fixed seed, so every run sees the same ones; a failure prints its case.
 
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean, OnSite, PairLaw};
+use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::relax::{DampedDynamics, ForceLimit, RelaxerChoice};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

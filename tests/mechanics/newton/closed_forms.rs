@@ -1,6 +1,8 @@
 //! Few disks whose rest is known in closed form, with Newton's method and the staged relaxer.
 
-use jamscope::contact::{Assembly, ContactNetwork, Hertzian, Hookean, OnSite};
+use jamscope::forces::Assembly;
+use jamscope::law::{Hertzian, Hookean, OnSite};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::{RelaxerChoice, Stop};
 use jamscope::vector::norm;

@@ -1,6 +1,7 @@
 //! How deep the relaxers get, and with how many factorisations.
 
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw, PowerLaw};
+use jamscope::law::{Hertzian, Hookean, PairLaw, PowerLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::relax::{Criterion, Stop};
 use jamscope::vector::{larger, norm};
 

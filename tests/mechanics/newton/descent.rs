@@ -2,7 +2,8 @@
 //!
 //! Random cases come from proptest with a fixed seed, so every run sees the same ones; a failure prints its case.
 
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw};
+use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use jamscope::relax::{Look, Newton, Relaxer, RelaxerChoice, Stop};
 use jamscope::vector::{Vector, difference, dot, larger, norm, scaled, sum};

@@ -7,8 +7,10 @@ mod depth;
 mod descent;
 mod outcomes;
 
-use jamscope::contact::{ContactNetwork, Hessian, Members, PairLaw, Prestress};
+use jamscope::law::PairLaw;
 use jamscope::linear::Analysis;
+use jamscope::linear::{Hessian, Members, Prestress};
+use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use jamscope::relax::{Fire, ForceLimit, Newton, Staged};
 use rand::{RngExt, SeedableRng};

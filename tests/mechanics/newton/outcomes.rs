@@ -1,6 +1,6 @@
 //! Named ends other than rest at the limit asked for, and the settings in a scene.
 
-use jamscope::contact::{Hertzian, Hookean};
+use jamscope::law::{Hertzian, Hookean};
 use jamscope::relax::{Criterion, ForceLimit, Newton, RelaxerChoice, Staged, Stop};
 use jamscope::scene::Scene;
 

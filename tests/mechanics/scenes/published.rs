@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use jamscope::contact::PowerLaw;
+use jamscope::law::PowerLaw;
 use jamscope::packing::{Domain, Packing};
 use jamscope::vector::{Vector, two_product};
 use serde_json::Value;

@@ -1,6 +1,7 @@
 //! States at rest, and how far they are from each other.
 
-use jamscope::contact::{ContactNetwork, PairLaw};
+use jamscope::law::PairLaw;
+use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use jamscope::relax::{Outcome, Relaxer};
 use jamscope::vector::{Vector, larger, norm};

@@ -1,8 +1,9 @@
 //! Packings that relaxers start from.
 
-use jamscope::contact::{ContactNetwork, Hertzian};
 use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
+use jamscope::law::Hertzian;
+use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::random_points;
 use jamscope::vector::{Vector, sum};

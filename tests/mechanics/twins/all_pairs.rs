@@ -1,6 +1,6 @@
 //! The slow twin of cell grid, neighbour list and hot loop: every pair, every image, plain arithmetic.
 
-use jamscope::contact::PairLaw;
+use jamscope::law::PairLaw;
 use jamscope::packing::{Domain, Packing};
 use jamscope::vector::{Vector, norm};
 

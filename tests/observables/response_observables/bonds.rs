@@ -1,6 +1,7 @@
-use jamscope::contact::{ContactNetwork, Hertzian};
 use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
+use jamscope::law::Hertzian;
+use jamscope::network::ContactNetwork;
 use jamscope::observe::bond_changes::{BondChanges, BondSet};
 use jamscope::observe::fluctuations::{BondMeasure, Fluctuations};
 use jamscope::observe::{RadialProfile, State};
@@ -86,8 +87,8 @@ fn bonds_are_kept_contacts_unless_all_are_asked_for() {
 #[cfg(feature = "linear")]
 #[test]
 fn bonds_of_a_linear_response_are_those_of_its_contact_changes() {
-    use jamscope::contact::Prestress;
     use jamscope::linear::LinearResponse;
+    use jamscope::linear::Prestress;
     let (circle, law) = (circle(), Hertzian::default());
     let state = State::new(&circle.packing, &law).expect("sound disks");
     let response = LinearResponse::of_inflation(&circle.packing, circle.centre, &law, Prestress::Included)

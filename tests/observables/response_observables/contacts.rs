@@ -1,5 +1,6 @@
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean};
 use jamscope::inflation::{Inflation, inflate};
+use jamscope::law::{Hertzian, Hookean};
+use jamscope::network::ContactNetwork;
 use jamscope::observe::contact_changes::{ContactChanges, ContactCycle, RattlerContacts};
 use jamscope::observe::{PressureChange, State};
 use jamscope::packing::{Mixture, Packing};

@@ -1,5 +1,6 @@
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean};
 use jamscope::io::read_packing;
+use jamscope::law::{Hertzian, Hookean};
+use jamscope::network::ContactNetwork;
 use jamscope::observe::ExcessCoordination;
 
 use super::{lattice, lattice_positions};

@@ -1,7 +1,7 @@
-use jamscope::contact::Hertzian;
 use jamscope::displacement::{DisplacementField, Moved};
 use jamscope::inflation::{Inflation, inflate};
 use jamscope::io::read_packing;
+use jamscope::law::Hertzian;
 use jamscope::observe::State;
 use jamscope::observe::bond_changes::{BondChanges, BondSet};
 use jamscope::observe::contact_changes::{ChangedContact, ContactChanges};

@@ -1,6 +1,6 @@
-use jamscope::contact::Hertzian;
 use jamscope::inflation::{Inflation, inflate};
 use jamscope::io::read_packing;
+use jamscope::law::Hertzian;
 use jamscope::observe::bond_changes::BondSet;
 use jamscope::observe::fluctuations::{FluctuationRing, Fluctuations};
 use jamscope::observe::isostatic::{

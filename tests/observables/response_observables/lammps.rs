@@ -10,9 +10,10 @@
 
 use std::collections::BTreeSet;
 
-use jamscope::contact::{ContactNetwork, Hertzian, Hookean, PairLaw};
 use jamscope::displacement::DisplacementField;
 use jamscope::inflation::{Inflated, Rest};
+use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::observe::angular::{
     AngularCorrelation, CorrelationSettings, PowerSpectrum, RingSample, RingSettings, SpectrumSettings,
 };

@@ -6,7 +6,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use flate2::read::GzDecoder;
-use jamscope::contact::LawChoice;
+use jamscope::law::LawChoice;
 use jamscope::response::{Calibration, WordCounts};
 use jamscope::study::{CellSamples, Merged, NumberStatistics, Target, merge};
 use jamscope::transition::{Method, Series, Transition, TransitionPressure};

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use jamscope::certificate::Certificate;
-use jamscope::contact::{ContactNetwork, LawChoice, PairLaw};
 use jamscope::io::{read_packing, write_packing};
+use jamscope::law::{LawChoice, PairLaw};
+use jamscope::network::ContactNetwork;
 use jamscope::observe::ForceDistribution;
 use jamscope::packing::Packing;
 use jamscope::relax::{Fire, Outcome, Relaxer, RelaxerChoice, Stop};

@@ -1,8 +1,8 @@
 //! Stretches of explicit steps, by velocity Verlet.
 
-use crate::contact::PairLaw;
-use crate::contact::damping::DampingLaw;
-use crate::contact::totals::Totals;
+use crate::forces::totals::Totals;
+use crate::law::damping::DampingLaw;
+use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::damped::Motion;
 use crate::relax::energy_balance::Energies;

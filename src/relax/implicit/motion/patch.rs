@@ -4,10 +4,10 @@
 //! w(x) = w_1 (3x² − 2x³) + h v_0 (x − 2x² + x³) + h v_1 (x³ − x²)        0 ≤ x = t/h ≤ 1: way of a disk outside, h the step of all
 //! ```
 
-use crate::contact::PairLaw;
-use crate::contact::damped_forces::damped_forces;
-use crate::contact::damping::DampingLaw;
-use crate::contact::pair_list::PairList;
+use crate::forces::damped::damped_forces;
+use crate::law::damping::DampingLaw;
+use crate::law::pair_law::PairLaw;
+use crate::neighbours::pair_list::PairList;
 use crate::relax::implicit::chebyshev::Chebyshev;
 use crate::relax::implicit::growth::{LARGEST_GROWTH, growth};
 use crate::relax::implicit::motion::refined::Refine;

@@ -12,11 +12,11 @@
 //! Savcenco, Hundsdorfer, Verwer (2007), BIT Numer. Math. 47, 137: first one step for all, then shorter ones for the components
 //! whose error is too large, with the others interpolated.
 
-use crate::contact::PairLaw;
-use crate::contact::assembly::Assembly;
-use crate::contact::damping::DampingLaw;
-use crate::contact::forces::geometry;
-use crate::contact::pair_list::PairList;
+use crate::forces::assembly::Assembly;
+use crate::forces::elastic::geometry;
+use crate::law::damping::DampingLaw;
+use crate::law::pair_law::PairLaw;
+use crate::neighbours::pair_list::PairList;
 use crate::packing::PackingError;
 use crate::relax::implicit::chebyshev::{Chebyshev, Stiffness};
 use crate::relax::implicit::motion::ImplicitMotion;
@@ -340,9 +340,9 @@ fn total<const D: usize>(vectors: &[Vector<D>]) -> Vector<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::Hertzian;
-    use crate::contact::damping::ConstantDamping;
     use crate::io::read_packing;
+    use crate::law::damping::ConstantDamping;
+    use crate::law::pair_law::Hertzian;
     use crate::relax::implicit::Inertia;
 
     type Motion = ImplicitMotion<2, Hertzian, ConstantDamping>;

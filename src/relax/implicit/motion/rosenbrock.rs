@@ -1,8 +1,8 @@
 //! One step of the Rosenbrock method of [`super::super::tableau`]: matrix, four stages, error.
 
-use crate::contact::PairLaw;
-use crate::contact::damping::DampingLaw;
-use crate::contact::totals::Totals;
+use crate::forces::totals::Totals;
+use crate::law::damping::DampingLaw;
+use crate::law::pair_law::PairLaw;
 use crate::linear::LinearError;
 use crate::packing::PackingError;
 use crate::relax::implicit::matrix::{Ready, StepMatrix, StepTerms};

@@ -1,9 +1,9 @@
 //! One step of the stabilised explicit method of [`super::super::chebyshev`]: stages, error, and the bounds that set how many.
 
-use crate::contact::PairLaw;
-use crate::contact::damped_forces::damped_forces;
-use crate::contact::damping::DampingLaw;
-use crate::contact::walk::{Walked, walk};
+use crate::forces::damped::damped_forces;
+use crate::law::damping::DampingLaw;
+use crate::law::pair_law::PairLaw;
+use crate::neighbours::for_each_pair::{Walked, walk};
 use crate::packing::PackingError;
 use crate::processor;
 use crate::relax::implicit::chebyshev::{Chebyshev, StageTerms, Stiffness};
@@ -259,10 +259,10 @@ fn largest_eigenvalue<const D: usize>(matrix: &[Vector<D>; D]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::Hertzian;
-    use crate::contact::damped_forces::add_damping;
-    use crate::contact::damping::ConstantDamping;
+    use crate::forces::damped::add_damping;
     use crate::io::read_packing;
+    use crate::law::damping::ConstantDamping;
+    use crate::law::pair_law::Hertzian;
 
     fn stored() -> ImplicitMotion<2, Hertzian, ConstantDamping> {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz");

@@ -1,0 +1,173 @@
+//! A step and the forces after it, tile by tile and in a tile group by group of its pairs: what is moved is still in a cache when its forces are
+//! summed, and these are when the relaxer looks at them. On one thread the pairs across a border follow as soon as both sides have moved.
+//!
+//! Whether the list holds where the disks come to is known when they are there, so that no step need be short for it. Where it does not, all
+//! disks are moved, and nothing else is done.
+//!
+//! The bits of positions, velocities and forces are those of the same work done array by array.
+
+use std::iter::repeat_with;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::forces::elastic::{Across, Kernel, Task, add_incoming, sweep, sweep_border};
+use crate::neighbours::displacement_bounds::{Bound, PORTION, Ways, is_within};
+use crate::neighbours::pair_list::PairList;
+use crate::neighbours::tile_schedule::Stage;
+use crate::parallel;
+
+/// What moves, and what acts on it.
+pub(crate) struct Movers<'a, T, const D: usize> {
+    /// Velocities of the mobile disks \[length / time\].
+    pub velocities: &'a mut [[T; D]],
+    /// Displacements of all disks \[length\].
+    pub displacements: &'a mut [[T; D]],
+    /// Forces on all disks, before the step and then after it \[force\].
+    pub forces: &'a mut [[T; D]],
+}
+
+/// Forces, velocities and displacements of the same disks; of disks that do not move there are no velocities.
+type Moving<'a, T, const D: usize> = (&'a mut [[T; D]], &'a mut [[T; D]], &'a mut [[T; D]]);
+
+/// What became of a step tile by tile.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Advanced<P> {
+    /// Nothing: the law has sites, or the list is to be looked at after this step.
+    Not,
+    /// The disks are moved, and the list does not hold where they are.
+    Moved,
+    /// The disks are moved and their forces evaluated. What was seen of each part of them.
+    Evaluated(Vec<P>),
+}
+
+impl<P> Advanced<P> {
+    pub(crate) fn of(looked: Option<Vec<P>>) -> Self {
+        looked.map_or(Advanced::Moved, Advanced::Evaluated)
+    }
+}
+
+/// How far the list holds.
+pub(crate) struct Reach<'a, F> {
+    /// The way it holds for \[length\].
+    pub limit: f64,
+    /// What disks have gone of it.
+    pub ways: &'a mut Ways,
+    /// The longest way of disks from this one on since they were listed, from their displacements \[length\].
+    pub longest: F,
+}
+
+/// Moves all mobile disks and evaluates the forces where they then are. `kick` gets (forces, velocities, displacements) of some mobile disks
+/// and returns a bound on how far it moved them. What `look` (forces, velocities) returned for each part of the mobile disks, in a fixed
+/// order; none where the list does not hold for all: then forces are anything.
+///
+/// # Accuracy
+/// The bits of `kick` on whole arrays and the forces of the kernel after it.
+pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
+    kernel: &K,
+    pairs: &PairList<D>,
+    (movers, across): (Movers<'_, K::Number, D>, &mut Across<K::Number, D>),
+    reach: Reach<'_, impl Fn(usize, &[[K::Number; D]]) -> f64 + Sync>,
+    kick: impl Fn(&[[K::Number; D]], &mut [[K::Number; D]], &mut [[K::Number; D]]) -> f64 + Sync,
+    look: impl Fn(&[[K::Number; D]], &[[K::Number; D]]) -> P + Send + Sync,
+) -> Option<Vec<P>> {
+    let Movers { velocities, displacements, forces } = movers;
+    let Reach { limit, ways, longest } = reach;
+    let (tiles, size) = (pairs.tiles.as_slice(), pairs.tile_size);
+    let spent = AtomicBool::new(false);
+    let is_spent = || spent.load(Ordering::Relaxed);
+    let nothing = [K::Number::default(); D];
+    // Moves disks of a portion, from this one on.
+    let moves = |disk: usize, (forces, velocities, displacements): Moving<'_, _, D>, bound: &mut Bound| {
+        bound.step = kick(forces, velocities, displacements);
+        bound.way += bound.step;
+        if !is_within(bound.way, limit) {
+            bound.way = longest(disk, displacements);
+            if !is_within(bound.way, limit) {
+                spent.store(true, Ordering::Relaxed);
+            }
+        }
+        forces.fill(nothing);
+    };
+    let inside = |place: usize, (forces, velocities, displacements): Moving<'_, _, D>, bounds: &mut [Bound]| {
+        let (tile, mobile, first) = (&tiles[place], velocities.len(), place * size);
+        let interior = tile.interior.start.min(mobile)..tile.interior.end.min(mobile);
+        let (mut moved, mut swept, mut seen) = (0, tile.inner.start, interior.start);
+        let (mut room, mut looked) = (kernel.begin(), Vec::new());
+        forces[mobile..].fill(nothing);
+        for pass in tile.all_passes() {
+            while moved < pass.begun.min(mobile) {
+                let disks = moved..mobile.min(moved + PORTION);
+                moved = disks.end;
+                let bound = &mut bounds[disks.start / PORTION];
+                let begin = first + disks.start;
+                let of_disks = (&mut forces[disks.clone()], &mut velocities[disks.clone()], &mut displacements[disks]);
+                moves(begin, of_disks, bound);
+            }
+            if is_spent() {
+                continue;
+            }
+            let task = Task { kernel, pairs, displacements: (displacements, first as u32), tile, offset: first as u32 };
+            let end = tile.inner.start + pass.end;
+            sweep(&task, swept..end, forces, &mut room);
+            swept = end;
+            let done = pass.done.clamp(seen, interior.end);
+            looked.extend(tile.runs(seen..done).map(|run| look(&forces[run.clone()], &velocities[run])));
+            seen = done;
+        }
+        looked.extend(tile.amended_of(interior).map(|disk| look(&forces[disk..=disk], &velocities[disk..=disk])));
+        looked
+    };
+    let border = |place: usize, displacements: &[[_; D]], forces: &mut [[_; D]], across: &mut [[_; D]]| {
+        let (tile, offset) = (&tiles[place], (place * size) as u32);
+        let task = Task { kernel, pairs, displacements: (displacements, 0), tile, offset };
+        sweep_border(&task, forces, across, &mut kernel.begin());
+    };
+    let margins = |place: usize, across: &Across<_, D>, forces: &mut [[_; D]], velocities: &[[_; D]]| {
+        let (tile, mobile) = (&tiles[place], velocities.len());
+        add_incoming(tile, place * size, across, forces);
+        let (begin, end) = (tile.interior.start.min(mobile), tile.interior.end.min(mobile));
+        [look(&forces[..begin], &velocities[..begin]), look(&forces[end..mobile], &velocities[end..])]
+    };
+    across.fit(pairs);
+    let of_tile = ways.of_tile;
+    let (mut insides, mut marginals) = (Vec::with_capacity(tiles.len()), Vec::new());
+    if parallel::is_shared(tiles.len()) {
+        // Tiles of held disks have no velocities.
+        let moving =
+            velocities.chunks_mut(size).zip(ways.bounds.chunks_mut(of_tile)).chain(repeat_with(Default::default));
+        let arrays = displacements.chunks_mut(size).zip(forces.chunks_mut(size)).zip(moving);
+        insides = parallel::each(arrays.enumerate(), |(place, ((u, f), (v, bounds)))| inside(place, (f, v, u), bounds));
+        if is_spent() {
+            return None;
+        }
+        let displacements = &*displacements;
+        let arrays = forces.chunks_mut(size).zip(&mut across.0);
+        parallel::each(arrays.enumerate(), |(place, (f, across))| border(place, displacements, f, across));
+        let (across, velocities) = (&*across, &*velocities);
+        let arrays = forces.chunks_mut(size).zip(velocities.chunks(size).chain(repeat_with(Default::default)));
+        marginals = parallel::each(arrays.enumerate(), |(place, (f, v))| Some(margins(place, across, f, v)));
+    } else {
+        let (disk_count, mobile_count) = (displacements.len(), velocities.len());
+        marginals.resize_with(tiles.len(), || None);
+        for (stage, place) in pairs.turns.iter() {
+            let (begin, end) = (place * size, disk_count.min((place + 1) * size));
+            let moving = begin.min(mobile_count)..end.min(mobile_count);
+            let forces = &mut forces[begin..end];
+            match stage {
+                Stage::Inside => {
+                    let portions = ways.bounds.len().min(place * of_tile)..ways.bounds.len().min((place + 1) * of_tile);
+                    let disks = (forces, &mut velocities[moving], &mut displacements[begin..end]);
+                    insides.push(inside(place, disks, &mut ways.bounds[portions]));
+                }
+                _ if is_spent() => {}
+                Stage::Border => border(place, displacements, forces, &mut across.0[place]),
+                Stage::Margins => marginals[place] = Some(margins(place, across, forces, &velocities[moving])),
+            }
+        }
+    }
+    if is_spent() {
+        return None;
+    }
+    let mut looked: Vec<P> = insides.into_iter().flatten().collect();
+    looked.extend(marginals.into_iter().flatten().flatten());
+    Some(looked)
+}

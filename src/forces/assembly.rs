@@ -1,0 +1,451 @@
+//! [`Assembly`]: a packing laid out for the hot loop.
+//!
+//! Mobile disks come first, then the held ones, each part in spatial order, so that neighbours in space are neighbours
+//! in memory; the caller's numbering stays outside. A centre is an anchor plus a displacement; the displacement is all
+//! that a relaxer moves. Anchors are counted from a corner of the disks' own surroundings, so it does not matter how far
+//! from the origin a packing lies. When the neighbour list is made anew, anchors take over what the displacements have gathered
+//! (without rounding: the remainder stays in the displacement).
+
+mod incremental_update;
+mod list_keeping;
+
+use std::iter::repeat_with;
+use std::ops::RangeInclusive;
+
+use crate::forces::advance::{Advanced, Movers, Reach, advance};
+use crate::forces::assembly::list_keeping::LISTED;
+use crate::forces::elastic;
+use crate::forces::elastic::{Across, Plain};
+use crate::forces::stiffness_bound::{Weight, stiffness_rows};
+use crate::forces::totals::Totals;
+use crate::law::pair_law::PairLaw;
+use crate::neighbours::displacement_bounds::Ways;
+use crate::neighbours::fast_disks::Far;
+use crate::neighbours::pair_list::PairList;
+use crate::neighbours::pair_types::Classes;
+use crate::neighbours::verlet_list::{Disks, ListRoom, build_pairs, spatial_order};
+use crate::packing::{Domain, Packing, PackingError};
+use crate::parallel::{self, PIECE};
+use crate::vector::{Vector, dot, extended_sum, longest_difference_squared, sum, two_sum};
+
+/// Width of the skin over the smallest radius \[1\]. Changes speed only: a wider one makes lists last longer and adds pairs
+/// that do not touch. From 0.25 to 0.5 these are 7 in 100 pairs and 4 in 100 of the time of the loop, for half the lists and less.
+pub const SKIN: f64 = 0.5;
+
+/// The least for a long list that is amended, so that it need not last for the few disks that go far.
+const AMENDED_SKIN: f64 = 0.2;
+
+/// A packing under a contact law, in working order.
+#[derive(Debug, Clone)]
+pub struct Assembly<const D: usize, L> {
+    law: L,
+    /// The domain, moved by −`origin`.
+    domain: Domain<D>,
+    /// What anchors are counted from.
+    origin: Vector<D>,
+    /// Caller's index of each disk in working order.
+    order: Vec<u32>,
+    mobile_count: usize,
+    anchors: Vec<Vector<D>>,
+    /// Anchor minus site of each mobile disk, as unevaluated sums; empty for a law without sites.
+    from_sites: Vec<[(f64, f64); D]>,
+    radii: Vec<f64>,
+    /// Of a packing whose list is packed.
+    classes: Option<Classes>,
+    pairs: PairList<D>,
+    /// Near pairs, in place of `pairs` while there is a skin of theirs.
+    near_pairs: PairList<D>,
+    near_skin: Option<f64>,
+    /// Whether near pairs are ever picked.
+    prunes: bool,
+    /// Calls of [`Assembly::keep_listed`] since the list in use was made, and at how many the way of the disks is looked at.
+    age: usize,
+    look_at: usize,
+    /// Where the disks were at the last such look, and when that was.
+    seen: Vec<Vector<D>>,
+    seen_at: usize,
+    across: Across<f64, D>,
+    list_room: ListRoom<D>,
+    smallest_radius: f64,
+    /// Of the list of all pairs.
+    skin: f64,
+    /// The narrowest and the widest of that list.
+    skins: RangeInclusive<f64>,
+    /// Displacements when the list of all pairs was made, or when a disk was listed anew in it; the same for near pairs.
+    listed: Vec<Vector<D>>,
+    near_listed: Vec<Vector<D>>,
+    /// Those that are listed anew.
+    far: Far,
+    /// Displacements to come back to, if the relaxer set a checkpoint.
+    checkpoint: Vec<Vector<D>>,
+    /// How far disks may have moved since they were listed in the list in use.
+    ways: Ways,
+    /// How far each portion of them had gone in the list of all pairs when they were listed in near pairs; none unless these are in use.
+    ways_before: Vec<f64>,
+    /// Lists that were in use so far, and how often this one was amended.
+    listing_number: (usize, usize),
+    rebuild_count: usize,
+    /// Centre minus anchor of each disk; a relaxer moves the first [`Assembly::mobile_count`] of them \[length\].
+    pub displacements: Vec<Vector<D>>,
+    /// Forces of the last evaluation, all disks \[force\].
+    pub forces: Vec<Vector<D>>,
+}
+
+impl<const D: usize, L: PairLaw> Assembly<D, L> {
+    /// Lays out a packing and makes its neighbour list.
+    ///
+    /// # Errors
+    /// A box too small for one image a pair, or two disks with the same centre (named by the caller's indices).
+    pub fn new(packing: &Packing<D>, law: L) -> Result<Self, PackingError> {
+        Self::with_skin(packing, law, SKIN)
+    }
+
+    /// As [`Assembly::new`] for who has lists pruned and amended ([`Assembly::prune_lists`]): those of a large packing have a narrower skin,
+    /// unless all disks move.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_amended_lists(packing: &Packing<D>, law: L) -> Result<Self, PackingError> {
+        let narrowest = if PairList::<D>::are_long(packing.len()) { AMENDED_SKIN } else { SKIN };
+        Self::with_skins(packing, law, narrowest..=SKIN)
+    }
+
+    /// As [`Assembly::new`] with another width of the skin, over the smallest radius \[1\].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_skin(packing: &Packing<D>, law: L, skin: f64) -> Result<Self, PackingError> {
+        Self::with_skins(packing, law, skin..=skin)
+    }
+
+    fn with_skins(packing: &Packing<D>, law: L, skins: RangeInclusive<f64>) -> Result<Self, PackingError> {
+        let order = spatial_order(packing.domain(), packing.positions(), packing.radii(), packing.held());
+        let pick = |column: &[Vector<D>]| order.iter().map(|&disk| column[disk as usize]).collect::<Vec<_>>();
+        let radii: Vec<f64> = order.iter().map(|&disk| packing.radii()[disk as usize]).collect();
+        let smallest_radius = radii.iter().copied().fold(f64::INFINITY, f64::min);
+        let largest = radii.iter().copied().fold(0.0, f64::max);
+        // The list takes one image a pair, so its range stays below half the shortest side.
+        let shortest = packing.domain().lengths().map(|lengths| lengths.iter().copied().fold(f64::INFINITY, f64::min));
+        let most = shortest.map_or(f64::INFINITY, |shortest| (0.5 * shortest - 2.0 * largest).max(0.0));
+        let [narrowest, widest] = [skins.start(), skins.end()].map(|skin| most.min(skin * smallest_radius));
+        let (origin, domain) = origin_and_domain(packing);
+        let (mut anchors, mut displacements) = (pick(packing.positions()), pick(packing.corrections()));
+        for (anchor, displacement) in anchors.iter_mut().zip(&mut displacements) {
+            for d in 0..D {
+                let (high, low) = two_sum(anchor[d], -origin[d]);
+                (anchor[d], displacement[d]) = (high, low + displacement[d]);
+            }
+        }
+        let mut assembly = Assembly {
+            law,
+            domain,
+            origin,
+            mobile_count: packing.held().iter().filter(|&&held| !held).count(),
+            anchors,
+            displacements,
+            forces: vec![[0.0; D]; packing.len()],
+            listed: Vec::new(),
+            near_listed: Vec::new(),
+            far: Far::default(),
+            checkpoint: Vec::new(),
+            ways: Ways::default(),
+            ways_before: Vec::new(),
+            listing_number: (0, 0),
+            rebuild_count: 0,
+            from_sites: Vec::new(),
+            pairs: PairList::default(),
+            near_pairs: PairList::default(),
+            near_skin: None,
+            prunes: false,
+            age: 0,
+            look_at: 0,
+            seen: Vec::new(),
+            seen_at: 0,
+            across: Across::default(),
+            list_room: ListRoom::default(),
+            classes: PairList::<D>::are_long(radii.len()).then(|| Classes::of(&radii, &law)).flatten(),
+            radii,
+            smallest_radius,
+            skin: narrowest,
+            skins: narrowest..=widest,
+            order,
+        };
+        if law.has_sites() {
+            // An anchor is the position less the origin, rounded; the displacement has the rest.
+            let from_site = |&disk: &u32| {
+                let position = packing.positions()[disk as usize];
+                let way = packing.way_from_site(disk as usize, position);
+                std::array::from_fn(|d| extended_sum(way[d], -two_sum(position[d], -origin[d]).1))
+            };
+            assembly.from_sites = assembly.order[..assembly.mobile_count].iter().map(from_site).collect();
+        }
+        assembly.rebuild()?;
+        Ok(assembly)
+    }
+
+    /// The packing given, with its disks where the relaxer left them.
+    ///
+    /// # Panics
+    /// If `packing` is not the one the assembly was made from.
+    pub fn placed(&self, mut packing: Packing<D>) -> Packing<D> {
+        assert_eq!(packing.len(), self.order.len(), "an assembly belongs to the packing it was made from");
+        if self.law.has_sites() && packing.sites().is_none() {
+            packing = packing.with_sites_here();
+        }
+        for (index, &disk) in self.order.iter().enumerate().take(self.mobile_count) {
+            let (anchor, displacement) = (self.anchors[index], self.displacements[index]);
+            let sums: Vector<D> = std::array::from_fn(|d| anchor[d] + self.origin[d]);
+            let rest = std::array::from_fn(|d| two_sum(anchor[d], self.origin[d]).1 + displacement[d]);
+            packing.place(disk as usize, sums, rest);
+        }
+        packing
+    }
+
+    /// Number of disks.
+    pub fn len(&self) -> usize {
+        self.order.len()
+    }
+
+    /// Never true: a packing has at least one disk.
+    pub fn is_empty(&self) -> bool {
+        self.order.is_empty()
+    }
+
+    /// Number of mobile disks; they are the first.
+    pub fn mobile_count(&self) -> usize {
+        self.mobile_count
+    }
+
+    /// Caller's index of each disk in working order.
+    pub fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// Radii in working order \[length\].
+    pub fn radii(&self) -> &[f64] {
+        &self.radii
+    }
+
+    /// Where a disk is, rounded, from an origin of the assembly's own \[length\].
+    pub fn place(&self, index: usize) -> Vector<D> {
+        sum(self.anchors[index], self.displacements[index])
+    }
+
+    /// The contact law.
+    pub fn law(&self) -> &L {
+        &self.law
+    }
+
+    /// The neighbour list in use: every pair that may touch before the list is changed.
+    pub fn pairs(&self) -> &PairList<D> {
+        in_use(self.near_skin, &self.near_pairs, &self.pairs)
+    }
+
+    /// How often the list of all pairs was made, the first time included.
+    pub fn rebuild_count(&self) -> usize {
+        self.rebuild_count
+    }
+
+    /// Forces of the present displacements into [`Assembly::forces`].
+    pub fn evaluate(&mut self) {
+        let pairs = in_use(self.near_skin, &self.near_pairs, &self.pairs);
+        elastic::forces(&self.law, pairs, &self.displacements, &mut self.across, &mut self.forces);
+        if self.law.has_sites() {
+            let _ = self.add_on_site_forces();
+        }
+    }
+
+    /// Moves the mobile disks, evaluates the forces where they then are and looks at them, tile by tile; [`Assembly::keep`] is to be called
+    /// afterwards. Where the list does not hold for where the disks come to they are moved all the same, and that is all.
+    ///
+    /// # Shape
+    /// `velocities` has one entry a mobile disk. `kick` gets (forces, velocities, displacements) of some mobile disks and returns a bound on how
+    /// far it moved any \[length\], `look` gets (forces, velocities); every mobile disk comes once.
+    pub fn advance<P: Send>(
+        &mut self,
+        velocities: &mut [Vector<D>],
+        kick: impl Fn(&[Vector<D>], &mut [Vector<D>], &mut [Vector<D>]) -> f64 + Sync,
+        look: impl Fn(&[Vector<D>], &[Vector<D>]) -> P + Send + Sync,
+    ) -> Advanced<P> {
+        if !self.may_advance() {
+            return Advanced::Not;
+        }
+        let limit = LISTED * self.skin();
+        let (pairs, listed) = match self.near_skin {
+            Some(_) => (&self.near_pairs, &self.near_listed),
+            None => (&self.pairs, &self.listed),
+        };
+        let movers = Movers { velocities, displacements: &mut self.displacements, forces: &mut self.forces };
+        let longest = |first: usize, displacements: &[Vector<D>]| {
+            longest_difference_squared(displacements, &listed[first..first + displacements.len()]).sqrt()
+        };
+        let reach = Reach { limit, ways: &mut self.ways, longest };
+        Advanced::of(advance(&Plain { law: &self.law, pairs }, pairs, (movers, &mut self.across), reach, kick, look))
+    }
+
+    /// Forces as by [`Assembly::evaluate`], with energy, virial and contact count.
+    pub fn evaluate_totals(&mut self) -> Totals<D> {
+        let pairs = in_use(self.near_skin, &self.near_pairs, &self.pairs);
+        let mut totals =
+            elastic::forces_and_totals(&self.law, pairs, &self.displacements, &mut self.across, &mut self.forces);
+        if self.law.has_sites() {
+            totals.on_site_energy = self.add_on_site_forces();
+            totals.energy += totals.on_site_energy;
+        }
+        totals
+    }
+
+    /// Adds Γ u to the forces on mobile disks; their energy −(Γ/2) Σ u² is returned.
+    fn add_on_site_forces(&mut self) -> f64 {
+        let coupling = self.law.on_site_coupling();
+        let mut squares = 0.0;
+        for index in 0..self.mobile_count {
+            let away = self.way_from_site(index);
+            squares += dot(away, away);
+            for d in 0..D {
+                self.forces[index][d] += coupling * away[d];
+            }
+        }
+        -0.5 * coupling * squares
+    }
+
+    /// How far a mobile disk is from its site, to the rounding of that distance; 0 for a law without sites \[length\].
+    pub fn way_from_site(&self, index: usize) -> Vector<D> {
+        self.from_sites
+            .get(index)
+            .map_or([0.0; D], |from| std::array::from_fn(|d| (from[d].0 + self.displacements[index][d]) + from[d].1))
+    }
+
+    /// The longest way of a mobile disk from its site \[length\].
+    pub fn longest_way_from_site(&self) -> f64 {
+        let squared = (0..self.from_sites.len()).map(|index| dot(self.way_from_site(index), self.way_from_site(index)));
+        squared.fold(0.0, |most, value| if value > most { value } else { most }).sqrt()
+    }
+
+    /// Remembers where the disks are, for [`Assembly::restore`].
+    pub fn set_checkpoint(&mut self) {
+        self.checkpoint.clone_from(&self.displacements);
+    }
+
+    /// Puts the disks back where the last checkpoint found them; nothing happens without one.
+    ///
+    /// # Errors
+    /// Two disks with the same centre.
+    pub fn restore(&mut self) -> Result<(), PackingError> {
+        if self.checkpoint.is_empty() {
+            return Ok(());
+        }
+        self.displacements.clone_from(&self.checkpoint);
+        self.keep_listed(f64::INFINITY).map(|_| ())
+    }
+
+    /// Longest displacement of a disk from its anchor \[length\]: what the rounding of overlaps is relative to.
+    pub fn longest_displacement(&self) -> f64 {
+        let squared = self.displacements[..self.mobile_count].iter().map(|&u| dot(u, u));
+        squared.fold(0.0, |most, value| if value > most { value } else { most }).sqrt()
+    }
+
+    /// Lets the anchors take over the displacements and makes the list anew; the disks stay where they are.
+    ///
+    /// # Errors
+    /// Two disks with the same centre.
+    pub fn reanchor(&mut self) -> Result<(), PackingError> {
+        self.rebuild()
+    }
+
+    /// Packs lists, or not, from now on, whatever the machine.
+    #[cfg(test)]
+    pub(crate) fn pack(&mut self, packs: bool) {
+        if let Some(classes) = &mut self.classes {
+            classes.kinds.packs = packs;
+        }
+        self.rebuild().expect("as before");
+    }
+
+    fn rebuild(&mut self) -> Result<(), PackingError> {
+        let anchors = self.anchors[..self.mobile_count].chunks_mut(PIECE);
+        let displacements = self.displacements[..self.mobile_count].chunks_mut(PIECE);
+        // Empty for what this assembly does not have.
+        let checkpoint = self.checkpoint.chunks_mut(PIECE).chain(repeat_with(Default::default));
+        let from_sites = self.from_sites.chunks_mut(PIECE).chain(repeat_with(Default::default));
+        let pieces = anchors.zip(displacements).zip(checkpoint.zip(from_sites));
+        parallel::each(pieces, |((anchors, displacements), (checkpoint, from_sites))| {
+            for (index, (anchor, displacement)) in anchors.iter_mut().zip(displacements).enumerate() {
+                let mut nowhere = [0.0; D];
+                let saved = checkpoint.get_mut(index).unwrap_or(&mut nowhere);
+                for d in 0..D {
+                    let (high, low) = two_sum(anchor[d], displacement[d]);
+                    saved[d] += anchor[d] - high;
+                    if let Some(from) = from_sites.get_mut(index) {
+                        // What the anchor takes over, without rounding.
+                        from[d] = extended_sum(extended_sum(from[d], displacement[d]), -low);
+                    }
+                    (anchor[d], displacement[d]) = (high, low);
+                }
+            }
+        });
+        let law = self.law;
+        let (mut pairs, mut room) = (std::mem::take(&mut self.pairs), std::mem::take(&mut self.list_room));
+        let built = build_pairs(&self.disks(), self.skin, |a, b| law.coefficient(a, b), &mut room, &mut pairs);
+        (self.pairs, self.list_room) = (pairs, room);
+        built.map_err(|error| match error {
+            PackingError::CoincidentCentres { first, second } => {
+                let (a, b) = (self.order[first] as usize, self.order[second] as usize);
+                PackingError::CoincidentCentres { first: a.min(b), second: a.max(b) }
+            }
+            other => other,
+        })?;
+        self.begin_all();
+        self.rebuild_count += 1;
+        Ok(())
+    }
+
+    /// The disks as the list builder sees them.
+    fn disks(&self) -> Disks<'_, D> {
+        Disks {
+            domain: &self.domain,
+            anchors: &self.anchors,
+            displacements: &self.displacements,
+            radii: &self.radii,
+            mobile_count: self.mobile_count,
+            classes: self.classes.as_ref(),
+        }
+    }
+
+    /// Upper bound on the largest eigenvalue of the stiffness matrix (masses 1), by Gershgorin's rows \[1 / time²\].
+    ///
+    /// Sites shift every eigenvalue by −Γ; |Γ| is added for either sign, so that disks that run away do so in small steps.
+    pub fn stiffness_bound(&self, row: &mut Vec<f64>) -> f64 {
+        let bound = self.row_bound(row, None);
+        bound + self.law.on_site_coupling().abs()
+    }
+
+    /// Upper bound on the largest eigenvalue of a contact matrix with this weight a contact, or with the stiffness of each.
+    pub fn row_bound(&self, row: &mut Vec<f64>, weight: Option<&Weight<'_>>) -> f64 {
+        row.resize(self.len(), 0.0);
+        stiffness_rows(&self.law, self.pairs(), &self.displacements, self.mobile_count, weight, row);
+        row[..self.mobile_count].iter().fold(0.0, |most, &value| if value > most { value } else { most })
+    }
+}
+
+/// Near pairs while there is a skin of theirs, or all.
+fn in_use<'a, const D: usize>(near_skin: Option<f64>, near: &'a PairList<D>, all: &'a PairList<D>) -> &'a PairList<D> {
+    if near_skin.is_some() { near } else { all }
+}
+
+/// What anchors are counted from, and the domain seen from there: the corner of a periodic box; in the open plane the
+/// plane's own origin, or a corner of the disks if they all lie so far on one side of it that their distances would be
+/// rounded like their positions.
+fn origin_and_domain<const D: usize>(packing: &Packing<D>) -> (Vector<D>, Domain<D>) {
+    match packing.domain() {
+        Domain::Periodic { corner, lengths } => (*corner, Domain::Periodic { corner: [0.0; D], lengths: *lengths }),
+        Domain::Open => {
+            let origin = std::array::from_fn(|d| {
+                let column = || packing.positions().iter().map(|position| position[d]);
+                let (low, high) = (column().fold(f64::INFINITY, f64::min), column().fold(f64::NEG_INFINITY, f64::max));
+                if high - low < low.abs() { low } else { 0.0 }
+            });
+            (origin, Domain::Open)
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! One block of pairs, column by column: how far apart its disks are and how much they overlap; the formulas are those of [`crate::forces::elastic`].
+//!
+//! The arithmetic goes through the block several times, a few operations each: those of one vector of pairs wait for each other, and
+//! a processor has few of the next ones in view if they are many. Meanwhile it asks for what the list has of a later block.
+
+use pulp::Simd;
+
+use crate::law::pair_law::PairLaw;
+use crate::neighbours::block_storage::{AtAnchors, OfBlock};
+use crate::neighbours::pair_list::{BLOCK, Block, PairList};
+use crate::processor::Processor;
+use crate::simd::ahead::Cache;
+use crate::simd::components;
+use crate::simd::roots::{positive_part, reciprocal, square_roots};
+use crate::vector::Vector;
+
+/// How far ahead the list is asked for: its memory is so many blocks of arithmetic away; the first cache has no room for more than one
+/// \[blocks\].
+fn blocks_ahead(cache: Cache) -> usize {
+    match cache {
+        Cache::Second => 2,
+        Cache::First => 1,
+    }
+}
+
+/// One block of pairs, column by column.
+#[repr(align(64))]
+pub(crate) struct Columns<const D: usize> {
+    /// Relative displacement of the pair, then the force on its first disk: vectors one after the other.
+    pub pull: [Vector<D>; BLOCK],
+    /// Separation.
+    pub apart: [[f64; BLOCK]; D],
+    /// Overlap, 0 of disks apart.
+    pub overlap: [f64; BLOCK],
+    pub force: [f64; BLOCK],
+    /// One over the distance.
+    pub inverse: [f64; BLOCK],
+}
+
+/// What the list has of a block, and how many pairs that are.
+pub(crate) struct Anchors<'a, const D: usize> {
+    pair_count: usize,
+    listed: OfBlock<'a, D>,
+}
+
+impl<'a, const D: usize> Anchors<'a, D> {
+    #[inline(always)]
+    pub fn of(pairs: &'a PairList<D>, block: &Block) -> Self {
+        Anchors { pair_count: block.pair_count, listed: pairs.listed.of_block(block.pairs / BLOCK) }
+    }
+
+    /// Vectors of pairs, an even number of them.
+    #[inline(always)]
+    fn turns<S: Simd>(&self) -> usize {
+        (2 * self.pair_count.div_ceil(2 * S::F64_LANES)).min(BLOCK / S::F64_LANES)
+    }
+}
+
+impl<const D: usize> Columns<D> {
+    #[inline(always)]
+    pub fn new() -> Self {
+        Columns {
+            pull: [[0.0; D]; BLOCK],
+            apart: [[0.0; BLOCK]; D],
+            overlap: [0.0; BLOCK],
+            force: [0.0; BLOCK],
+            inverse: [0.0; BLOCK],
+        }
+    }
+
+    /// From the relative displacements: separations, overlaps and one over the distances.
+    #[inline(always)]
+    pub fn measure<S: Simd>(&mut self, simd: S, anchors: &Anchors<'_, D>) {
+        let count = anchors.turns::<S>();
+        match anchors.listed {
+            OfBlock::Each(block) => self.measure_from(simd, count, block),
+            OfBlock::Packed(block, kinds) => self.measure_from(simd, count, (block, kinds)),
+        }
+    }
+
+    #[inline(always)]
+    fn measure_from<S: Simd, A: AtAnchors<D>>(&mut self, simd: S, count: usize, listed: A) {
+        let cache = Cache::here();
+        let blocks = blocks_ahead(cache);
+        let ahead = blocks * A::SIZE / size_of::<f64>();
+        let read = |column| &S::as_simd_f64s(column).0[..count];
+        let anchor_separation = listed.separation().each_ref().map(|column| read(&column[..]));
+        let anchor_overlap = read(listed.overlap());
+        let moved = &S::as_simd_f64s(self.pull.as_flattened()).0[..D * count];
+        let apart = self.apart.each_mut().map(|column| &mut S::as_mut_simd_f64s(column).0[..count]);
+        let overlap = &mut S::as_mut_simd_f64s(&mut self.overlap).0[..count];
+        let inverse = &mut S::as_mut_simd_f64s(&mut self.inverse).0[..count];
+        let (zero, roots) = (simd.splat_f64s(0.0), Processor::here().roots());
+        for k in (0..count).step_by(2) {
+            let mut squares = [zero; 2];
+            for (half, square) in squares.iter_mut().enumerate() {
+                let k = k + half;
+                let moved = components::split::<S, D>(simd, &moved[D * k..D * (k + 1)]);
+                let mut change = zero;
+                for d in 0..D {
+                    let anchored = anchor_separation[d][k];
+                    let along = simd.add_f64s(anchored, moved[d]);
+                    let squared = simd.mul_f64s(along, along);
+                    let changed = simd.mul_f64s(moved[d], simd.add_f64s(anchored, along));
+                    // Nothing is added to zero: the compiler may not leave that out.
+                    (*square, change) = match d {
+                        0 => (squared, changed),
+                        _ => (simd.add_f64s(*square, squared), simd.add_f64s(change, changed)),
+                    };
+                    apart[d][k] = along;
+                    cache.ask(&listed.separation()[d], ahead + k * S::F64_LANES);
+                }
+                overlap[k] = change;
+            }
+            [inverse[k], inverse[k + 1]] = square_roots(simd, roots, squares);
+        }
+        for k in 0..count {
+            let distance = inverse[k];
+            let both = simd.add_f64s(distance, listed.distance(simd, k, anchor_overlap[k]));
+            // One reciprocal for change / both and 1 / distance: divisions and roots are what the loop waits for.
+            let of_both = reciprocal(simd, roots, simd.mul_f64s(distance, both));
+            let change = simd.mul_f64s(overlap[k], simd.mul_f64s(distance, of_both));
+            overlap[k] = positive_part(simd, simd.sub_f64s(anchor_overlap[k], change));
+            inverse[k] = simd.mul_f64s(both, of_both);
+            listed.ask_for_distance(cache, blocks, k * S::F64_LANES);
+            cache.ask(listed.overlap(), ahead + k * S::F64_LANES);
+        }
+    }
+
+    /// From the overlaps: the forces of a law, and if it is to `RESOLVE` them, what [`Columns::resolve`] makes of these.
+    #[inline(always)]
+    pub fn press<S: Simd, L: PairLaw, const RESOLVE: bool>(&mut self, simd: S, law: &L, anchors: &Anchors<'_, D>) {
+        let count = anchors.turns::<S>();
+        match anchors.listed {
+            OfBlock::Each(block) => self.press_from::<S, L, _, RESOLVE>(simd, law, count, block),
+            OfBlock::Packed(block, kinds) => self.press_from::<S, L, _, RESOLVE>(simd, law, count, (block, kinds)),
+        }
+    }
+
+    #[inline(always)]
+    fn press_from<S: Simd, L: PairLaw, A: AtAnchors<D>, const RESOLVE: bool>(
+        &mut self,
+        simd: S,
+        law: &L,
+        count: usize,
+        listed: A,
+    ) {
+        let cache = Cache::here();
+        let blocks = blocks_ahead(cache);
+        let one = simd.splat_f64s(listed.one_coefficient());
+        let overlap = &S::as_simd_f64s(&self.overlap).0[..count];
+        let inverse = &S::as_simd_f64s(&self.inverse).0[..count];
+        let apart = self.apart.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
+        let pull = &mut S::as_mut_simd_f64s(self.pull.as_flattened_mut()).0[..D * count];
+        let force = &mut S::as_mut_simd_f64s(&mut self.force).0[..count];
+        for k in (0..count).step_by(2) {
+            let coefficients = match L::ONE_COEFFICIENT {
+                true => [one; 2],
+                false => [listed.coefficient(simd, k), listed.coefficient(simd, k + 1)],
+            };
+            let forces = law.forces(simd, coefficients, [overlap[k], overlap[k + 1]]);
+            [force[k], force[k + 1]] = forces;
+            if RESOLVE {
+                for (k, force) in [(k, forces[0]), (k + 1, forces[1])] {
+                    resolve_one(simd, force, inverse[k], apart.map(|column| column[k]), &mut pull[D * k..D * (k + 1)]);
+                }
+            }
+            if !L::ONE_COEFFICIENT {
+                listed.ask_for_coefficient(cache, blocks, k * S::F64_LANES);
+                listed.ask_for_coefficient(cache, blocks, (k + 1) * S::F64_LANES);
+            }
+        }
+    }
+
+    /// From the forces: the force on each first disk in `pull`.
+    ///
+    /// Nothing else is stored: force over distance would lie a page away from the separation read next, and this processor looks at the last
+    /// twelve bits of addresses first.
+    #[inline(always)]
+    pub fn resolve<S: Simd>(&mut self, simd: S) {
+        let count = BLOCK / S::F64_LANES;
+        let apart = self.apart.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
+        let force = &S::as_simd_f64s(&self.force).0[..count];
+        let inverse = &S::as_simd_f64s(&self.inverse).0[..count];
+        let pull = &mut S::as_mut_simd_f64s(self.pull.as_flattened_mut()).0[..D * count];
+        for k in 0..count {
+            resolve_one(simd, force[k], inverse[k], apart.map(|column| column[k]), &mut pull[D * k..D * (k + 1)]);
+        }
+    }
+}
+
+#[inline(always)]
+fn resolve_one<S: Simd, const D: usize>(
+    simd: S,
+    force: S::f64s,
+    inverse: S::f64s,
+    apart: [S::f64s; D],
+    pull: &mut [S::f64s],
+) {
+    let factor = simd.mul_f64s(force, inverse);
+    components::join(simd, &apart.map(|along| simd.mul_f64s(factor, along)), pull);
+}

@@ -1,0 +1,174 @@
+//! Elastic and damping forces of all contacts in one pass, for methods that need only their sum.
+//!
+//! ```text
+//! f_i += (F(δ) − c v_n) n,  f_j −= the same        n = r_ij/|r_ij|,  v_n = n·(v_i − v_j),  c = 0 where δ ≤ 0
+//! ```
+//!
+//! Blocks, rows and columns as in [`crate::forces::elastic`]; tiles play no part.
+
+use crate::forces::block_arithmetic::{Anchors, Columns};
+use crate::law::damping::DampingLaw;
+use crate::law::kernel::{LawKernel, dispatch};
+use crate::law::pair_law::PairLaw;
+use crate::neighbours::for_each_pair::{Walked, walk};
+use crate::neighbours::pair_list::{BLOCK, PairList};
+use crate::neighbours::rows::{gather, scatter};
+use crate::simd::lanes;
+use crate::vector::Vector;
+
+/// Net forces of elastic and damping contacts on all disks; the power damping takes, Σ c v_n², is returned. `forces` is
+/// overwritten, whatever it held.
+///
+/// # Shape
+/// `damping_coefficient` has one entry a pair; `displacements`, `velocities` and `forces` one a disk.
+///
+/// # Accuracy
+/// That of [`forces`](crate::forces::elastic::forces) with [`add_damping`], but for the order of sums.
+pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
+    (law, damping): (&L, &C),
+    pairs: &PairList<D>,
+    damping_coefficient: &[f64],
+    displacements: &[Vector<D>],
+    velocities: &[Vector<D>],
+    forces: &mut [Vector<D>],
+) -> f64 {
+    forces.fill([0.0; D]);
+    let mut power = 0.0;
+    let (mut columns, mut apace) = (Columns::<D>::new(), [[0.0; D]; BLOCK]);
+    for block in &pairs.blocks {
+        let listed = block.pairs..block.pairs + block.pair_count;
+        gather(&mut columns.pull, pairs, block, (displacements, 0));
+        gather(&mut apace, pairs, block, (velocities, 0));
+        let (apace, coefficient) = (&apace[..block.pair_count], &damping_coefficient[listed]);
+        let (damping, anchors) = (Damping { law: damping, coefficient, apace }, Anchors::of(pairs, block));
+        power += dispatch(law, Arithmetic { damping, columns: &mut columns, anchors });
+        scatter(&columns.pull, pairs, block, (forces, 0));
+    }
+    power
+}
+
+/// The arithmetic of a block, which returns the power.
+struct Arithmetic<'a, const D: usize, C> {
+    damping: Damping<'a, D, C>,
+    columns: &'a mut Columns<D>,
+    anchors: Anchors<'a, D>,
+}
+
+/// Damping of the pairs of a block.
+struct Damping<'a, const D: usize, C> {
+    law: &'a C,
+    coefficient: &'a [f64],
+    /// Relative velocities.
+    apace: &'a [Vector<D>],
+}
+
+impl<const D: usize, C: DampingLaw> LawKernel for Arithmetic<'_, D, C> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<S: pulp::Simd, L: PairLaw>(self, simd: S, law: &L) -> f64 {
+        self.columns.measure(simd, &self.anchors);
+        self.columns.press::<S, L, false>(simd, law, &self.anchors);
+        let mut power = [0.0; BLOCK];
+        let count = self.damping.apace.len();
+        self.damping.resist(self.columns, &mut power[..count]);
+        self.columns.resolve(simd);
+        lanes::sum(simd, &power[..count])
+    }
+}
+
+impl<const D: usize, C: DampingLaw> Damping<'_, D, C> {
+    /// Takes the damping from the forces of a block that is measured.
+    #[inline(always)]
+    fn resist(&self, columns: &mut Columns<D>, power: &mut [f64]) {
+        let count = power.len();
+        let (apace, coefficient) = (&self.apace[..count], &self.coefficient[..count]);
+        let apart = columns.apart.each_ref().map(|column| &column[..count]);
+        let (overlap, force) = (&columns.overlap[..count], &mut columns.force[..count]);
+        let inverse = &columns.inverse[..count];
+        for k in 0..count {
+            let mut along = 0.0;
+            for d in 0..D {
+                along += apace[k][d] * apart[d][k];
+            }
+            let normal_velocity = along * inverse[k];
+            let resistance = self.law.damping(coefficient[k], overlap[k]);
+            let resisted = if overlap[k] > 0.0 { resistance * normal_velocity } else { 0.0 };
+            power[k] = resisted * normal_velocity;
+            force[k] -= resisted;
+        }
+    }
+}
+
+/// Adds the damping forces −c_ij v_n of all contacts to `forces`; the power they take, Σ c_ij v_n², is returned.
+///
+/// # Shape
+/// `damping_coefficient` has one entry a pair, `velocities` one a disk.
+pub fn add_damping<const D: usize, C: DampingLaw>(
+    law: &C,
+    pairs: &PairList<D>,
+    damping_coefficient: &[f64],
+    displacements: &[Vector<D>],
+    velocities: &[Vector<D>],
+    forces: &mut [Vector<D>],
+) -> f64 {
+    let mut dissipation = 0.0;
+    walk(pairs, displacements, &mut |&Walked { pair, ends, apart, distance, overlap, .. }| {
+        if overlap > 0.0 {
+            let (i, j) = (ends.0 as usize, ends.1 as usize);
+            let damping = law.damping(damping_coefficient[pair], overlap);
+            let mut along = 0.0;
+            for d in 0..D {
+                along += (velocities[i][d] - velocities[j][d]) * apart[d];
+            }
+            let normal_velocity = along / distance;
+            dissipation += damping * normal_velocity * normal_velocity;
+            let factor = damping * normal_velocity / distance;
+            for d in 0..D {
+                forces[i][d] -= factor * apart[d];
+                forces[j][d] += factor * apart[d];
+            }
+        }
+    });
+    dissipation
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forces::assembly::Assembly;
+    use crate::forces::elastic;
+    use crate::io::read_packing;
+    use crate::law::damping::ConstantDamping;
+    use crate::law::pair_law::Hertzian;
+    use crate::vector::{difference, norm};
+
+    /// Both passes give the same sums, of terms of up to 10⁴ and 10⁶, to their rounding.
+    fn agree<C: DampingLaw>(damping: &C) {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz");
+        let packing = read_packing::<2>(file).expect("a stored packing");
+        let law = Hertzian::default();
+        let assembly = Assembly::new(&packing, law).expect("no coincidence");
+        let (pairs, at, radii) = (assembly.pairs(), &assembly.displacements, assembly.radii());
+        let of_pair = |(&i, &j): (&u32, &u32)| damping.coefficient(radii[i as usize], radii[j as usize]);
+        let coefficients: Vec<f64> = pairs.first.iter().zip(&pairs.second).map(of_pair).collect();
+        let wave = |i: usize| [(7.0 * i as f64).sin(), (11.0 * i as f64).cos()];
+        let velocities: Vec<Vector<2>> = (0..assembly.len()).map(wave).collect();
+        let mut apart = vec![[0.0; 2]; assembly.len()];
+        elastic::forces(&law, pairs, at, &mut elastic::Across::default(), &mut apart);
+        let power = add_damping(damping, pairs, &coefficients, at, &velocities, &mut apart);
+        let mut together = vec![[1.0; 2]; assembly.len()];
+        let found = damped_forces((&law, damping), pairs, &coefficients, at, &velocities, &mut together);
+        assert!((found - power).abs() < 1e-13 * power, "{found} for {power}");
+        assert!(power > 0.0);
+        for (one, two) in apart.iter().zip(&together) {
+            assert!(norm(difference(*one, *two)) < 1e-10, "{one:?} {two:?}");
+        }
+    }
+
+    #[test]
+    fn one_pass_is_elastic_forces_and_damping() {
+        agree(&ConstantDamping { rate: 500.0 });
+        agree(&Hertzian::default().viscoelastic(500.0));
+    }
+}

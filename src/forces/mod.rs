@@ -1,0 +1,12 @@
+//! Positions and forces of a packing that moves: [`Assembly`], and the loop over contacts in double and in single precision.
+
+pub mod advance;
+pub mod assembly;
+pub(crate) mod block_arithmetic;
+pub mod damped;
+pub mod elastic;
+pub mod single;
+pub mod stiffness_bound;
+pub mod totals;
+
+pub use assembly::Assembly;

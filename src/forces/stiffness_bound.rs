@@ -1,0 +1,110 @@
+//! Sums of stiffness over the contacts of each disk, by the blocks and tiles of the hot loop.
+
+use crate::forces::block_arithmetic::{Anchors, Columns};
+use crate::law::kernel::{LawKernel, dispatch};
+use crate::law::pair_law::PairLaw;
+use crate::neighbours::pair_list::{BLOCK, PairList};
+use crate::neighbours::rows::{ask_for_later_rows, gather, scatter_with};
+use crate::neighbours::tiles::Tile;
+use crate::parallel;
+use crate::vector::{Vector, sum};
+
+/// Weight of a contact: a function of (pair, overlap, stiffness).
+pub type Weight<'a> = dyn Fn(usize, f64, f64) -> f64 + Sync + 'a;
+
+/// Sums over the contacts of each disk: of the stiffness, or of a weight.
+///
+/// The largest row sum bounds the largest eigenvalue of the stiffness matrix from above (Gershgorin): with masses 1,
+/// `λ ≤ max_i Σ_j 2 F'(δ_ij)`, the prestress part being negative. A contact with a held disk counts once.
+///
+/// # Shape
+/// `row` has one entry a disk and is overwritten.
+pub fn stiffness_rows<const D: usize, L: PairLaw>(
+    law: &L,
+    pairs: &PairList<D>,
+    displacements: &[Vector<D>],
+    mobile_count: usize,
+    weight: Option<&Weight<'_>>,
+    row: &mut [f64],
+) {
+    let task = Task { law, pairs, displacements, mobile_count, weight };
+    let tiles = pairs.tiles.iter().zip(row.chunks_mut(pairs.tile_size)).enumerate();
+    let across = parallel::each(tiles, |(place, (tile, row))| task.of_tile(tile, place * pairs.tile_size, row));
+    if pairs.tiles.len() > 1 {
+        let tiles = pairs.tiles.iter().zip(row.chunks_mut(pairs.tile_size)).enumerate();
+        parallel::each(tiles, |(place, (tile, row))| {
+            for &(disk, from, pair) in &tile.incoming {
+                row[disk as usize - place * pairs.tile_size] += across[from as usize][pair as usize];
+            }
+        });
+    }
+}
+
+struct Task<'a, const D: usize, L> {
+    law: &'a L,
+    pairs: &'a PairList<D>,
+    displacements: &'a [Vector<D>],
+    mobile_count: usize,
+    weight: Option<&'a Weight<'a>>,
+}
+
+impl<const D: usize, L: PairLaw> Task<'_, D, L> {
+    /// The rows of the disks of a tile, which begins with disk `offset`, from its own pairs; what the second disk of each pair
+    /// across its border is due is returned.
+    fn of_tile(&self, tile: &Tile, offset: usize, row: &mut [f64]) -> Vec<f64> {
+        let (pairs, mobile) = (self.pairs, self.mobile_count);
+        row.fill(0.0);
+        let mut across = vec![0.0; tile.border_pairs.len()];
+        let mut columns = Columns::<D>::new();
+        let mut values = [[0.0]; BLOCK];
+        for place in tile.inner.start..tile.border.end {
+            let block = &pairs.blocks[place];
+            ask_for_later_rows(pairs, block);
+            gather(&mut columns.pull, pairs, block, (self.displacements, 0));
+            let anchors = Anchors::of(pairs, block);
+            dispatch(self.law, Arithmetic { columns: &mut columns, anchors, values: &mut values });
+            for ((pair, value), &overlap) in block.pairs().zip(&mut values).zip(&columns.overlap) {
+                let weighted = match self.weight {
+                    Some(weight) if overlap > 0.0 => weight(pair, overlap, value[0]),
+                    None if overlap > 0.0 => value[0],
+                    _ => 0.0,
+                };
+                value[0] = if (pairs.second[pair] as usize) < mobile { 2.0 * weighted } else { weighted };
+            }
+            if tile.inner.contains(&place) {
+                scatter_with(&values, pairs, block, (row.as_chunks_mut::<1>().0, offset as u32), sum);
+                continue;
+            }
+            for (&[value], pair) in values.iter().zip(block.pairs..block.pairs + block.pair_count) {
+                row[pairs.first[pair] as usize - offset] += value;
+                if (pairs.second[pair] as usize) < mobile {
+                    across[pair - tile.border_pairs.start] = value;
+                }
+            }
+        }
+        let held = mobile.saturating_sub(offset).min(row.len());
+        row[held..].fill(0.0);
+        across
+    }
+}
+
+/// Stiffness and overlap of each pair of a block.
+struct Arithmetic<'a, const D: usize> {
+    columns: &'a mut Columns<D>,
+    anchors: Anchors<'a, D>,
+    values: &'a mut [[f64; 1]; BLOCK],
+}
+
+impl<const D: usize> LawKernel for Arithmetic<'_, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: pulp::Simd, L: PairLaw>(self, simd: S, law: &L) {
+        self.columns.measure(simd, &self.anchors);
+        self.columns.press::<S, L, false>(simd, law, &self.anchors);
+        let (overlap, force) = (&self.columns.overlap, &self.columns.force);
+        for (value, (&force, &overlap)) in self.values.iter_mut().zip(force.iter().zip(overlap)) {
+            value[0] = law.stiffness(force, overlap);
+        }
+    }
+}

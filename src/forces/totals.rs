@@ -1,0 +1,98 @@
+//! [`Totals`]: energy, virial and contact forces, summed block by block in the pass that finds the forces.
+
+use crate::forces::block_arithmetic::Columns;
+use crate::law::kernel::LawKernel;
+use crate::law::pair_law::PairLaw;
+use crate::neighbours::pair_list::BLOCK;
+use crate::simd::lanes;
+
+/// What the loop sums beside the forces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Totals<const D: usize> {
+    /// Energy Σ u(δ), with that of the sites where the law has one \[energy\].
+    pub energy: f64,
+    /// The part of it that sites have, −(Γ/2) Σ u²; 0 without them \[energy\].
+    pub on_site_energy: f64,
+    /// Virial tensor Σ F r_a r_b / |r| \[energy\]; its trace over D V is the pressure.
+    pub virial: [[f64; D]; D],
+    /// Number of pairs with δ > 0.
+    pub contact_count: usize,
+    /// Sum of the contact forces ΣF \[force\].
+    pub force_sum: f64,
+}
+
+impl<const D: usize> Totals<D> {
+    pub(crate) const ZERO: Self =
+        Totals { energy: 0.0, on_site_energy: 0.0, virial: [[0.0; D]; D], contact_count: 0, force_sum: 0.0 };
+
+    pub(crate) fn add(&mut self, part: &Self) {
+        self.energy += part.energy;
+        self.on_site_energy += part.on_site_energy;
+        self.force_sum += part.force_sum;
+        self.contact_count += part.contact_count;
+        for (row, of_part) in self.virial.iter_mut().zip(&part.virial) {
+            for (total, more) in row.iter_mut().zip(of_part) {
+                *total += more;
+            }
+        }
+    }
+
+    /// Mean contact force, 0 where there is no contact \[force\].
+    pub fn mean_contact_force(&self) -> f64 {
+        if self.contact_count == 0 { 0.0 } else { self.force_sum / self.contact_count as f64 }
+    }
+
+    /// Contact energy plus the size of that of the sites: what the rounding of the energy is relative to \[energy\].
+    pub fn energy_scale(&self) -> f64 {
+        (self.energy - self.on_site_energy).abs() + self.on_site_energy.abs()
+    }
+
+    /// Trace of the virial tensor Σ F r \[energy\].
+    pub fn virial_trace(&self) -> f64 {
+        (0..D).map(|d| self.virial[d][d]).sum()
+    }
+}
+
+/// The sums over a block.
+pub(crate) struct Tally<'a, const D: usize> {
+    pub columns: &'a Columns<D>,
+    pub count: usize,
+    pub totals: &'a mut Totals<D>,
+}
+
+impl<const D: usize> LawKernel for Tally<'_, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: pulp::Simd, L: PairLaw>(self, simd: S, law: &L) {
+        tally(simd, law, self.columns, self.count, self.totals);
+    }
+}
+
+#[inline(always)]
+fn tally<S: pulp::Simd, const D: usize, L: PairLaw>(
+    simd: S,
+    law: &L,
+    columns: &Columns<D>,
+    count: usize,
+    totals: &mut Totals<D>,
+) {
+    let Columns { apart, overlap, force, inverse, .. } = columns;
+    // Each sum first term by term, as many as a column has places, then the terms that count.
+    let mut terms = [0.0; BLOCK];
+    for k in 0..BLOCK {
+        terms[k] = law.energy(force[k], overlap[k]);
+    }
+    totals.energy += lanes::sum(simd, &terms[..count]);
+    totals.force_sum += lanes::sum(simd, &force[..count]);
+    totals.contact_count += overlap[..count].iter().filter(|&&overlap| overlap > 0.0).count();
+    for a in 0..D {
+        for b in 0..=a {
+            for k in 0..BLOCK {
+                terms[k] = force[k] * inverse[k] * (apart[a][k] * apart[b][k]);
+            }
+            totals.virial[a][b] += lanes::sum(simd, &terms[..count]);
+            totals.virial[b][a] = totals.virial[a][b];
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! How a contact dissipates: a force −c_ij v_n along the contact, v_n the normal part of the relative velocity.
+//!
+//! | law | c_ij |
+//! |---|---|
+//! | [`ConstantDamping`] | γ, as the model is usually printed |
+//! | [`ViscoelasticDamping`] on a Hertzian contact | γ m_eff √(δ R_ij), m_eff = 1/2, as LAMMPS `gran/hertz/history` computes it |
+//! | [`ViscoelasticDamping`] on a Hookean contact | γ m_eff, as LAMMPS `gran/hooke` computes it |
+//!
+//! The two lead to very different dynamics near jamming, so a scene names which one.
+
+use serde::{Deserialize, Serialize};
+
+/// Reduced mass of two disks of mass 1 \[mass\].
+pub const REDUCED_MASS: f64 = 0.5;
+
+/// Effective radius `R_i R_j / (R_i + R_j)` of two touching disks \[length\].
+#[inline(always)]
+pub fn effective_radius(first_radius: f64, second_radius: f64) -> f64 {
+    first_radius * second_radius / (first_radius + second_radius)
+}
+
+/// Damping of a contact: a pure function of the overlap and of a coefficient made once a pair.
+pub trait DampingLaw: Copy + std::fmt::Debug + Send + Sync {
+    /// Coefficient of a pair.
+    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64;
+    /// c_ij for an overlap δ > 0 \[force / velocity\].
+    fn damping(&self, coefficient: f64, overlap: f64) -> f64;
+}
+
+/// `c_ij = γ`, whatever the overlap.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ConstantDamping {
+    /// γ \[force / velocity\].
+    pub rate: f64,
+}
+
+/// `c_ij = γ m_eff √(δ R_ij)` (Hertzian contacts).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ViscoelasticDamping {
+    /// γ \[1 / (time length)\].
+    pub rate: f64,
+}
+
+/// `c_ij = γ m_eff` (the viscoelastic law of a Hookean contact).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MassDamping {
+    /// γ \[1 / time\].
+    pub rate: f64,
+}
+
+impl DampingLaw for ConstantDamping {
+    #[inline(always)]
+    fn coefficient(&self, _first_radius: f64, _second_radius: f64) -> f64 {
+        self.rate
+    }
+    #[inline(always)]
+    fn damping(&self, coefficient: f64, _overlap: f64) -> f64 {
+        coefficient
+    }
+}
+
+impl DampingLaw for ViscoelasticDamping {
+    #[inline(always)]
+    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
+        self.rate * REDUCED_MASS * effective_radius(first_radius, second_radius).sqrt()
+    }
+    #[inline(always)]
+    fn damping(&self, coefficient: f64, overlap: f64) -> f64 {
+        coefficient * overlap.sqrt()
+    }
+}
+
+impl DampingLaw for MassDamping {
+    #[inline(always)]
+    fn coefficient(&self, _first_radius: f64, _second_radius: f64) -> f64 {
+        self.rate * REDUCED_MASS
+    }
+    #[inline(always)]
+    fn damping(&self, coefficient: f64, _overlap: f64) -> f64 {
+        coefficient
+    }
+}
+
+/// The damping of a contact as one type: what a [`DampingChoice`] is under a contact law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ContactDamping {
+    /// c_ij = γ.
+    Constant(ConstantDamping),
+    /// c_ij = γ m_eff √(δ R_ij).
+    Viscoelastic(ViscoelasticDamping),
+    /// c_ij = γ m_eff.
+    Mass(MassDamping),
+}
+
+impl DampingLaw for ContactDamping {
+    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
+        match self {
+            ContactDamping::Constant(law) => law.coefficient(first_radius, second_radius),
+            ContactDamping::Viscoelastic(law) => law.coefficient(first_radius, second_radius),
+            ContactDamping::Mass(law) => law.coefficient(first_radius, second_radius),
+        }
+    }
+    #[inline(always)]
+    fn damping(&self, coefficient: f64, overlap: f64) -> f64 {
+        match self {
+            ContactDamping::Constant(law) => law.damping(coefficient, overlap),
+            ContactDamping::Viscoelastic(law) => law.damping(coefficient, overlap),
+            ContactDamping::Mass(law) => law.damping(coefficient, overlap),
+        }
+    }
+}
+
+/// A damping law chosen at run time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DampingChoice {
+    /// [`ConstantDamping`].
+    Constant(ConstantDamping),
+    /// [`ViscoelasticDamping`] on Hertzian contacts, γ m_eff on the others.
+    Viscoelastic(ViscoelasticDamping),
+}
+
+impl Default for DampingChoice {
+    /// Constant, γ = 500. Source: the model of design §4.
+    fn default() -> Self {
+        DampingChoice::Constant(ConstantDamping { rate: 500.0 })
+    }
+}
+
+impl DampingChoice {
+    /// The damping of contacts of a law.
+    pub fn of_contacts(&self, law: &impl crate::law::pair_law::PairLaw) -> ContactDamping {
+        match self {
+            DampingChoice::Constant(damping) => ContactDamping::Constant(*damping),
+            DampingChoice::Viscoelastic(damping) => law.viscoelastic(damping.rate),
+        }
+    }
+
+    /// γ of either law \[force / velocity, or 1 / (time length)\].
+    pub fn rate(&self) -> f64 {
+        match self {
+            DampingChoice::Constant(law) => law.rate,
+            DampingChoice::Viscoelastic(law) => law.rate,
+        }
+    }
+
+    /// Damping ratio of a Hertzian contact: below 1 it oscillates, above 1 it creeps.
+    ///
+    /// ```text
+    /// ζ = c_ij/(2 √(k m_eff))        k = (3/2) k' √(δ R_ij), the stiffness dF/dδ
+    /// ```
+    ///
+    /// # Example
+    /// A contact of two small disks at p ≈ 10 has an overlap of about 2·10⁻³: viscoelastic damping of rate 500 lets it oscillate, constant
+    /// damping of that rate does not.
+    /// ```
+    /// use jamscope::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
+    ///
+    /// let ratio = |damping: DampingChoice| damping.hertzian_damping_ratio(2e5, 0.25, 2e-3);
+    /// assert!((ratio(DampingChoice::Viscoelastic(ViscoelasticDamping { rate: 500.0 })) - 0.0483).abs() < 1e-4);
+    /// assert!((ratio(DampingChoice::Constant(ConstantDamping { rate: 500.0 })) - 4.3167).abs() < 1e-3);
+    /// ```
+    pub fn hertzian_damping_ratio(&self, stiffness: f64, effective_radius: f64, overlap: f64) -> f64 {
+        let root = (overlap * effective_radius).sqrt();
+        let damping = match self {
+            DampingChoice::Constant(law) => law.rate,
+            DampingChoice::Viscoelastic(law) => law.rate * REDUCED_MASS * root,
+        };
+        damping / (2.0 * (1.5 * stiffness * root * REDUCED_MASS).sqrt())
+    }
+}

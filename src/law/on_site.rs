@@ -1,0 +1,81 @@
+//! [`OnSite`]: a contact law with an energy that pushes every disk from its site, or pulls it back.
+//!
+//! ```text
+//! E = Σ_(i<j) u(δ_ij) − (Γ/2) Σ_i u_i²        force on disk i: contacts + Γ u_i        u_i = r_i − site of i
+//! ```
+//!
+//! Γ > 0 weakens the packing by the same amount in every direction, as a medium whose displacement is screened by what it
+//! leaves out: an isotropic lattice with it answers as the screened continuum with κ² = (Γ/A)/(λ+2μ), A the area a disk
+//! has. Γ < 0 ties every disk to its site. The site of a disk is where it was when the first relaxation with such a law
+//! began, and stays with the packing ([`Packing::sites`](crate::packing::Packing::sites)).
+//!
+//! Γ = 0 is a law without sites ([`PairLaw::on_site_coupling`]).
+//!
+//! What counts what: the energy of a relaxation is that of contacts and sites together. Pressure, stress and virial are
+//! those of the contacts alone, because a force from outside the packing has a virial that depends on the origin. The
+//! scale of the relative residual is the mean contact force, and a backbone is made by contacts alone.
+
+use crate::law::damping::ContactDamping;
+use crate::law::pair_law::{LawVisitor, PairLaw};
+
+/// A contact law with the energy −Γ u²/2 on every disk, u its displacement from its site.
+///
+/// # Units
+/// Γ in force / length: the stiffness of a spring, negative for Γ > 0.
+///
+/// # Example
+/// A disk between two others is held by Γ < 0 against a push of its neighbours: 2 F' u = Γ u has the solution u = 0 only.
+/// ```
+/// use jamscope::law::{Hookean, OnSite, PairLaw};
+///
+/// let tied = OnSite { law: Hookean { stiffness: 2.0 }, coupling: -0.5 };
+/// assert_eq!((tied.on_site_coupling(), tied.law.on_site_coupling()), (-0.5, 0.0));
+/// assert_eq!(tied.force(tied.coefficient(0.5, 0.5), 0.1), 0.2);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OnSite<L> {
+    /// What happens where two disks touch.
+    pub law: L,
+    /// Γ, positive away from the site \[force / length\].
+    pub coupling: f64,
+}
+
+impl<L: PairLaw> PairLaw for OnSite<L> {
+    /// Of contacts sites change nothing.
+    #[inline(always)]
+    fn resolve<V: LawVisitor>(&self, visitor: V) -> V::Output {
+        self.law.resolve(visitor)
+    }
+
+    /// Its own Γ, and that of the law within if that has one.
+    fn on_site_coupling(&self) -> f64 {
+        self.coupling + self.law.on_site_coupling()
+    }
+    fn viscoelastic(&self, rate: f64) -> ContactDamping {
+        self.law.viscoelastic(rate)
+    }
+    #[inline(always)]
+    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
+        self.law.coefficient(first_radius, second_radius)
+    }
+    #[inline(always)]
+    fn coefficient_growth(&self, first_radius: f64, second_radius: f64) -> f64 {
+        self.law.coefficient_growth(first_radius, second_radius)
+    }
+    #[inline(always)]
+    fn force(&self, coefficient: f64, overlap: f64) -> f64 {
+        self.law.force(coefficient, overlap)
+    }
+    #[inline(always)]
+    fn exponent(&self) -> f64 {
+        self.law.exponent()
+    }
+    #[inline(always)]
+    fn energy(&self, force: f64, overlap: f64) -> f64 {
+        self.law.energy(force, overlap)
+    }
+    #[inline(always)]
+    fn stiffness(&self, force: f64, overlap: f64) -> f64 {
+        self.law.stiffness(force, overlap)
+    }
+}

@@ -1,0 +1,64 @@
+//! Disks that went far from where they were listed, a few of very many.
+
+use std::ops::Range;
+
+/// Chosen disks, to be found by their numbers and in ranges of them.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Far {
+    /// In ascending order.
+    disks: Vec<u32>,
+    is_far: Vec<bool>,
+}
+
+impl Far {
+    /// Chooses these of so many disks, in place of those before.
+    ///
+    /// # Shape
+    /// `disks` are in ascending order.
+    pub fn set(&mut self, disks: Vec<u32>, disk_count: usize) {
+        debug_assert!(disks.is_sorted());
+        self.disks.iter().for_each(|&disk| self.is_far[disk as usize] = false);
+        self.is_far.resize(disk_count, false);
+        disks.iter().for_each(|&disk| self.is_far[disk as usize] = true);
+        self.disks = disks;
+    }
+
+    /// All of them.
+    pub fn disks(&self) -> &[u32] {
+        &self.disks
+    }
+
+    /// Whether this is one of them.
+    pub fn contains(&self, disk: u32) -> bool {
+        self.is_far[disk as usize]
+    }
+
+    /// Whether any of these is one of them.
+    pub fn any_of(&self, disks: Range<usize>) -> bool {
+        let at = self.disks.partition_point(|&disk| (disk as usize) < disks.start);
+        self.disks.get(at).is_some_and(|&disk| (disk as usize) < disks.end)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chosen_disks_are_found_and_others_are_not() {
+        let mut far = Far::default();
+        for chosen in [vec![3, 4, 9], vec![], vec![0, 11], vec![4]] {
+            far.set(chosen.clone(), 12);
+            assert!((0..12).all(|disk| far.contains(disk) == chosen.contains(&disk)));
+            for begin in 0..12 {
+                for end in begin..12 {
+                    assert_eq!(
+                        far.any_of(begin..end),
+                        chosen.iter().any(|&disk| (begin..end).contains(&(disk as usize)))
+                    );
+                }
+            }
+            assert_eq!(far.any_of(4..usize::MAX), chosen.iter().any(|&disk| disk >= 4));
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! Every pair of a list where its disks are, one after the other, for what is not worth a loop of its own over blocks.
+
+use crate::neighbours::pair_block::Measured;
+use crate::neighbours::pair_list::{BLOCK, PairList};
+use crate::neighbours::rows::gather;
+use crate::processor;
+use crate::vector::Vector;
+
+/// A listed pair where its disks are, by the formula of [`geometry`](crate::forces::elastic::geometry).
+#[derive(Debug, Clone, Copy)]
+pub struct Walked<const D: usize> {
+    /// Its number.
+    pub pair: usize,
+    /// Its disks.
+    pub ends: (u32, u32),
+    /// Separation, from the second disk to the first \[length\].
+    pub apart: Vector<D>,
+    /// Its length \[length\].
+    pub distance: f64,
+    /// Negative for a gap \[length\].
+    pub overlap: f64,
+    /// Coefficient of the contact law \[force / length^(α−1)\].
+    pub coefficient: f64,
+}
+
+/// Shows every listed pair to `look`, in the order of their numbers.
+pub fn walk<const D: usize>(pairs: &PairList<D>, displacements: &[Vector<D>], look: &mut dyn FnMut(&Walked<D>)) {
+    let (mut moved, mut room) = ([[0.0; D]; BLOCK], Measured::default());
+    let mut at = At { apart: [[0.0; BLOCK]; D], distance: [0.0; BLOCK], overlap: [0.0; BLOCK] };
+    for block in &pairs.blocks {
+        let (numbers, listed) = (block.pairs(), pairs.listed.unpacked(block.pairs / BLOCK, &mut room));
+        gather(&mut moved, pairs, block, (displacements, 0));
+        processor::dispatch(Measure { count: block.pair_count, listed, moved: &moved, at: &mut at });
+        for (place, pair) in numbers.enumerate() {
+            look(&Walked {
+                pair,
+                ends: (pairs.first[pair], pairs.second[pair]),
+                apart: at.apart.each_ref().map(|column| column[place]),
+                distance: at.distance[place],
+                overlap: at.overlap[place],
+                coefficient: listed.coefficient[place],
+            });
+        }
+    }
+}
+
+/// Where the pairs of a block are.
+struct At<const D: usize> {
+    apart: [[f64; BLOCK]; D],
+    distance: [f64; BLOCK],
+    overlap: [f64; BLOCK],
+}
+
+struct Measure<'a, const D: usize> {
+    count: usize,
+    listed: &'a Measured<D>,
+    moved: &'a [Vector<D>; BLOCK],
+    at: &'a mut At<D>,
+}
+
+impl<const D: usize> pulp::WithSimd for Measure<'_, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        let Measure { count, listed, moved, at } = self;
+        let separation = listed.separation.each_ref().map(|column| &column[..count]);
+        let (anchored_distance, anchored_overlap) = (&listed.distance[..count], &listed.overlap[..count]);
+        let (moved, apart) = (&moved[..count], at.apart.each_mut().map(|column| &mut column[..count]));
+        let (distance, overlap) = (&mut at.distance[..count], &mut at.overlap[..count]);
+        for k in 0..count {
+            let (mut squared, mut change) = (0.0, 0.0);
+            for d in 0..D {
+                let along = separation[d][k] + moved[k][d];
+                squared += along * along;
+                change += moved[k][d] * (separation[d][k] + along);
+                apart[d][k] = along;
+            }
+            let length = f64::sqrt(squared);
+            let inverse = 1.0 / (length * (length + anchored_distance[k]));
+            distance[k] = length;
+            overlap[k] = anchored_overlap[k] - change * (length * inverse);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forces::assembly::Assembly;
+    use crate::forces::elastic::geometry;
+    use crate::io::read_packing;
+    use crate::law::pair_law::Hertzian;
+
+    #[test]
+    fn every_pair_is_met_once_with_the_bits_of_its_geometry() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N5548_p100.xyz");
+        let packing = read_packing::<2>(file).expect("a stored packing");
+        let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("no coincidence");
+        for (disk, displacement) in assembly.displacements.iter_mut().enumerate() {
+            *displacement = [1e-2 * (3.0 * disk as f64).sin(), 1e-2 * (5.0 * disk as f64).cos()];
+        }
+        let pairs = assembly.pairs();
+        let mut met = Vec::new();
+        walk(pairs, &assembly.displacements, &mut |at| {
+            let (apart, distance, overlap) = geometry(pairs, at.pair, &assembly.displacements);
+            assert_eq!((at.apart, at.distance, at.overlap), (apart, distance, overlap), "pair {}", at.pair);
+            assert_eq!(at.ends, (pairs.first[at.pair], pairs.second[at.pair]));
+            assert_eq!(at.coefficient, pairs.coefficient(at.pair));
+            met.push(at.pair);
+        });
+        assert_eq!(met, pairs.numbers().collect::<Vec<_>>());
+    }
+}

@@ -1,0 +1,55 @@
+//! What a list has of the pairs of a block: one piece of memory, column by column, so that the loop reads the list as one stream.
+
+use crate::neighbours::pair_list::BLOCK;
+
+/// Separation of no pair: a gap that no way closes, and whose square is a number.
+const NOWHERE: f64 = 1e100;
+
+/// A block of pairs at their anchors. A place without a pair has a gap that nothing closes.
+#[derive(Debug, Clone)]
+#[repr(align(64))]
+pub(crate) struct Measured<const D: usize> {
+    /// From the anchor of the second to that of the first along the nearest image, D \[length\].
+    pub separation: [[f64; BLOCK]; D],
+    /// Distance of the anchors, |D| \[length\].
+    pub distance: [f64; BLOCK],
+    /// Overlap at the anchors, R_i + R_j − |D|, rounded once only; negative for a pair apart \[length\].
+    pub overlap: [f64; BLOCK],
+    /// Coefficient of the contact law for this pair \[force / length^(α−1)\].
+    pub coefficient: [f64; BLOCK],
+}
+
+impl<const D: usize> Default for Measured<D> {
+    /// A block without a pair.
+    fn default() -> Self {
+        Measured {
+            separation: [[NOWHERE; BLOCK]; D],
+            distance: [NOWHERE * (D as f64).sqrt(); BLOCK],
+            overlap: [-NOWHERE * (D as f64).sqrt(); BLOCK],
+            coefficient: [1.0; BLOCK],
+        }
+    }
+}
+
+impl<const D: usize> Measured<D> {
+    /// Takes what another one has in a place.
+    #[inline(always)]
+    pub fn copy(&mut self, place: usize, (other, there): (&Self, usize)) {
+        for (column, from) in self.separation.iter_mut().zip(&other.separation) {
+            column[place] = from[there];
+        }
+        self.distance[place] = other.distance[there];
+        self.overlap[place] = other.overlap[there];
+        self.coefficient[place] = other.coefficient[there];
+    }
+
+    /// Empties the places from this one on.
+    pub fn vacate(&mut self, first: usize) {
+        for column in &mut self.separation {
+            column[first..].fill(NOWHERE);
+        }
+        self.distance[first..].fill(NOWHERE * (D as f64).sqrt());
+        self.overlap[first..].fill(-NOWHERE * (D as f64).sqrt());
+        self.coefficient[first..].fill(1.0);
+    }
+}

@@ -1,0 +1,276 @@
+//! Which pairs may touch: a cell grid, a list with a skin, and when the list must be made anew.
+//!
+//! The list holds every pair closer than `R_i + R_j + skin`, held–held pairs left out. It stays complete until some
+//! disk has moved by half the skin. Each pair carries its separation at the anchors, so the box and its images are
+//! looked at only while the list is built.
+
+use crate::neighbours::cell_grid::{CellGrid, Run};
+use crate::neighbours::fast_disks::Far;
+use crate::neighbours::missing_pairs::Roaming;
+use crate::neighbours::pair_block::Measured;
+use crate::neighbours::pair_list::{BLOCK, PairList, Search, Source};
+use crate::neighbours::pair_types::Classes;
+use crate::packing::{Domain, PackingError};
+use crate::parallel::{self, PIECE};
+use crate::processor;
+use crate::vector::{Vector, difference, dot, extended_norm, extended_sum, sum, two_sum};
+
+/// The disks as the list builder sees them: mobile ones first, then the held ones.
+pub struct Disks<'a, const D: usize> {
+    /// The domain.
+    pub domain: &'a Domain<D>,
+    /// Positions, rounded to one number a coordinate \[length\].
+    pub anchors: &'a [Vector<D>],
+    /// Centre minus position \[length\].
+    pub displacements: &'a [Vector<D>],
+    /// Radii \[length\].
+    pub radii: &'a [f64],
+    /// How many of them, from the front, are mobile.
+    pub mobile_count: usize,
+    /// Their classes, if pairs are to be packed.
+    pub(crate) classes: Option<&'a Classes>,
+}
+
+impl<const D: usize> Disks<'_, D> {
+    /// Where a disk is, rounded \[length\].
+    pub(crate) fn centre(&self, disk: usize) -> Vector<D> {
+        sum(self.anchors[disk], self.displacements[disk])
+    }
+}
+
+/// Room for making a list, kept between two: only the first one asks for memory.
+#[derive(Debug, Clone, Default)]
+pub struct ListRoom<const D: usize> {
+    pub(crate) grid: CellGrid,
+    points: Vec<Vector<D>>,
+    /// Centres and radii in the order of the cells, so that the disks of a run lie side by side.
+    sorted: Vec<(Vector<D>, f64)>,
+    /// Disks that were listed anew since.
+    pub(crate) roaming: Roaming,
+    /// First disks of pairs that are looked up.
+    pub(crate) asked: Far,
+}
+
+/// Order of the disks cell by cell in rows, mobile ones before held ones: neighbours in space are neighbours in memory.
+pub fn spatial_order<const D: usize>(
+    domain: &Domain<D>,
+    points: &[Vector<D>],
+    radii: &[f64],
+    held: &[bool],
+) -> Vec<u32> {
+    let range = 2.0 * radii.iter().copied().fold(0.0, f64::max);
+    let mut grid = CellGrid::default();
+    grid.fill(domain, points, range);
+    let (held, mobile): (Vec<u32>, Vec<u32>) = grid.members.iter().partition(|&&disk| held[disk as usize]);
+    [mobile, held].concat()
+}
+
+/// Makes the list: every pair closer than reach + `skin`, ordered by the first disk.
+///
+/// # Errors
+/// A box too small for one image a pair, or two disks with the same centre.
+///
+/// # Cost
+/// Linear in the number of disks; about 25 steps of FIRE.
+pub fn build_pairs<const D: usize>(
+    disks: &Disks<'_, D>,
+    skin: f64,
+    coefficient: impl Fn(f64, f64) -> f64 + Sync,
+    room: &mut ListRoom<D>,
+    pairs: &mut PairList<D>,
+) -> Result<(), PackingError> {
+    let largest = disks.radii.iter().copied().fold(0.0, f64::max);
+    let lengths = disks.domain.lengths();
+    if let Some(lengths) = lengths {
+        // Two images of one disk are a side apart, so both can lie within the range only below this side.
+        if let Some(axis) = lengths.iter().position(|&length| length < 4.0 * largest) {
+            return Err(PackingError::BoxTooSmall { axis, length: lengths[axis], range: 2.0 * largest });
+        }
+    }
+    let ListRoom { grid, points, sorted, roaming, .. } = room;
+    roaming.clear();
+    points.resize(disks.anchors.len(), [0.0; D]);
+    let centres = disks.anchors.chunks(PIECE).zip(disks.displacements.chunks(PIECE));
+    parallel::each(points.chunks_mut(PIECE).zip(centres), |(points, (anchors, displacements))| {
+        for ((point, &anchor), &displacement) in points.iter_mut().zip(anchors).zip(displacements) {
+            *point = disks.domain.wrapped(sum(anchor, displacement));
+        }
+    });
+    grid.fill(disks.domain, points, 2.0 * largest + skin);
+    sorted.resize(points.len(), ([0.0; D], 0.0));
+    parallel::each(sorted.chunks_mut(PIECE).zip(grid.members.chunks(PIECE)), |(sorted, members)| {
+        for (place, &disk) in sorted.iter_mut().zip(members) {
+            *place = (points[disk as usize], disks.radii[disk as usize]);
+        }
+    });
+    let (grid, points, sorted) = (&*grid, &*points, &*sorted);
+    let nearby = Nearby { disks, skin, lengths, grid, points, sorted };
+    let (counts, keeps_places) = ((points.len(), disks.mobile_count), PairList::<D>::keeps_places(points.len()));
+    pairs.fill(counts, keeps_places, disks.classes.map(|classes| classes.kinds), || TileSearch {
+        nearby,
+        cell: usize::MAX,
+        runs: Vec::new(),
+        anchored: Anchored::new(disks, &coefficient),
+    })
+}
+
+/// What every tile is searched in.
+#[derive(Clone, Copy)]
+struct Nearby<'a, const D: usize> {
+    disks: &'a Disks<'a, D>,
+    skin: f64,
+    lengths: Option<Vector<D>>,
+    grid: &'a CellGrid,
+    points: &'a [Vector<D>],
+    sorted: &'a [(Vector<D>, f64)],
+}
+
+/// The search of one tile: the cell of the last disk looked at, and the cells around it.
+struct TileSearch<'a, const D: usize, C> {
+    nearby: Nearby<'a, D>,
+    cell: usize,
+    runs: Vec<Run<D>>,
+    anchored: Anchored<'a, D, C>,
+}
+
+/// Pairs of disks as they are at their anchors.
+pub(crate) struct Anchored<'a, const D: usize, C> {
+    disks: &'a Disks<'a, D>,
+    coefficient: &'a C,
+    ends: Ends<D>,
+}
+
+impl<'a, const D: usize, C> Anchored<'a, D, C> {
+    pub fn new(disks: &'a Disks<'a, D>, coefficient: &'a C) -> Self {
+        let ends = Ends { anchors: [([1.0; D], [0.0; D]); BLOCK], radii: [(1.0, 1.0); BLOCK] };
+        Anchored { disks, coefficient, ends }
+    }
+}
+
+impl<const D: usize, C: Fn(f64, f64) -> f64> Search<D> for TileSearch<'_, D, C> {
+    fn find(&mut self, first: usize, seconds: &mut Vec<u32>) {
+        let Nearby { disks, skin, lengths, grid, points, sorted, .. } = self.nearby;
+        let cell = grid.cell_of[first] as usize;
+        if cell != self.cell {
+            grid.neighbourhood(cell, lengths, &mut self.runs);
+            self.cell = cell;
+        }
+        let (point, radius) = (points[first], disks.radii[first]);
+        for run in &self.runs {
+            let from: Vector<D> = difference(point, run.shift);
+            let mut cells = run.cells.clone();
+            // The disks of a cell are in ascending order: a cell with none after the first disk has no second one.
+            while cells.start < cells.end && grid.last_of(cells.start).is_none_or(|last| last <= first) {
+                cells.start += 1;
+            }
+            let (start, end) = (grid.starts[cells.start] as usize, grid.starts[cells.end] as usize);
+            // Which of the disks of a run are near cannot be guessed: they are picked without a branch.
+            let mut count = seconds.len();
+            seconds.resize(count + end - start, 0);
+            for (&second, &(other, other_radius)) in grid.members[start..end].iter().zip(&sorted[start..end]) {
+                let range = radius + other_radius + skin;
+                let apart = difference(from, other);
+                seconds[count] = second;
+                // Rounding of the coordinates moves this edge by far less than the skin can spare. NaN counts as near.
+                let far = dot(apart, apart) >= range * range;
+                count += usize::from((second as usize > first) & !far);
+            }
+            seconds.truncate(count);
+        }
+    }
+}
+
+impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for TileSearch<'_, D, C> {
+    fn second(&self, pair: u32) -> u32 {
+        self.anchored.second(pair)
+    }
+
+    fn kind(&self, first: u32, pair: u32) -> u8 {
+        self.anchored.kind(first, pair)
+    }
+
+    fn measure(&mut self, first: &[u32], second: &[u32], measured: &mut Measured<D>) {
+        self.anchored.measure(first, second, measured);
+    }
+}
+
+impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for Anchored<'_, D, C> {
+    /// A pair of a disk bears the number of the other one.
+    fn second(&self, pair: u32) -> u32 {
+        pair
+    }
+
+    fn kind(&self, first: u32, pair: u32) -> u8 {
+        self.disks.classes.map_or(0, |classes| classes.kind(first as usize, pair as usize))
+    }
+
+    fn measure(&mut self, first: &[u32], second: &[u32], measured: &mut Measured<D>) {
+        let Anchored { disks, coefficient, ends } = self;
+        let lengths = disks.domain.lengths();
+        for (place, (&first, &second)) in first.iter().zip(second).enumerate() {
+            let (first, second) = (first as usize, second as usize);
+            ends.anchors[place] = (disks.anchors[first], disks.anchors[second]);
+            ends.radii[place] = (disks.radii[first], disks.radii[second]);
+        }
+        processor::dispatch(Measure { ends, lengths, coefficient, measured });
+        if let Some(classes) = disks.classes {
+            // The numbers of a packed list, whether it is packed or not.
+            for (place, (&first, &second)) in first.iter().zip(second).enumerate() {
+                let kind = classes.kind(first as usize, second as usize);
+                measured.distance[place] = classes.kinds.distance(kind, measured.overlap[place]);
+            }
+        }
+    }
+}
+
+/// Anchors and radii of both disks of the pairs of a block; as long as one whatever it holds, so that no pair is left over for
+/// a loop without vectors.
+struct Ends<const D: usize> {
+    anchors: [(Vector<D>, Vector<D>); BLOCK],
+    radii: [(f64, f64); BLOCK],
+}
+
+/// Separations, distances and overlaps of a block to full accuracy, some eighty operations a pair, in vectors.
+struct Measure<'a, const D: usize, C> {
+    ends: &'a Ends<D>,
+    /// Sides of a periodic box.
+    lengths: Option<Vector<D>>,
+    coefficient: &'a C,
+    measured: &'a mut Measured<D>,
+}
+
+impl<const D: usize, C: Fn(f64, f64) -> f64> pulp::WithSimd for Measure<'_, D, C> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _simd: S) {
+        let Measure { ends: Ends { anchors, radii }, lengths, coefficient, measured } = self;
+        let Measured { separation, distance, overlap, coefficient: coefficients } = measured;
+        for k in 0..BLOCK {
+            coefficients[k] = coefficient(radii[k].0, radii[k].1);
+        }
+        let mut rest = [[0.0; BLOCK]; D];
+        for k in 0..BLOCK {
+            for d in 0..D {
+                (separation[d][k], rest[d][k]) = two_sum(anchors[k].0[d], -anchors[k].1[d]);
+            }
+        }
+        if let Some(lengths) = lengths {
+            // Displacements within half a box keep the image; the caller re-anchors at every rebuild, so they are tiny here.
+            for k in 0..BLOCK {
+                for d in 0..D {
+                    // The image is nowhere near halfway: pairs are closer than half a side.
+                    let shift = -(separation[d][k] / lengths[d]).round_ties_even() * lengths[d];
+                    (separation[d][k], rest[d][k]) = extended_sum((separation[d][k], rest[d][k]), shift);
+                }
+            }
+        }
+        for k in 0..BLOCK {
+            let component = |column: &[[f64; BLOCK]; D]| -> Vector<D> { std::array::from_fn(|d| column[d][k]) };
+            let (rounded, of_distance) = extended_norm(component(separation), component(&rest));
+            let (gap, of_gap) = two_sum(radii[k].0 + radii[k].1, -rounded);
+            distance[k] = rounded;
+            overlap[k] = gap + (of_gap - of_distance);
+        }
+    }
+}

@@ -1,0 +1,324 @@
+//! [`ContactNetwork`]: who touches whom, rattlers, the backbone, coordination and pressure.
+//!
+//! A rattler is a mobile disk with fewer than D + 1 contacts; removing it may make others rattlers, so it is done until
+//! none is left. What remains is the backbone. The order of removal does not matter: the backbone is the largest set of
+//! disks that has D + 1 contacts each within itself and with held disks.
+//!
+//! # Source
+//! Goodrich, Liu, Nagel (2012), Phys. Rev. Lett. 109, 095704; design §4.
+
+use crate::forces::assembly::Assembly;
+use crate::forces::block_arithmetic::Columns;
+use crate::forces::elastic::fill;
+use crate::law::pair_law::PairLaw;
+use crate::packing::{Packing, PackingError};
+use crate::vector::{Vector, norm};
+
+/// Two disks that press on each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact<const D: usize> {
+    /// First disk.
+    pub first: u32,
+    /// Second disk.
+    pub second: u32,
+    /// Overlap δ > 0 \[length\].
+    pub overlap: f64,
+    /// Force F(δ) \[force\].
+    pub force: f64,
+    /// Energy u(δ) \[energy\].
+    pub energy: f64,
+    /// From the centre of the second to that of the first \[length\].
+    pub separation: Vector<D>,
+}
+
+/// All contacts of a packing and what follows from them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactNetwork<const D: usize> {
+    /// Contacts, held–held ones left out, in ascending order of (first, second).
+    pub contacts: Vec<Contact<D>>,
+    /// Whether each disk belongs to the backbone (held disks do).
+    pub backbone: Vec<bool>,
+    held: Vec<bool>,
+    forces: Vec<Vector<D>>,
+    on_site_energy: f64,
+}
+
+/// Which disks remain after rattlers are removed, held ones among them.
+///
+/// # Shape
+/// One entry a disk; `contacts` gives pairs of indices below `held.len()`.
+///
+/// # Cost
+/// Linear in disks and contacts.
+pub fn backbone<const D: usize>(held: &[bool], contacts: &[(u32, u32)]) -> Vec<bool> {
+    let mut remains = vec![true; held.len()];
+    Peeling::default().peel::<D>(|disk| held[disk], contacts, &mut remains);
+    remains
+}
+
+/// Room for finding a backbone, kept between two.
+#[derive(Debug, Clone, Default)]
+pub struct Peeling {
+    /// Where the neighbours of each disk begin, and of the last one end.
+    starts: Vec<u32>,
+    next: Vec<u32>,
+    neighbours: Vec<u32>,
+    /// Contacts with disks that were not removed yet.
+    degree: Vec<u32>,
+    doomed: Vec<u32>,
+}
+
+impl Peeling {
+    /// As [`backbone`], overwriting `remains`, which has one entry a disk.
+    pub fn peel<const D: usize>(
+        &mut self,
+        held: impl Fn(usize) -> bool,
+        contacts: &[(u32, u32)],
+        remains: &mut [bool],
+    ) {
+        let Peeling { starts, next, neighbours, degree, doomed } = self;
+        let count = remains.len();
+        degree.clear();
+        degree.resize(count, 0);
+        for &(first, second) in contacts {
+            degree[first as usize] += 1;
+            degree[second as usize] += 1;
+        }
+        starts.resize(count + 1, 0);
+        let mut total = 0;
+        for (start, &degree) in starts.iter_mut().zip(&*degree) {
+            *start = total;
+            total += degree;
+        }
+        starts[count] = total;
+        next.clone_from(starts);
+        neighbours.resize(2 * contacts.len(), 0);
+        for &(first, second) in contacts {
+            for (a, b) in [(first, second), (second, first)] {
+                neighbours[next[a as usize] as usize] = b;
+                next[a as usize] += 1;
+            }
+        }
+        let least = D as u32 + 1;
+        doomed.clear();
+        for (disk, remains) in remains.iter_mut().enumerate() {
+            *remains = held(disk) || degree[disk] >= least;
+            if !*remains {
+                doomed.push(disk as u32);
+            }
+        }
+        while let Some(disk) = doomed.pop() {
+            for &other in &neighbours[starts[disk as usize] as usize..starts[disk as usize + 1] as usize] {
+                let disk = other as usize;
+                degree[disk] -= 1;
+                if remains[disk] && !held(disk) && degree[disk] < least {
+                    remains[disk] = false;
+                    doomed.push(other);
+                }
+            }
+        }
+    }
+}
+
+impl<const D: usize> ContactNetwork<D> {
+    /// The contacts of a packing under a law, in the packing's own numbering.
+    ///
+    /// # Errors
+    /// As [`Assembly::new`].
+    pub fn new<L: PairLaw>(packing: &Packing<D>, law: &L) -> Result<Self, PackingError> {
+        let mut assembly = Assembly::new(packing, *law)?;
+        let on_site_energy = assembly.evaluate_totals().on_site_energy;
+        let order = assembly.order();
+        let mut contacts: Vec<Contact<D>> = working_contacts(&assembly)
+            .into_iter()
+            .map(|contact| {
+                let (a, b) = (order[contact.first as usize], order[contact.second as usize]);
+                if a < b {
+                    Contact { first: a, second: b, ..contact }
+                } else {
+                    let separation = std::array::from_fn(|d| -contact.separation[d]);
+                    Contact { first: b, second: a, separation, ..contact }
+                }
+            })
+            .collect();
+        contacts.sort_unstable_by_key(|contact| (contact.first, contact.second));
+        let links: Vec<(u32, u32)> = contacts.iter().map(|contact| (contact.first, contact.second)).collect();
+        let mut forces = vec![[0.0; D]; packing.len()];
+        for (&disk, force) in order.iter().zip(&assembly.forces) {
+            forces[disk as usize] = *force;
+        }
+        Ok(ContactNetwork {
+            backbone: backbone::<D>(packing.held(), &links),
+            contacts,
+            held: packing.held().to_vec(),
+            forces,
+            on_site_energy,
+        })
+    }
+
+    /// Net elastic force on each disk, with the push from its site where the law has one \[force\].
+    pub fn forces(&self) -> &[Vector<D>] {
+        &self.forces
+    }
+
+    /// Largest net force on a mobile disk \[force\]; NaN if any is.
+    pub fn largest_net_force(&self) -> f64 {
+        let mobile = self.forces.iter().zip(&self.held).filter(|(_, held)| !**held);
+        mobile.fold(0.0, |most, (force, _)| crate::vector::larger(norm(*force), most))
+    }
+
+    /// Elastic energy of the contacts \[energy\].
+    pub fn energy(&self) -> f64 {
+        total(self.contacts.iter().map(|contact| contact.energy))
+    }
+
+    /// Energy −(Γ/2) Σ u² of the disks at their sites, 0 for a law without them \[energy\].
+    pub fn on_site_energy(&self) -> f64 {
+        self.on_site_energy
+    }
+
+    /// Mobile disks that are not on the backbone.
+    pub fn rattlers(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.held.len()).filter(|&disk| !self.backbone[disk])
+    }
+
+    /// Number of mobile disks on the backbone.
+    pub fn backbone_count(&self) -> usize {
+        self.backbone.iter().zip(&self.held).filter(|&(&member, &held)| member && !held).count()
+    }
+
+    /// Whether both disks of a contact belong to the backbone.
+    pub fn on_backbone(&self, contact: &Contact<D>) -> bool {
+        self.backbone[contact.first as usize] && self.backbone[contact.second as usize]
+    }
+
+    /// Contacts between disks of the backbone.
+    pub fn backbone_contacts(&self) -> impl Iterator<Item = &Contact<D>> + '_ {
+        self.contacts.iter().filter(|contact| self.on_backbone(contact))
+    }
+
+    /// Mean number of contacts of a mobile disk of the backbone, Z; 0 without a backbone \[1\].
+    pub fn coordination(&self) -> f64 {
+        let count = self.backbone_count();
+        if count == 0 {
+            return 0.0;
+        }
+        self.backbone_end_count() as f64 / count as f64
+    }
+
+    /// Ends of the contacts of the backbone on its mobile disks: two a contact, one where the other disk is held.
+    pub fn backbone_end_count(&self) -> usize {
+        let mobile = |disk: u32| usize::from(!self.held[disk as usize]);
+        self.backbone_contacts().map(|contact| mobile(contact.first) + mobile(contact.second)).sum()
+    }
+
+    /// Mean force of the contacts of the backbone; 0 without a backbone \[force\].
+    pub fn mean_contact_force(&self) -> f64 {
+        let (count, total) =
+            self.backbone_contacts().fold((0usize, 0.0), |(count, total), contact| (count + 1, total + contact.force));
+        if count == 0 { 0.0 } else { total / count as f64 }
+    }
+
+    /// Virial tensor over a volume, positive in compression \[force / length^(D−1)\].
+    ///
+    /// ```text
+    /// σ_ab = Σ F r_a r_b / (r V)        p = tr σ / D
+    /// ```
+    pub fn stress(&self, volume: f64) -> [[f64; D]; D] {
+        let mut stress = [[0.0; D]; D];
+        for contact in &self.contacts {
+            let factor = contact.force / norm(contact.separation);
+            for a in 0..D {
+                for b in 0..D {
+                    stress[a][b] += factor * (contact.separation[a] * contact.separation[b]);
+                }
+            }
+        }
+        stress.map(|row| row.map(|value| value / volume))
+    }
+
+    /// Pressure p = Σ F r / (D V) \[force / length^(D−1)\].
+    pub fn pressure(&self, volume: f64) -> f64 {
+        let virial = total(self.contacts.iter().map(|contact| contact.force * norm(contact.separation)));
+        virial / (D as f64 * volume)
+    }
+
+    /// Pressure of a cluster of disks with a held rim: contacts for which `rim` holds at one end count half \[force / length^(D−1)\].
+    pub fn cluster_pressure(&self, volume: f64, rim: impl Fn(usize) -> bool) -> f64 {
+        let virial = total(self.contacts.iter().map(|contact| {
+            let share = if rim(contact.first as usize) || rim(contact.second as usize) { 0.5 } else { 1.0 };
+            share * contact.force * norm(contact.separation)
+        }));
+        virial / (D as f64 * volume)
+    }
+}
+
+/// The sum of values in their order; of none 0, where [`Iterator::sum`] has −0.
+fn total(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |sum, value| sum + value)
+}
+
+/// The contacts of an assembly, in working numbering and order of the list.
+pub fn working_contacts<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> Vec<Contact<D>> {
+    let law = assembly.law();
+    let mut contacts = Vec::with_capacity(assembly.pairs().len());
+    each_contact(assembly, |(first, second), columns, place| {
+        let (overlap, force) = (columns.overlap[place], columns.force[place]);
+        let separation = columns.apart.each_ref().map(|column| column[place]);
+        contacts.push(Contact { first, second, overlap, force, energy: law.energy(force, overlap), separation });
+    });
+    contacts
+}
+
+/// The contacts of an assembly as far as a backbone needs them, in working numbering and order of the list. Room that is kept between
+/// two looks.
+#[derive(Debug, Clone, Default)]
+pub struct Links {
+    /// The disks of each contact.
+    pub ends: Vec<(u32, u32)>,
+    /// Its force \[force\].
+    pub forces: Vec<f64>,
+}
+
+impl Links {
+    /// Overwrites them by the contacts of an assembly as it stands.
+    pub fn take<const D: usize, L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
+        let pairs = assembly.pairs();
+        self.ends.resize(pairs.len(), (0, 0));
+        self.forces.resize(pairs.len(), 0.0);
+        let mut columns = Columns::new();
+        let mut count = 0;
+        for block in &pairs.blocks {
+            fill(assembly.law(), pairs, (&assembly.displacements, 0), block, &mut columns);
+            let listed = block.pairs..block.pairs + block.pair_count;
+            let ends = pairs.first[listed.clone()].iter().zip(&pairs.second[listed]);
+            let values = columns.overlap.iter().zip(&columns.force);
+            for ((&first, &second), (&overlap, &force)) in ends.zip(values) {
+                // Which pairs touch cannot be guessed: they are picked without a branch.
+                self.ends[count] = (first, second);
+                self.forces[count] = force;
+                count += usize::from(overlap > 0.0);
+            }
+        }
+        self.ends.truncate(count);
+        self.forces.truncate(count);
+    }
+}
+
+/// Calls a function of (disks, columns of the block, place in them) of every contact, in the order of the list.
+fn each_contact<const D: usize, L: PairLaw>(
+    assembly: &Assembly<D, L>,
+    mut call: impl FnMut((u32, u32), &Columns<D>, usize),
+) {
+    let pairs = assembly.pairs();
+    let mut columns = Columns::new();
+    for block in &pairs.blocks {
+        fill(assembly.law(), pairs, (&assembly.displacements, 0), block, &mut columns);
+        for place in 0..block.pair_count {
+            if columns.overlap[place] > 0.0 {
+                let pair = block.pairs + place;
+                call((pairs.first[pair], pairs.second[pair]), &columns, place);
+            }
+        }
+    }
+}
