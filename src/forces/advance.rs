@@ -90,31 +90,19 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     let inside = |place: usize, (forces, velocities, displacements): Moving<'_, _, D>, bounds: &mut [Bound]| {
         let (tile, mobile, first) = (&tiles[place], velocities.len(), place * size);
         let interior = tile.interior.start.min(mobile)..tile.interior.end.min(mobile);
-        let (mut moved, mut swept, mut seen) = (0, tile.inner.start, interior.start);
-        let (mut room, mut looked) = (kernel.begin(), Vec::new());
+        let mut room = kernel.begin();
         forces[mobile..].fill(nothing);
-        for pass in tile.all_passes() {
-            while moved < pass.begun.min(mobile) {
-                let disks = moved..mobile.min(moved + PORTION);
-                moved = disks.end;
-                let bound = &mut bounds[disks.start / PORTION];
-                let begin = first + disks.start;
-                let of_disks = (&mut forces[disks.clone()], &mut velocities[disks.clone()], &mut displacements[disks]);
-                moves(begin, of_disks, bound);
-            }
-            if is_spent() {
-                continue;
-            }
-            let task = Task { kernel, pairs, displacements: (displacements, first as u32), tile, offset: first as u32 };
-            let end = tile.inner.start + pass.end;
-            sweep(&task, swept..end, forces, &mut room);
-            swept = end;
-            let done = pass.done.clamp(seen, interior.end);
-            looked.extend(tile.runs(seen..done).map(|run| look(&forces[run.clone()], &velocities[run])));
-            seen = done;
+        for begin in (0..mobile).step_by(PORTION) {
+            let disks = begin..mobile.min(begin + PORTION);
+            let of_disks = (&mut forces[disks.clone()], &mut velocities[disks.clone()], &mut displacements[disks]);
+            moves(first + begin, of_disks, &mut bounds[begin / PORTION]);
         }
-        looked.extend(tile.amended_of(interior).map(|disk| look(&forces[disk..=disk], &velocities[disk..=disk])));
-        looked
+        if is_spent() {
+            return None;
+        }
+        let task = Task { kernel, pairs, displacements: (displacements, first as u32), tile, offset: first as u32 };
+        sweep(&task, tile.inner.clone(), forces, &mut room);
+        Some(look(&forces[interior.clone()], &velocities[interior]))
     };
     let border = |place: usize, displacements: &[[_; D]], forces: &mut [[_; D]], across: &mut [[_; D]]| {
         let (tile, offset) = (&tiles[place], (place * size) as u32);
@@ -148,7 +136,7 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     } else {
         let (disk_count, mobile_count) = (displacements.len(), velocities.len());
         marginals.resize_with(tiles.len(), || None);
-        for (stage, place) in pairs.turns.iter() {
+        for (stage, place) in pairs.schedule.iter() {
             let (begin, end) = (place * size, disk_count.min((place + 1) * size));
             let moving = begin.min(mobile_count)..end.min(mobile_count);
             let forces = &mut forces[begin..end];

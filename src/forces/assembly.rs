@@ -13,16 +13,14 @@ use std::iter::repeat_with;
 use std::ops::RangeInclusive;
 
 use crate::forces::advance::{Advanced, Movers, Reach, advance};
-use crate::forces::assembly::list_keeping::LISTED;
 use crate::forces::elastic;
 use crate::forces::elastic::{Across, Plain};
 use crate::forces::stiffness_bound::{Weight, stiffness_rows};
 use crate::forces::totals::Totals;
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::displacement_bounds::Ways;
-use crate::neighbours::fast_disks::Far;
+use crate::neighbours::displacement_bounds::{LISTED, Ways};
+use crate::neighbours::fast_disks::FastDisks;
 use crate::neighbours::pair_list::PairList;
-use crate::neighbours::pair_types::Classes;
 use crate::neighbours::verlet_list::{Disks, ListRoom, build_pairs, spatial_order};
 use crate::packing::{Domain, Packing, PackingError};
 use crate::parallel::{self, PIECE};
@@ -50,12 +48,10 @@ pub struct Assembly<const D: usize, L> {
     /// Anchor minus site of each mobile disk, as unevaluated sums; empty for a law without sites.
     from_sites: Vec<[(f64, f64); D]>,
     radii: Vec<f64>,
-    /// Of a packing whose list is packed.
-    classes: Option<Classes>,
     pairs: PairList<D>,
     /// Near pairs, in place of `pairs` while there is a skin of theirs.
-    near_pairs: PairList<D>,
-    near_skin: Option<f64>,
+    inner_pairs: PairList<D>,
+    inner_skin: Option<f64>,
     /// Whether near pairs are ever picked.
     prunes: bool,
     /// Calls of [`Assembly::keep_listed`] since the list in use was made, and at how many the way of the disks is looked at.
@@ -73,9 +69,9 @@ pub struct Assembly<const D: usize, L> {
     skins: RangeInclusive<f64>,
     /// Displacements when the list of all pairs was made, or when a disk was listed anew in it; the same for near pairs.
     listed: Vec<Vector<D>>,
-    near_listed: Vec<Vector<D>>,
+    inner_at_build: Vec<Vector<D>>,
     /// Those that are listed anew.
-    far: Far,
+    far: FastDisks,
     /// Displacements to come back to, if the relaxer set a checkpoint.
     checkpoint: Vec<Vector<D>>,
     /// How far disks may have moved since they were listed in the list in use.
@@ -145,8 +141,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             displacements,
             forces: vec![[0.0; D]; packing.len()],
             listed: Vec::new(),
-            near_listed: Vec::new(),
-            far: Far::default(),
+            inner_at_build: Vec::new(),
+            far: FastDisks::default(),
             checkpoint: Vec::new(),
             ways: Ways::default(),
             ways_before: Vec::new(),
@@ -154,8 +150,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             rebuild_count: 0,
             from_sites: Vec::new(),
             pairs: PairList::default(),
-            near_pairs: PairList::default(),
-            near_skin: None,
+            inner_pairs: PairList::default(),
+            inner_skin: None,
             prunes: false,
             age: 0,
             look_at: 0,
@@ -163,7 +159,6 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             seen_at: 0,
             across: Across::default(),
             list_room: ListRoom::default(),
-            classes: PairList::<D>::are_long(radii.len()).then(|| Classes::of(&radii, &law)).flatten(),
             radii,
             smallest_radius,
             skin: narrowest,
@@ -238,7 +233,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// The neighbour list in use: every pair that may touch before the list is changed.
     pub fn pairs(&self) -> &PairList<D> {
-        in_use(self.near_skin, &self.near_pairs, &self.pairs)
+        in_use(self.inner_skin, &self.inner_pairs, &self.pairs)
     }
 
     /// How often the list of all pairs was made, the first time included.
@@ -248,7 +243,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// Forces of the present displacements into [`Assembly::forces`].
     pub fn evaluate(&mut self) {
-        let pairs = in_use(self.near_skin, &self.near_pairs, &self.pairs);
+        let pairs = in_use(self.inner_skin, &self.inner_pairs, &self.pairs);
         elastic::forces(&self.law, pairs, &self.displacements, &mut self.across, &mut self.forces);
         if self.law.has_sites() {
             let _ = self.add_on_site_forces();
@@ -271,8 +266,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             return Advanced::Not;
         }
         let limit = LISTED * self.skin();
-        let (pairs, listed) = match self.near_skin {
-            Some(_) => (&self.near_pairs, &self.near_listed),
+        let (pairs, listed) = match self.inner_skin {
+            Some(_) => (&self.inner_pairs, &self.inner_at_build),
             None => (&self.pairs, &self.listed),
         };
         let movers = Movers { velocities, displacements: &mut self.displacements, forces: &mut self.forces };
@@ -285,7 +280,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// Forces as by [`Assembly::evaluate`], with energy, virial and contact count.
     pub fn evaluate_totals(&mut self) -> Totals<D> {
-        let pairs = in_use(self.near_skin, &self.near_pairs, &self.pairs);
+        let pairs = in_use(self.inner_skin, &self.inner_pairs, &self.pairs);
         let mut totals =
             elastic::forces_and_totals(&self.law, pairs, &self.displacements, &mut self.across, &mut self.forces);
         if self.law.has_sites() {
@@ -353,15 +348,6 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.rebuild()
     }
 
-    /// Packs lists, or not, from now on, whatever the machine.
-    #[cfg(test)]
-    pub(crate) fn pack(&mut self, packs: bool) {
-        if let Some(classes) = &mut self.classes {
-            classes.kinds.packs = packs;
-        }
-        self.rebuild().expect("as before");
-    }
-
     fn rebuild(&mut self) -> Result<(), PackingError> {
         let anchors = self.anchors[..self.mobile_count].chunks_mut(PIECE);
         let displacements = self.displacements[..self.mobile_count].chunks_mut(PIECE);
@@ -408,7 +394,6 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             displacements: &self.displacements,
             radii: &self.radii,
             mobile_count: self.mobile_count,
-            classes: self.classes.as_ref(),
         }
     }
 
@@ -429,8 +414,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 }
 
 /// Near pairs while there is a skin of theirs, or all.
-fn in_use<'a, const D: usize>(near_skin: Option<f64>, near: &'a PairList<D>, all: &'a PairList<D>) -> &'a PairList<D> {
-    if near_skin.is_some() { near } else { all }
+fn in_use<'a, const D: usize>(inner_skin: Option<f64>, near: &'a PairList<D>, all: &'a PairList<D>) -> &'a PairList<D> {
+    if inner_skin.is_some() { near } else { all }
 }
 
 /// What anchors are counted from, and the domain seen from there: the corner of a periodic box; in the open plane the

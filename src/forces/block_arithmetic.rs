@@ -6,11 +6,12 @@
 use pulp::Simd;
 
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::block_storage::{AtAnchors, OfBlock};
-use crate::neighbours::pair_list::{BLOCK, Block, PairList};
+use crate::neighbours::block::{BLOCK, Block};
+use crate::neighbours::pair_block::PairBlock;
+use crate::neighbours::pair_list::PairList;
 use crate::processor::Processor;
-use crate::simd::ahead::Cache;
 use crate::simd::components;
+use crate::simd::prefetch::Cache;
 use crate::simd::roots::{positive_part, reciprocal, square_roots};
 use crate::vector::Vector;
 
@@ -21,6 +22,11 @@ fn blocks_ahead(cache: Cache) -> usize {
         Cache::Second => 2,
         Cache::First => 1,
     }
+}
+
+/// The same in numbers of a column.
+fn places_ahead<const D: usize>(cache: Cache) -> usize {
+    blocks_ahead(cache) * size_of::<PairBlock<D>>() / size_of::<f64>()
 }
 
 /// One block of pairs, column by column.
@@ -40,18 +46,18 @@ pub(crate) struct Columns<const D: usize> {
 /// What the list has of a block, and how many pairs that are.
 pub(crate) struct Anchors<'a, const D: usize> {
     pair_count: usize,
-    listed: OfBlock<'a, D>,
+    block: &'a PairBlock<D>,
 }
 
 impl<'a, const D: usize> Anchors<'a, D> {
     #[inline(always)]
     pub fn of(pairs: &'a PairList<D>, block: &Block) -> Self {
-        Anchors { pair_count: block.pair_count, listed: pairs.listed.of_block(block.pairs / BLOCK) }
+        Anchors { pair_count: block.pair_count, block: &pairs.pair_blocks[block.pairs / BLOCK] }
     }
 
     /// Vectors of pairs, an even number of them.
     #[inline(always)]
-    fn turns<S: Simd>(&self) -> usize {
+    fn vector_count<S: Simd>(&self) -> usize {
         (2 * self.pair_count.div_ceil(2 * S::F64_LANES)).min(BLOCK / S::F64_LANES)
     }
 }
@@ -71,25 +77,17 @@ impl<const D: usize> Columns<D> {
     /// From the relative displacements: separations, overlaps and one over the distances.
     #[inline(always)]
     pub fn measure<S: Simd>(&mut self, simd: S, anchors: &Anchors<'_, D>) {
-        let count = anchors.turns::<S>();
-        match anchors.listed {
-            OfBlock::Each(block) => self.measure_from(simd, count, block),
-            OfBlock::Packed(block, kinds) => self.measure_from(simd, count, (block, kinds)),
-        }
-    }
-
-    #[inline(always)]
-    fn measure_from<S: Simd, A: AtAnchors<D>>(&mut self, simd: S, count: usize, listed: A) {
+        let (count, block) = (anchors.vector_count::<S>(), anchors.block);
         let cache = Cache::here();
-        let blocks = blocks_ahead(cache);
-        let ahead = blocks * A::SIZE / size_of::<f64>();
+        let ahead = places_ahead::<D>(cache);
         let read = |column| &S::as_simd_f64s(column).0[..count];
-        let anchor_separation = listed.separation().each_ref().map(|column| read(&column[..]));
-        let anchor_overlap = read(listed.overlap());
+        let anchor_separation = block.separation.each_ref().map(|column| read(&column[..]));
+        let anchor_overlap = read(&block.overlap);
         let moved = &S::as_simd_f64s(self.pull.as_flattened()).0[..D * count];
         let apart = self.apart.each_mut().map(|column| &mut S::as_mut_simd_f64s(column).0[..count]);
         let overlap = &mut S::as_mut_simd_f64s(&mut self.overlap).0[..count];
         let inverse = &mut S::as_mut_simd_f64s(&mut self.inverse).0[..count];
+        let anchor_distance = read(&block.distance);
         let (zero, roots) = (simd.splat_f64s(0.0), Processor::here().roots());
         for k in (0..count).step_by(2) {
             let mut squares = [zero; 2];
@@ -108,7 +106,7 @@ impl<const D: usize> Columns<D> {
                         _ => (simd.add_f64s(*square, squared), simd.add_f64s(change, changed)),
                     };
                     apart[d][k] = along;
-                    cache.ask(&listed.separation()[d], ahead + k * S::F64_LANES);
+                    cache.prefetch(&block.separation[d], ahead + k * S::F64_LANES);
                 }
                 overlap[k] = change;
             }
@@ -116,38 +114,25 @@ impl<const D: usize> Columns<D> {
         }
         for k in 0..count {
             let distance = inverse[k];
-            let both = simd.add_f64s(distance, listed.distance(simd, k, anchor_overlap[k]));
+            let both = simd.add_f64s(distance, anchor_distance[k]);
             // One reciprocal for change / both and 1 / distance: divisions and roots are what the loop waits for.
             let of_both = reciprocal(simd, roots, simd.mul_f64s(distance, both));
             let change = simd.mul_f64s(overlap[k], simd.mul_f64s(distance, of_both));
             overlap[k] = positive_part(simd, simd.sub_f64s(anchor_overlap[k], change));
             inverse[k] = simd.mul_f64s(both, of_both);
-            listed.ask_for_distance(cache, blocks, k * S::F64_LANES);
-            cache.ask(listed.overlap(), ahead + k * S::F64_LANES);
+            cache.prefetch(&block.distance, ahead + k * S::F64_LANES);
+            cache.prefetch(&block.overlap, ahead + k * S::F64_LANES);
         }
     }
 
     /// From the overlaps: the forces of a law, and if it is to `RESOLVE` them, what [`Columns::resolve`] makes of these.
     #[inline(always)]
     pub fn press<S: Simd, L: PairLaw, const RESOLVE: bool>(&mut self, simd: S, law: &L, anchors: &Anchors<'_, D>) {
-        let count = anchors.turns::<S>();
-        match anchors.listed {
-            OfBlock::Each(block) => self.press_from::<S, L, _, RESOLVE>(simd, law, count, block),
-            OfBlock::Packed(block, kinds) => self.press_from::<S, L, _, RESOLVE>(simd, law, count, (block, kinds)),
-        }
-    }
-
-    #[inline(always)]
-    fn press_from<S: Simd, L: PairLaw, A: AtAnchors<D>, const RESOLVE: bool>(
-        &mut self,
-        simd: S,
-        law: &L,
-        count: usize,
-        listed: A,
-    ) {
+        let (count, block) = (anchors.vector_count::<S>(), anchors.block);
         let cache = Cache::here();
-        let blocks = blocks_ahead(cache);
-        let one = simd.splat_f64s(listed.one_coefficient());
+        let ahead = places_ahead::<D>(cache);
+        let coefficient = &S::as_simd_f64s(&block.coefficient).0[..count];
+        let one = simd.splat_f64s(block.coefficient[0]);
         let overlap = &S::as_simd_f64s(&self.overlap).0[..count];
         let inverse = &S::as_simd_f64s(&self.inverse).0[..count];
         let apart = self.apart.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
@@ -156,7 +141,7 @@ impl<const D: usize> Columns<D> {
         for k in (0..count).step_by(2) {
             let coefficients = match L::ONE_COEFFICIENT {
                 true => [one; 2],
-                false => [listed.coefficient(simd, k), listed.coefficient(simd, k + 1)],
+                false => [coefficient[k], coefficient[k + 1]],
             };
             let forces = law.forces(simd, coefficients, [overlap[k], overlap[k + 1]]);
             [force[k], force[k + 1]] = forces;
@@ -166,8 +151,8 @@ impl<const D: usize> Columns<D> {
                 }
             }
             if !L::ONE_COEFFICIENT {
-                listed.ask_for_coefficient(cache, blocks, k * S::F64_LANES);
-                listed.ask_for_coefficient(cache, blocks, (k + 1) * S::F64_LANES);
+                cache.prefetch(&block.coefficient, ahead + k * S::F64_LANES);
+                cache.prefetch(&block.coefficient, ahead + (k + 1) * S::F64_LANES);
             }
         }
     }

@@ -10,8 +10,9 @@ use crate::forces::block_arithmetic::{Anchors, Columns};
 use crate::law::damping::DampingLaw;
 use crate::law::kernel::{LawKernel, dispatch};
 use crate::law::pair_law::PairLaw;
+use crate::neighbours::block::BLOCK;
 use crate::neighbours::for_each_pair::{Walked, walk};
-use crate::neighbours::pair_list::{BLOCK, PairList};
+use crate::neighbours::pair_list::PairList;
 use crate::neighbours::rows::{gather, scatter};
 use crate::simd::lanes;
 use crate::vector::Vector;
@@ -34,13 +35,13 @@ pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
 ) -> f64 {
     forces.fill([0.0; D]);
     let mut power = 0.0;
-    let (mut columns, mut apace) = (Columns::<D>::new(), [[0.0; D]; BLOCK]);
+    let (mut columns, mut relative_velocity) = (Columns::<D>::new(), [[0.0; D]; BLOCK]);
     for block in &pairs.blocks {
         let listed = block.pairs..block.pairs + block.pair_count;
         gather(&mut columns.pull, pairs, block, (displacements, 0));
-        gather(&mut apace, pairs, block, (velocities, 0));
-        let (apace, coefficient) = (&apace[..block.pair_count], &damping_coefficient[listed]);
-        let (damping, anchors) = (Damping { law: damping, coefficient, apace }, Anchors::of(pairs, block));
+        gather(&mut relative_velocity, pairs, block, (velocities, 0));
+        let (relative_velocity, coefficient) = (&relative_velocity[..block.pair_count], &damping_coefficient[listed]);
+        let (damping, anchors) = (Damping { law: damping, coefficient, relative_velocity }, Anchors::of(pairs, block));
         power += dispatch(law, Arithmetic { damping, columns: &mut columns, anchors });
         scatter(&columns.pull, pairs, block, (forces, 0));
     }
@@ -59,7 +60,7 @@ struct Damping<'a, const D: usize, C> {
     law: &'a C,
     coefficient: &'a [f64],
     /// Relative velocities.
-    apace: &'a [Vector<D>],
+    relative_velocity: &'a [Vector<D>],
 }
 
 impl<const D: usize, C: DampingLaw> LawKernel for Arithmetic<'_, D, C> {
@@ -70,7 +71,7 @@ impl<const D: usize, C: DampingLaw> LawKernel for Arithmetic<'_, D, C> {
         self.columns.measure(simd, &self.anchors);
         self.columns.press::<S, L, false>(simd, law, &self.anchors);
         let mut power = [0.0; BLOCK];
-        let count = self.damping.apace.len();
+        let count = self.damping.relative_velocity.len();
         self.damping.resist(self.columns, &mut power[..count]);
         self.columns.resolve(simd);
         lanes::sum(simd, &power[..count])
@@ -82,14 +83,14 @@ impl<const D: usize, C: DampingLaw> Damping<'_, D, C> {
     #[inline(always)]
     fn resist(&self, columns: &mut Columns<D>, power: &mut [f64]) {
         let count = power.len();
-        let (apace, coefficient) = (&self.apace[..count], &self.coefficient[..count]);
+        let (relative_velocity, coefficient) = (&self.relative_velocity[..count], &self.coefficient[..count]);
         let apart = columns.apart.each_ref().map(|column| &column[..count]);
         let (overlap, force) = (&columns.overlap[..count], &mut columns.force[..count]);
         let inverse = &columns.inverse[..count];
         for k in 0..count {
             let mut along = 0.0;
             for d in 0..D {
-                along += apace[k][d] * apart[d][k];
+                along += relative_velocity[k][d] * apart[d][k];
             }
             let normal_velocity = along * inverse[k];
             let resistance = self.law.damping(coefficient[k], overlap[k]);

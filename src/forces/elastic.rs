@@ -20,8 +20,9 @@ use crate::forces::block_arithmetic::{Anchors, Columns};
 use crate::forces::totals::{Tally, Totals};
 use crate::law::kernel::{LawKernel, dispatch};
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::pair_list::{BLOCK, Block, PairList};
-use crate::neighbours::rows::{ask_for_later_rows, gather, scatter};
+use crate::neighbours::block::{BLOCK, Block};
+use crate::neighbours::pair_list::PairList;
+use crate::neighbours::rows::{gather, prefetch_rows, scatter};
 use crate::neighbours::tiles::Tile;
 use crate::parallel;
 use crate::vector::{Number, Vector, difference, sum};
@@ -255,7 +256,7 @@ pub(crate) fn fill<const D: usize, L: PairLaw>(
     block: &Block,
     columns: &mut Columns<D>,
 ) {
-    ask_for_later_rows(pairs, block);
+    prefetch_rows(pairs, block);
     gather(&mut columns.pull, pairs, block, displacements);
     dispatch(law, Arithmetic { columns, anchors: Anchors::of(pairs, block) });
 }

@@ -21,12 +21,13 @@ use crate::forces::assembly::Assembly;
 use crate::forces::elastic::{Across, Kernel, all_tiles};
 use crate::law::kernel::{LawKernel, dispatch};
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::pair_list::{BLOCK, PairList};
-use crate::neighbours::rows::{ask_for_later_rows, gather};
-use crate::neighbours::single_precision::{Factors, InSingle, OfBlockInSingle, Rounded};
+use crate::neighbours::block::BLOCK;
+use crate::neighbours::pair_list::PairList;
+use crate::neighbours::rows::{gather, prefetch_rows};
+use crate::neighbours::single_precision::{Factors, SingleBlock, SingleBlocks};
 use crate::parallel::{self, PIECE};
-use crate::simd::ahead::Cache;
 use crate::simd::components;
+use crate::simd::prefetch::Cache;
 use crate::simd::roots::positive_part_in_single;
 use crate::vector::{Vector, larger, longest_difference_squared};
 
@@ -82,7 +83,7 @@ fn power_of_two(exponent: i32) -> f64 {
 #[derive(Debug, Clone)]
 pub struct Single<const D: usize> {
     units: Units,
-    blocks: Rounded<D>,
+    blocks: SingleBlocks<D>,
     base: Vec<Vector<D>>,
     ways: Vec<[f32; D]>,
     /// Forces of the last evaluation, all disks \[`Units::force`\].
@@ -101,7 +102,7 @@ impl<const D: usize> Single<D> {
         let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
         Some(Single {
             units: Units::of(radius, assembly.law().force_scale(radius))?,
-            blocks: Rounded::default(),
+            blocks: SingleBlocks::default(),
             base: Vec::new(),
             ways: vec![[0.0; D]; assembly.len()],
             forces: vec![[0.0; D]; assembly.len()],
@@ -161,7 +162,7 @@ impl<const D: usize> Single<D> {
         let coefficient = libm::pow(self.units.length, law.exponent() - 1.0) / self.units.force;
         let factors = Factors { length: 1.0 / self.units.length, coefficient };
         if pairs.is_long() && known.is_some_and(|(same, _)| same == list) {
-            self.blocks.round_again(pairs.amended_blocks(), pairs, &self.base, factors);
+            self.blocks.round_again(pairs.blocks_with_insertions(), pairs, &self.base, factors);
             return;
         }
         self.base.clone_from(&assembly.displacements);
@@ -248,7 +249,7 @@ fn longest_way<const D: usize>(unit: f64, (base, ways): (&[Vector<D>], &[[f32; D
 struct Pressed<'a, const D: usize, L> {
     law: &'a L,
     pairs: &'a PairList<D>,
-    blocks: &'a Rounded<D>,
+    blocks: &'a SingleBlocks<D>,
 }
 
 impl<const D: usize, L: PairLaw> Kernel<D> for Pressed<'_, D, L> {
@@ -266,10 +267,10 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Pressed<'_, D, L> {
         ways: (&[[f32; D]], u32),
         (columns, ()): &'a mut (Columns<D>, ()),
     ) -> &'a [[f32; D]; BLOCK] {
-        ask_for_later_rows(self.pairs, &self.pairs.blocks[block]);
+        prefetch_rows(self.pairs, &self.pairs.blocks[block]);
         gather(&mut columns.pull, self.pairs, &self.pairs.blocks[block], ways);
-        let (listed, pair_count) = (self.blocks.of_block(block), self.pairs.blocks[block].pair_count);
-        dispatch(self.law, Arithmetic { listed, columns, pair_count, asks: self.pairs.asks() });
+        let (of_pairs, pair_count) = (self.blocks.block(block), self.pairs.blocks[block].pair_count);
+        dispatch(self.law, Arithmetic { block: of_pairs, columns, pair_count, prefetches: self.pairs.prefetches() });
         &columns.pull
     }
 }
@@ -290,11 +291,11 @@ impl<const D: usize> Columns<D> {
 }
 
 struct Arithmetic<'a, const D: usize> {
-    listed: OfBlockInSingle<'a, D>,
+    block: &'a SingleBlock<D>,
     columns: &'a mut Columns<D>,
     pair_count: usize,
     /// Where a later block is asked to meanwhile, if the list is long.
-    asks: Option<Cache>,
+    prefetches: Option<Cache>,
 }
 
 impl<const D: usize> LawKernel for Arithmetic<'_, D> {
@@ -302,17 +303,7 @@ impl<const D: usize> LawKernel for Arithmetic<'_, D> {
 
     #[inline(always)]
     fn run<S: Simd, L: PairLaw>(self, simd: S, law: &L) {
-        match self.listed {
-            OfBlockInSingle::Each(block) => self.press(simd, law, block),
-            OfBlockInSingle::Packed(block, kinds) => self.press(simd, law, (block, kinds)),
-        }
-    }
-}
-
-impl<const D: usize> Arithmetic<'_, D> {
-    #[inline(always)]
-    fn press<S: Simd, L: PairLaw, A: InSingle<D>>(self, simd: S, law: &L, listed: A) {
-        let Arithmetic { columns, pair_count, asks, .. } = self;
+        let Arithmetic { block, columns, pair_count, prefetches } = self;
         let count = pair_count.div_ceil(S::F32_LANES).min(BLOCK / S::F32_LANES);
         let read = |column| &S::as_simd_f32s(column).0[..count];
         let (zero, one) = (simd.splat_f32s(0.0), simd.splat_f32s(1.0));
@@ -320,8 +311,9 @@ impl<const D: usize> Arithmetic<'_, D> {
         let apart = columns.apart.each_mut().map(|column| &mut S::as_mut_simd_f32s(column).0[..count]);
         let change = &mut S::as_mut_simd_f32s(&mut columns.change).0[..count];
         let distance = &mut S::as_mut_simd_f32s(&mut columns.distance).0[..count];
-        let separation = listed.separation().each_ref().map(|column| read(&column[..]));
-        let (listed_overlap, one_coefficient) = (read(listed.overlap()), simd.splat_f32s(listed.one_coefficient()));
+        let separation = block.separation.each_ref().map(|column| read(&column[..]));
+        let (anchor_distance, anchor_overlap) = (read(&block.distance), read(&block.overlap));
+        let (coefficients, one_coefficient) = (read(&block.coefficient), simd.splat_f32s(block.coefficient[0]));
         for k in 0..count {
             let way = components::split_single::<S, D>(simd, &pull[D * k..D * (k + 1)]);
             let (mut square, mut changed) = (zero, zero);
@@ -335,18 +327,18 @@ impl<const D: usize> Arithmetic<'_, D> {
                 };
                 apart[d][k] = along;
             }
-            if let Some(cache) = asks {
-                listed.ask(cache, blocks_ahead(cache), k * S::F32_LANES, !L::ONE_COEFFICIENT);
+            if let Some(cache) = prefetches {
+                block.prefetch(cache, blocks_ahead(cache), k * S::F32_LANES, !L::ONE_COEFFICIENT);
             }
             change[k] = changed;
             distance[k] = simd.sqrt_f32s(square);
         }
         for k in 0..count {
-            let both = simd.add_f32s(distance[k], listed.distance(simd, k, listed_overlap[k]));
+            let both = simd.add_f32s(distance[k], anchor_distance[k]);
             let inverse = simd.div_f32s(one, simd.mul_f32s(distance[k], both));
             let changed = simd.mul_f32s(change[k], simd.mul_f32s(distance[k], inverse));
-            let overlap = positive_part_in_single(simd, simd.sub_f32s(listed_overlap[k], changed));
-            let coefficient = if L::ONE_COEFFICIENT { one_coefficient } else { listed.coefficient(simd, k) };
+            let overlap = positive_part_in_single(simd, simd.sub_f32s(anchor_overlap[k], changed));
+            let coefficient = if L::ONE_COEFFICIENT { one_coefficient } else { coefficients[k] };
             let force = law.forces_in_single(simd, coefficient, overlap);
             let factor = simd.mul_f32s(force, simd.mul_f32s(both, inverse));
             let mut along = [factor; D];
@@ -362,27 +354,9 @@ impl<const D: usize> Arithmetic<'_, D> {
 mod tests {
     use super::*;
     use crate::law::pair_law::Hertzian;
-    use crate::neighbours::single_precision::{Each, KindsInSingle, Packed};
     use crate::processor::Processor;
 
     /// The forces of a block, with every width of vectors, prefetched or not.
-    fn forces_of(listed: OfBlockInSingle<'_, 2>, ways: &[[f32; 2]; BLOCK]) -> [[f32; 2]; BLOCK] {
-        let law = &Hertzian::default();
-        let mut forces = Vec::new();
-        for asks in [None, Some(Cache::First), Some(Cache::Second)] {
-            for processor in Processor::all() {
-                let columns = &mut Columns { pull: *ways, ..Columns::new() };
-                processor.run(|| dispatch(law, Arithmetic { listed, columns, pair_count: BLOCK, asks }));
-                forces.push(columns.pull);
-            }
-        }
-        let bits = |forces: &[[f32; 2]; BLOCK]| forces.map(|force| force.map(f32::to_bits));
-        assert!(forces.iter().all(|one| bits(one) == bits(&forces[0])));
-        let pressed = forces[0].iter().filter(|force| force[0] != 0.0).count();
-        assert!((BLOCK / 4..BLOCK).contains(&pressed), "{pressed} pairs press");
-        forces[0]
-    }
-
     #[test]
     fn the_bits_of_a_block_do_not_depend_on_the_width_of_vectors() {
         let wave = |by: f32, from: f32, size: f32| -> [f32; BLOCK] {
@@ -391,22 +365,20 @@ mod tests {
         let (separation, overlap) = ([wave(1.3, 0.4, 0.5), wave(2.7, 0.6, 0.3)], wave(1.9, 0.0, 0.2));
         let [x, y] = [wave(3.1, 0.0, 0.05), wave(0.9, 0.0, 0.05)];
         let ways: [[f32; 2]; BLOCK] = std::array::from_fn(|k| [x[k], y[k]]);
-        let listed = Each::<2> { separation, distance: wave(0.7, 1.0, 0.1), overlap, coefficient: wave(0.3, 2.0, 1.0) };
-        forces_of(OfBlockInSingle::Each(&listed), &ways);
-        // Packed, and the same numbers not packed.
-        let kinds = KindsInSingle {
-            reach: [1.0, 1.2, 1.4, 1.3, 1.5, 0.0, 1.8, 0.0],
-            coefficient: [2.0, 2.1, 2.2, 2.15, 2.3, 0.0, 2.5, 0.0],
-        };
-        let kind: [u8; BLOCK] = std::array::from_fn(|k| [0, 1, 2, 3, 4, 6][k % 6]);
-        let packed = Packed::<2> { separation, overlap, kind };
-        let listed = Each::<2> {
-            separation,
-            distance: std::array::from_fn(|k| kinds.reach[usize::from(kind[k])] - overlap[k]),
-            overlap,
-            coefficient: kind.map(|kind| kinds.coefficient[usize::from(kind)]),
-        };
-        let of_packed = forces_of(OfBlockInSingle::Packed(&packed, &kinds), &ways);
-        assert_eq!(of_packed, forces_of(OfBlockInSingle::Each(&listed), &ways));
+        let block =
+            &SingleBlock::<2> { separation, distance: wave(0.7, 1.0, 0.1), overlap, coefficient: wave(0.3, 2.0, 1.0) };
+        let law = &Hertzian::default();
+        let mut forces = Vec::new();
+        for prefetches in [None, Some(Cache::First), Some(Cache::Second)] {
+            for processor in Processor::all() {
+                let columns = &mut Columns { pull: ways, ..Columns::new() };
+                processor.run(|| dispatch(law, Arithmetic { block, columns, pair_count: BLOCK, prefetches }));
+                forces.push(columns.pull);
+            }
+        }
+        let bits = |forces: &[[f32; 2]; BLOCK]| forces.map(|force| force.map(f32::to_bits));
+        assert!(forces.iter().all(|one| bits(one) == bits(&forces[0])));
+        let pressed = forces[0].iter().filter(|force| force[0] != 0.0).count();
+        assert!((BLOCK / 4..BLOCK).contains(&pressed), "{pressed} pairs press");
     }
 }

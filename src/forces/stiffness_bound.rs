@@ -3,8 +3,9 @@
 use crate::forces::block_arithmetic::{Anchors, Columns};
 use crate::law::kernel::{LawKernel, dispatch};
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::pair_list::{BLOCK, PairList};
-use crate::neighbours::rows::{ask_for_later_rows, gather, scatter_with};
+use crate::neighbours::block::BLOCK;
+use crate::neighbours::pair_list::PairList;
+use crate::neighbours::rows::{gather, prefetch_rows, scatter_with};
 use crate::neighbours::tiles::Tile;
 use crate::parallel;
 use crate::vector::{Vector, sum};
@@ -59,7 +60,7 @@ impl<const D: usize, L: PairLaw> Task<'_, D, L> {
         let mut values = [[0.0]; BLOCK];
         for place in tile.inner.start..tile.border.end {
             let block = &pairs.blocks[place];
-            ask_for_later_rows(pairs, block);
+            prefetch_rows(pairs, block);
             gather(&mut columns.pull, pairs, block, (self.displacements, 0));
             let anchors = Anchors::of(pairs, block);
             dispatch(self.law, Arithmetic { columns: &mut columns, anchors, values: &mut values });

@@ -3,7 +3,7 @@
 use crate::forces::block_arithmetic::Columns;
 use crate::law::kernel::LawKernel;
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::pair_list::BLOCK;
+use crate::neighbours::block::BLOCK;
 use crate::simd::lanes;
 
 /// What the loop sums beside the forces.

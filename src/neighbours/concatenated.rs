@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use crate::neighbours::pair_list::{Block, PairList};
+use crate::neighbours::block::Block;
+use crate::neighbours::pair_list::PairList;
 use crate::neighbours::tiles::Tile;
 use crate::parallel;
 
@@ -17,11 +18,11 @@ impl<const D: usize> PairList<D> {
         }
         self.rows.reserve(rows);
         self.blocks.reserve(blocks);
-        self.listed.reserve(blocks);
+        self.pair_blocks.reserve(blocks);
     }
 
     /// Overwrites the list by lists of one tile each, one after the other.
-    pub(crate) fn join(&mut self, parts: &[PairList<D>], tiles: &mut [Tile]) {
+    pub(crate) fn concatenate(&mut self, parts: &[PairList<D>], tiles: &mut [Tile]) {
         self.rows.clear();
         self.blocks.clear();
         let (mut pairs, mut blocks) = (0, 0);
@@ -35,23 +36,23 @@ impl<const D: usize> PairList<D> {
             tile.border_pairs = moved(&tile.border_pairs, pairs);
             (pairs, blocks) = (pairs + part.place_count(), self.blocks.len());
         }
-        join_column(&mut self.first, parts, |part| &part.first);
-        join_column(&mut self.second, parts, |part| &part.second);
-        join_column(&mut self.ends, parts, |part| &part.ends);
+        concatenate_column(&mut self.first, parts, |part| &part.first);
+        concatenate_column(&mut self.second, parts, |part| &part.second);
+        concatenate_column(&mut self.ends, parts, |part| &part.ends);
         let begins = parts.iter().scan(0, |blocks, part| {
             *blocks += part.blocks.len();
             Some(*blocks - part.blocks.len())
         });
         let begins: Vec<usize> = begins.collect();
-        self.listed.join(self.blocks.len(), |block| {
+        parallel::fill(&mut self.pair_blocks, self.blocks.len(), |block| {
             let part = begins.partition_point(|&begin| begin <= block) - 1;
-            (&parts[part].listed, block - begins[part])
+            parts[part].pair_blocks[block - begins[part]].clone()
         });
     }
 }
 
 /// Overwrites a column by that of every part, one after the other.
-fn join_column<const D: usize, T: Copy + Default + Send + Sync>(
+fn concatenate_column<const D: usize, T: Copy + Default + Send + Sync>(
     column: &mut Vec<T>,
     parts: &[PairList<D>],
     of_part: impl Fn(&PairList<D>) -> &Vec<T>,

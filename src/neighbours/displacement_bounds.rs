@@ -6,6 +6,9 @@ use std::ops::Range;
 
 use crate::vector::larger;
 
+/// How far a disk may move after a list was built, over the width of the skin: half of it, less the rounding of the comparison.
+pub(crate) const LISTED: f64 = 0.4999;
+
 /// Disks of a portion.
 pub(crate) const PORTION: usize = 1024;
 

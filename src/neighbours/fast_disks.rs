@@ -1,16 +1,17 @@
-//! Disks that went far from where they were listed, a few of very many.
+//! A few fast disks of very many: those that have moved far since a Verlet list was built.
 
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 /// Chosen disks, to be found by their numbers and in ranges of them.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Far {
+pub(crate) struct FastDisks {
     /// In ascending order.
     disks: Vec<u32>,
     is_far: Vec<bool>,
 }
 
-impl Far {
+impl FastDisks {
     /// Chooses these of so many disks, in place of those before.
     ///
     /// # Shape
@@ -40,13 +41,32 @@ impl Far {
     }
 }
 
+/// Disks that were updated since the list was built, by the cells where they were then.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct UpdatedDisks {
+    pub(crate) of_cells: HashMap<usize, Vec<u32>>,
+    pub(crate) disks: HashSet<u32>,
+}
+
+impl UpdatedDisks {
+    /// None any more.
+    pub fn clear(&mut self) {
+        self.of_cells.clear();
+        self.disks.clear();
+    }
+
+    pub fn of_cell(&self, cell: usize) -> &[u32] {
+        self.of_cells.get(&cell).map_or(&[], Vec::as_slice)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn chosen_disks_are_found_and_others_are_not() {
-        let mut far = Far::default();
+        let mut far = FastDisks::default();
         for chosen in [vec![3, 4, 9], vec![], vec![0, 11], vec![4]] {
             far.set(chosen.clone(), 12);
             assert!((0..12).all(|disk| far.contains(disk) == chosen.contains(&disk)));

@@ -1,7 +1,8 @@
 //! Every pair of a list where its disks are, one after the other, for what is not worth a loop of its own over blocks.
 
-use crate::neighbours::pair_block::Measured;
-use crate::neighbours::pair_list::{BLOCK, PairList};
+use crate::neighbours::block::BLOCK;
+use crate::neighbours::pair_block::PairBlock;
+use crate::neighbours::pair_list::PairList;
 use crate::neighbours::rows::gather;
 use crate::processor;
 use crate::vector::Vector;
@@ -25,10 +26,10 @@ pub struct Walked<const D: usize> {
 
 /// Shows every listed pair to `look`, in the order of their numbers.
 pub fn walk<const D: usize>(pairs: &PairList<D>, displacements: &[Vector<D>], look: &mut dyn FnMut(&Walked<D>)) {
-    let (mut moved, mut room) = ([[0.0; D]; BLOCK], Measured::default());
+    let mut moved = [[0.0; D]; BLOCK];
     let mut at = At { apart: [[0.0; BLOCK]; D], distance: [0.0; BLOCK], overlap: [0.0; BLOCK] };
     for block in &pairs.blocks {
-        let (numbers, listed) = (block.pairs(), pairs.listed.unpacked(block.pairs / BLOCK, &mut room));
+        let (numbers, listed) = (block.pairs(), &pairs.pair_blocks[block.pairs / BLOCK]);
         gather(&mut moved, pairs, block, (displacements, 0));
         processor::dispatch(Measure { count: block.pair_count, listed, moved: &moved, at: &mut at });
         for (place, pair) in numbers.enumerate() {
@@ -53,7 +54,7 @@ struct At<const D: usize> {
 
 struct Measure<'a, const D: usize> {
     count: usize,
-    listed: &'a Measured<D>,
+    listed: &'a PairBlock<D>,
     moved: &'a [Vector<D>; BLOCK],
     at: &'a mut At<D>,
 }

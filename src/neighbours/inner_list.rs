@@ -13,8 +13,9 @@
 //! # Source
 //! Pruned pair lists: Páll et al. (2020), J. Chem. Phys. 153, 134110, §IV.
 
-use crate::neighbours::pair_block::Measured;
-use crate::neighbours::pair_list::{Arranger, BLOCK, Block, LONGEST_ROW, PairList, Source};
+use crate::neighbours::block::{BLOCK, Block, LONGEST_ROW};
+use crate::neighbours::pair_block::PairBlock;
+use crate::neighbours::pair_list::{Arranger, PairList, Source};
 use crate::neighbours::rows::{gather, rows_of};
 use crate::processor;
 use crate::vector::Vector;
@@ -50,7 +51,6 @@ impl<const D: usize> PairList<D> {
     pub(crate) fn prune(&mut self, whole: &PairList<D>, displacements: &[Vector<D>], skin: f64) {
         self.first_count = whole.first_count;
         self.keeps_places = whole.keeps_places;
-        self.listed.kinds = whole.listed.kinds;
         self.fill_tiles(whole.tiles.len(), whole.tile_size, |list, place, tile| {
             let blocks = &whole.tiles[place];
             list.add_blocks(
@@ -75,12 +75,11 @@ impl<const D: usize> Pruned<'_, D> {
     fn line_up(&mut self, blocks: &[Block], list: &mut PairList<D>, arranger: &mut Arranger<D>) {
         let mut moved = [[0.0; D]; BLOCK];
         let mut excess = [0.0; BLOCK];
-        let mut room = Measured::default();
         for block in blocks {
             let first_pair = block.pairs;
             gather(&mut moved, self.whole, block, (self.displacements, 0));
             let excess = &mut excess[..block.pair_count];
-            let listed = self.whole.listed.unpacked(first_pair / BLOCK, &mut room);
+            let listed = &self.whole.pair_blocks[first_pair / BLOCK];
             processor::dispatch(Excess { listed, skin: self.skin, moved: &moved, excess });
             let mut pair = first_pair as u32;
             for (&row, excess) in rows_of(self.whole, block).iter().zip(excess.chunks_exact(block.row_length)) {
@@ -105,20 +104,16 @@ impl<const D: usize> Source<D> for Pruned<'_, D> {
         self.whole.second[pair as usize]
     }
 
-    fn kind(&self, _first: u32, pair: u32) -> u8 {
-        self.whole.listed.kind(pair as usize)
-    }
-
-    fn measure(&mut self, _first: &[u32], pairs: &[u32], measured: &mut Measured<D>) {
+    fn measure(&mut self, _first: &[u32], pairs: &[u32], measured: &mut PairBlock<D>) {
         for (place, &pair) in pairs.iter().enumerate() {
-            self.whole.listed.take(pair as usize, (measured, place));
+            measured.copy(place, (&self.whole.pair_blocks[pair as usize / BLOCK], pair as usize % BLOCK));
         }
     }
 }
 
 /// |r_ij|² − (R_i + R_j + s)² of the pairs of a block \[length²\].
 struct Excess<'a, const D: usize> {
-    listed: &'a Measured<D>,
+    listed: &'a PairBlock<D>,
     skin: f64,
     moved: &'a [Vector<D>; BLOCK],
     excess: &'a mut [f64],
@@ -167,7 +162,7 @@ mod tests {
                 assembly.displacements[disk][1] += way * angle.sin();
             }
             assembly.keep_listed(way).expect("no coincidence");
-            near += usize::from(assembly.near_pairs_used());
+            near += usize::from(assembly.inner_list_is_used());
             let found = assembly.evaluate_totals();
             let forces = assembly.forces.clone();
             if step % 10 == 9 {

@@ -11,9 +11,10 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use crate::neighbours::fast_disks::Far;
-use crate::neighbours::pair_block::Measured;
-use crate::neighbours::pair_list::{BLOCK, Block, PairList, Source};
+use crate::neighbours::block::{BLOCK, Block};
+use crate::neighbours::fast_disks::FastDisks;
+use crate::neighbours::pair_block::PairBlock;
+use crate::neighbours::pair_list::{PairList, Source};
 use crate::neighbours::tiles::connect;
 
 /// Fewest disks of a list that keeps places: a list of fewer is made quickly, and has few disks that go far.
@@ -43,21 +44,19 @@ impl<const D: usize> PairList<D> {
         for _ in 0..count {
             self.begin_block(Block { row_length: 1, origin, ..Block::default() });
             self.rows.resize(self.rows.len() + BLOCK, 0);
-            self.listed.push(&Measured::default(), &[0; BLOCK]);
+            self.pair_blocks.push(PairBlock::default());
         }
     }
 
     /// First and second disks of the pairs that have one of these as the first.
-    pub(crate) fn pairs_of(&self, firsts: &Far) -> Vec<(u32, u32)> {
+    pub(crate) fn pairs_of(&self, firsts: &FastDisks) -> Vec<(u32, u32)> {
         let mut found = Vec::new();
         for (place, tile) in self.tiles.iter().enumerate() {
             let origin = place * self.tile_size;
             if !firsts.any_of(origin..origin + self.tile_size) {
                 continue;
             }
-            let groups = tile.groups(origin).filter(|(_, disks)| firsts.any_of(disks.clone()));
-            let blocks = groups.map(|(blocks, _)| blocks).chain([tile.border.clone()]);
-            let pairs = blocks.flat_map(|blocks| &self.blocks[blocks]).flat_map(Block::pairs);
+            let pairs = self.blocks[tile.inner.start..tile.border.end].iter().flat_map(Block::pairs);
             let of_firsts = pairs.filter(|&pair| firsts.contains(self.first[pair]));
             found.extend(of_firsts.map(|pair| (self.first[pair], self.second[pair])));
         }
@@ -66,11 +65,11 @@ impl<const D: usize> PairList<D> {
 
     /// Adds pairs the list lacks, in the order given, of a source that names each by its second disk. Nothing is done, and false returned,
     /// where there are not places enough.
-    pub(crate) fn amend(&mut self, lacking: &[(u32, u32)], source: &mut impl Source<D>) -> bool {
+    pub(crate) fn amend(&mut self, missing: &[(u32, u32)], source: &mut impl Source<D>) -> bool {
         // The block each of them goes to, before anything is written.
         let mut taken = BTreeMap::new();
-        let mut places = Vec::with_capacity(lacking.len());
-        for &pair in lacking {
+        let mut places = Vec::with_capacity(missing.len());
+        for &pair in missing {
             let (tile, inside) = self.place_of(pair);
             let mut blocks = if inside {
                 places_of(&self.tiles[tile].inner, INNER)
@@ -82,20 +81,15 @@ impl<const D: usize> PairList<D> {
             *taken.entry(place).or_insert(0) += 1;
             places.push(place);
         }
-        let mut measured = Measured::default();
-        for (lacking, places) in lacking.chunks(BLOCK).zip(places.chunks(BLOCK)) {
-            let (first, second): (Vec<u32>, Vec<u32>) = lacking.iter().copied().unzip();
+        let mut measured = PairBlock::default();
+        for (missing, places) in missing.chunks(BLOCK).zip(places.chunks(BLOCK)) {
+            let (first, second): (Vec<u32>, Vec<u32>) = missing.iter().copied().unzip();
             source.measure(&first, &second, &mut measured);
-            for (k, (&pair, &place)) in lacking.iter().zip(places).enumerate() {
-                self.put(pair, place, (&measured, k), source.kind(pair.0, pair.1));
+            for (k, (&pair, &place)) in missing.iter().zip(places).enumerate() {
+                self.put(pair, place, (&measured, k));
             }
         }
-        if lacking.iter().all(|&pair| self.place_of(pair).1) {
-            for &(first, second) in lacking {
-                let (tile, _) = self.place_of((first, second));
-                self.tiles[tile].amend_by([first, second].map(|disk| disk - (tile * self.tile_size) as u32));
-            }
-        } else {
+        if !missing.iter().all(|&pair| self.place_of(pair).1) {
             self.connect();
         }
         true
@@ -108,7 +102,7 @@ impl<const D: usize> PairList<D> {
     }
 
     /// Puts a pair in a block that has a place for it.
-    fn put(&mut self, (first, second): (u32, u32), block: usize, measured: (&Measured<D>, usize), kind: u8) {
+    fn put(&mut self, (first, second): (u32, u32), block: usize, measured: (&PairBlock<D>, usize)) {
         let block = &mut self.blocks[block];
         let (place, row) = (block.pairs + block.pair_count, block.rows + block.row_count);
         block.pair_count += 1;
@@ -116,18 +110,18 @@ impl<const D: usize> PairList<D> {
         let origin = block.origin;
         (self.first[place], self.second[place]) = (first, second);
         (self.rows[row], self.ends[place]) = (first - origin, second - origin);
-        self.listed.put(place, measured, kind);
+        self.pair_blocks[place / BLOCK].copy(place % BLOCK, measured);
     }
 
     /// Blocks that amending may have filled.
-    pub(crate) fn amended_blocks(&self) -> impl Iterator<Item = usize> {
+    pub(crate) fn blocks_with_insertions(&self) -> impl Iterator<Item = usize> {
         self.tiles.iter().flat_map(|tile| places_of(&tile.inner, INNER).chain(places_of(&tile.border, BORDER)))
     }
 
     /// Finds what comes to each tile from others.
     pub(crate) fn connect(&mut self) {
         connect(&mut self.tiles, self.tile_size, &self.blocks, (&self.first, &self.second));
-        self.turns.take(&self.tiles, |pair| {
+        self.schedule.take(&self.tiles, |pair| {
             let second = self.second[pair] as usize;
             (second < self.first_count).then_some(second / self.tile_size)
         });

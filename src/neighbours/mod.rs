@@ -3,7 +3,7 @@
 //! Start from [`PairList`], the list, and [`verlet_list`], which builds it. An inner list has the near pairs of a list; pairs of a few fast
 //! disks are inserted without building it again.
 
-pub(crate) mod block_storage;
+pub(crate) mod block;
 pub(crate) mod cell_grid;
 pub(crate) mod concatenated;
 pub(crate) mod displacement_bounds;
@@ -14,12 +14,10 @@ pub(crate) mod inserted_pairs;
 pub(crate) mod missing_pairs;
 pub(crate) mod pair_block;
 pub mod pair_list;
-pub(crate) mod pair_types;
 pub(crate) mod rows;
 pub(crate) mod single_precision;
 #[cfg(feature = "linear")]
 pub(crate) mod subset;
-pub(crate) mod tile_groups;
 pub(crate) mod tile_schedule;
 pub(crate) mod tiles;
 pub mod verlet_list;

@@ -1,6 +1,7 @@
-//! What a list has of the pairs of a block: one piece of memory, column by column, so that the loop reads the list as one stream.
+//! The pairs of a block at their anchors: one piece of memory, column by column, so that the loop reads the list as one stream.
 
-use crate::neighbours::pair_list::BLOCK;
+use crate::neighbours::block::BLOCK;
+use crate::vector::{Vector, dot};
 
 /// Separation of no pair: a gap that no way closes, and whose square is a number.
 const NOWHERE: f64 = 1e100;
@@ -8,7 +9,7 @@ const NOWHERE: f64 = 1e100;
 /// A block of pairs at their anchors. A place without a pair has a gap that nothing closes.
 #[derive(Debug, Clone)]
 #[repr(align(64))]
-pub(crate) struct Measured<const D: usize> {
+pub(crate) struct PairBlock<const D: usize> {
     /// From the anchor of the second to that of the first along the nearest image, D \[length\].
     pub separation: [[f64; BLOCK]; D],
     /// Distance of the anchors, |D| \[length\].
@@ -19,10 +20,10 @@ pub(crate) struct Measured<const D: usize> {
     pub coefficient: [f64; BLOCK],
 }
 
-impl<const D: usize> Default for Measured<D> {
+impl<const D: usize> Default for PairBlock<D> {
     /// A block without a pair.
     fn default() -> Self {
-        Measured {
+        PairBlock {
             separation: [[NOWHERE; BLOCK]; D],
             distance: [NOWHERE * (D as f64).sqrt(); BLOCK],
             overlap: [-NOWHERE * (D as f64).sqrt(); BLOCK],
@@ -31,7 +32,7 @@ impl<const D: usize> Default for Measured<D> {
     }
 }
 
-impl<const D: usize> Measured<D> {
+impl<const D: usize> PairBlock<D> {
     /// Takes what another one has in a place.
     #[inline(always)]
     pub fn copy(&mut self, place: usize, (other, there): (&Self, usize)) {
@@ -41,6 +42,15 @@ impl<const D: usize> Measured<D> {
         self.distance[place] = other.distance[there];
         self.overlap[place] = other.overlap[there];
         self.coefficient[place] = other.coefficient[there];
+    }
+
+    /// The places of pairs of disks with the same centre.
+    pub fn coincident(&self) -> impl Iterator<Item = usize> + use<'_, D> {
+        let squared = |place: usize| {
+            let apart: Vector<D> = self.separation.each_ref().map(|column| column[place]);
+            dot(apart, apart)
+        };
+        (0..BLOCK).filter(move |&place| squared(place) == 0.0)
     }
 
     /// Empties the places from this one on.

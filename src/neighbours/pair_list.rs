@@ -6,31 +6,24 @@
 //! tile   a fixed number of disks in working order; first the blocks within it, then those across its border
 //! ```
 //!
-//! Rows are sorted by length over groups of up to GROUP pairs, so the loop over the rows of a block has a fixed number of turns: the
+//! Rows are sorted by length over groups of up to GROUP pairs, so the loop over the rows of a block has a fixed number of schedule: the
 //! first disk is read and written once a row, and no branch is guessed wrong. A tile writes forces on its own disks only; what pairs across its
 //! border do to the disks of other tiles is kept apart and added afterwards, tile by tile. So tiles can be
 //! worked on side by side, and the order of every sum is that of one thread.
 
 use std::ops::Range;
 
-use crate::neighbours::block_storage::Listed;
-use crate::neighbours::pair_block::Measured;
-use crate::neighbours::pair_types::Kinds;
-use crate::neighbours::tile_groups::find_passes;
-use crate::neighbours::tile_schedule::Turns;
+use crate::neighbours::block::{BLOCK, Block, LONGEST_ROW};
+use crate::neighbours::pair_block::PairBlock;
+use crate::neighbours::tile_schedule::TileSchedule;
 use crate::neighbours::tiles::Tile;
 use crate::packing::PackingError;
 use crate::parallel;
-use crate::simd::ahead::Cache;
-
-/// Most pairs of a block; its columns stay in the nearest cache.
-pub const BLOCK: usize = 128;
+use crate::simd::prefetch::Cache;
+use crate::vector::Vector;
 
 /// Most pairs of a group: few blocks are not full, and its disks stay in the second cache.
 const GROUP: usize = 8192;
-
-/// Most pairs of a row; a disk with more has several rows.
-pub const LONGEST_ROW: usize = 8;
 
 /// Fewest disks of a tile: packings of up to so many have no border.
 const LEAST_TILE: usize = 8192;
@@ -47,8 +40,8 @@ pub struct PairList<const D: usize> {
     pub first: Vec<u32>,
     /// Second disk of each pair; the first of all in a vacant place.
     pub second: Vec<u32>,
-    /// What the pairs of each block have at the anchors.
-    pub(crate) listed: Listed<D>,
+    /// The pairs of each block at their anchors.
+    pub(crate) pair_blocks: Vec<PairBlock<D>>,
     /// First disk of each row and second disk of each pair, counted from the origin of the block.
     pub(crate) rows: Vec<u32>,
     pub(crate) ends: Vec<u32>,
@@ -61,31 +54,10 @@ pub struct PairList<const D: usize> {
     /// Whether tiles have places for pairs to come.
     pub(crate) keeps_places: bool,
     /// What one thread does with the tiles in a step.
-    pub(crate) turns: Turns,
+    pub(crate) schedule: TileSchedule,
     arranger: Box<Arranger<D>>,
     /// Tiles made side by side, until they are put one after the other.
     parts: Vec<PairList<D>>,
-}
-
-/// A block: where its pairs and rows begin, how many rows it has and how many pairs each of them; and the disk from which its rows
-/// and ends are counted, the first one of the tile where all of them are in one, so that the loop over a tile has nothing to take off.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Block {
-    pub pairs: usize,
-    pub pair_count: usize,
-    pub rows: usize,
-    pub row_count: usize,
-    pub row_length: usize,
-    pub origin: u32,
-    /// Whether it is the last one of its group.
-    pub ends_group: bool,
-}
-
-impl Block {
-    /// Its pairs.
-    pub fn pairs(&self) -> Range<usize> {
-        self.pairs..self.pairs + self.pair_count
-    }
 }
 
 /// Where pairs come from, each under a number of its own.
@@ -93,11 +65,8 @@ pub(crate) trait Source<const D: usize> {
     /// Second disk of a pair.
     fn second(&self, pair: u32) -> u32;
 
-    /// Kind of the pair of a disk, if there are kinds.
-    fn kind(&self, first: u32, pair: u32) -> u8;
-
     /// Measures the pairs of a block; columns beyond them are not used.
-    fn measure(&mut self, first: &[u32], pairs: &[u32], measured: &mut Measured<D>);
+    fn measure(&mut self, first: &[u32], pairs: &[u32], measured: &mut PairBlock<D>);
 }
 
 /// What finds the pairs of a tile, disk by disk.
@@ -113,7 +82,7 @@ pub(crate) struct Arranger<const D: usize> {
     border: Waiting,
     /// Room for the rows of the group that is being closed, and for its block.
     by_length: Vec<Row>,
-    measured: Measured<D>,
+    measured: PairBlock<D>,
     /// Origin of the blocks that are made.
     origin: u32,
 }
@@ -178,6 +147,35 @@ impl<const D: usize> PairList<D> {
         self.len() == 0
     }
 
+    /// What the loop reads of a pair, its second disk included \[bytes\].
+    pub fn pair_size(&self) -> usize {
+        size_of::<PairBlock<D>>() / BLOCK + size_of::<u32>()
+    }
+
+    /// From the anchor of the second disk to that of the first along the nearest image, D \[length\].
+    #[inline(always)]
+    pub fn separation(&self, pair: usize) -> Vector<D> {
+        self.pair_blocks[pair / BLOCK].separation.each_ref().map(|column| column[pair % BLOCK])
+    }
+
+    /// Distance of the anchors, |D| \[length\].
+    #[inline(always)]
+    pub fn distance(&self, pair: usize) -> f64 {
+        self.pair_blocks[pair / BLOCK].distance[pair % BLOCK]
+    }
+
+    /// Overlap at the anchors, R_i + R_j − |D|, rounded once only; negative for a pair apart \[length\].
+    #[inline(always)]
+    pub fn overlap(&self, pair: usize) -> f64 {
+        self.pair_blocks[pair / BLOCK].overlap[pair % BLOCK]
+    }
+
+    /// Coefficient of the contact law for a pair \[force / length^(α−1)\].
+    #[inline(always)]
+    pub fn coefficient(&self, pair: usize) -> f64 {
+        self.pair_blocks[pair / BLOCK].coefficient[pair % BLOCK]
+    }
+
     /// The places that have a pair.
     pub fn numbers(&self) -> impl Iterator<Item = usize> + use<'_, D> {
         self.blocks.iter().flat_map(Block::pairs)
@@ -191,12 +189,12 @@ impl<const D: usize> PairList<D> {
 
     /// Where a later block is asked to while one is worked on, if the list is long.
     #[inline(always)]
-    pub(crate) fn asks(&self) -> Option<Cache> {
+    pub(crate) fn prefetches(&self) -> Option<Cache> {
         self.is_long().then(Cache::here)
     }
 
     /// Empties the list and fills it with what `search`, made anew for each tile, finds: each pair is named by one of its disks only.
-    /// Disks from `first_count` on are never first. A list that `keeps_places` may be amended; pairs of `kinds` are packed if it is long.
+    /// Disks from `first_count` on are never first. A list that `keeps_places` may be amended.
     ///
     /// # Errors
     /// Two disks with the same centre.
@@ -204,25 +202,25 @@ impl<const D: usize> PairList<D> {
         &mut self,
         (disk_count, first_count): (usize, usize),
         keeps_places: bool,
-        kinds: Option<Kinds>,
         search: impl Fn() -> S + Sync,
     ) -> Result<(), PackingError> {
         self.first_count = first_count;
         self.keeps_places = keeps_places;
         let tile_size = Self::tile_size(disk_count);
-        self.listed.kinds = kinds.filter(|_| Self::are_long(disk_count));
         let disks = |place: usize| place * tile_size..disk_count.min((place + 1) * tile_size);
         self.fill_tiles(disk_count.div_ceil(tile_size), tile_size, |list, place, tile| {
             list.add_tile(disks(place), first_count, search(), tile);
         });
         // The first two in the order of the disks, wherever they lie in the list.
-        if let Some((first, second)) = self.listed.together().map(|pair| (self.first[pair], self.second[pair])).min() {
+        let blocks = self.pair_blocks.iter().enumerate();
+        let coincident = blocks.flat_map(|(block, pairs)| pairs.coincident().map(move |place| BLOCK * block + place));
+        if let Some((first, second)) = coincident.map(|pair| (self.first[pair], self.second[pair])).min() {
             return Err(PackingError::CoincidentCentres { first: first as usize, second: second as usize });
         }
         Ok(())
     }
 
-    /// Whether lists of so many disks are long, and packed if pairs have kinds.
+    /// Whether lists of so many disks are long.
     pub(crate) fn are_long(disk_count: usize) -> bool {
         disk_count > Self::tile_size(disk_count)
     }
@@ -247,12 +245,11 @@ impl<const D: usize> PairList<D> {
             let mut parts = std::mem::take(&mut self.parts);
             parts.resize(tiles.len(), PairList::default());
             parallel::each(tiles.iter_mut().zip(&mut parts).enumerate(), |(place, (tile, part))| {
-                part.listed.kinds = self.listed.kinds;
                 part.clear();
                 part.keeps_places = self.keeps_places;
                 add(part, place, tile);
             });
-            self.join(&parts, &mut tiles);
+            self.concatenate(&parts, &mut tiles);
             self.parts = parts;
         } else {
             self.clear();
@@ -261,7 +258,6 @@ impl<const D: usize> PairList<D> {
                 self.reserve(tile_count - place - 1, place + 1);
             }
         }
-        find_passes(&mut tiles, &self.blocks, (&self.first, &self.second), tile_size);
         self.tiles = tiles;
         self.connect();
     }
@@ -323,7 +319,7 @@ impl<const D: usize> PairList<D> {
     fn clear(&mut self) {
         self.first.clear();
         self.second.clear();
-        self.listed.clear();
+        self.pair_blocks.clear();
         self.rows.clear();
         self.ends.clear();
         self.blocks.clear();
@@ -364,9 +360,6 @@ impl<const D: usize> PairList<D> {
             self.add_block((block, *origin), pairs, measured, source);
             rest = later;
         }
-        if let Some(last) = self.blocks.last_mut() {
-            last.ends_group = true;
-        }
         rows.clear();
         pairs.drain(..begin + length);
     }
@@ -376,7 +369,7 @@ impl<const D: usize> PairList<D> {
         &mut self,
         (rows, origin): (&[Row], u32),
         waiting: &[u32],
-        measured: &mut Measured<D>,
+        measured: &mut PairBlock<D>,
         source: &mut impl Source<D>,
     ) {
         let row_length = rows[0].length;
@@ -398,17 +391,11 @@ impl<const D: usize> PairList<D> {
         }
         source.measure(first, second, measured);
         measured.vacate(count);
-        let mut kind = [0; BLOCK];
-        if self.listed.kinds.is_some() {
-            for (kind, (&first, &pair)) in kind.iter_mut().zip(first.iter().zip(&*second)) {
-                *kind = source.kind(first, pair);
-            }
-        }
         for (pair, end) in second.iter_mut().zip(&mut self.ends[begin..]) {
             *pair = source.second(*pair);
             *end = *pair - origin;
         }
-        self.listed.push(measured, &kind);
+        self.pair_blocks.push(measured.clone());
     }
 
     /// Begins a block, all of whose places are vacant; what they have at the anchors is still to be added.

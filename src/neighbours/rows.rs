@@ -1,8 +1,9 @@
-//! Rows of pairs of one length: relative displacements are gathered and forces scattered with a fixed number of turns a row.
+//! Rows of pairs of one length: relative displacements are gathered and forces scattered with a fixed number of schedule a row.
 //!
 //! Both know no vectors; a row reads and writes its first disk once.
 
-use crate::neighbours::pair_list::{BLOCK, Block, LONGEST_ROW, PairList};
+use crate::neighbours::block::{BLOCK, Block, LONGEST_ROW};
+use crate::neighbours::pair_list::PairList;
 use crate::vector::{Number, difference, sum};
 
 /// First disks of the rows of a block, counted from its origin.
@@ -38,10 +39,10 @@ const AHEAD: usize = 2;
 
 /// Asks for the rows and second disks of a later block, if the list is long: gathering waits for them otherwise.
 #[inline(always)]
-pub(crate) fn ask_for_later_rows<const D: usize>(pairs: &PairList<D>, block: &Block) {
-    if let Some(cache) = pairs.asks() {
-        cache.ask_for(&pairs.ends, block.pairs + AHEAD * BLOCK, BLOCK);
-        cache.ask_for(&pairs.rows, block.rows + AHEAD * block.row_count, block.row_count);
+pub(crate) fn prefetch_rows<const D: usize>(pairs: &PairList<D>, block: &Block) {
+    if let Some(cache) = pairs.prefetches() {
+        cache.prefetch_all(&pairs.ends, block.pairs + AHEAD * BLOCK, BLOCK);
+        cache.prefetch_all(&pairs.rows, block.rows + AHEAD * block.row_count, block.row_count);
     }
 }
 

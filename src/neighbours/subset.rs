@@ -1,6 +1,7 @@
 //! Some pairs of a list as a list of its own, under other numbers.
 
-use crate::neighbours::pair_block::Measured;
+use crate::neighbours::block::BLOCK;
+use crate::neighbours::pair_block::PairBlock;
 use crate::neighbours::pair_list::{PairList, Search, Source};
 
 impl<const D: usize> PairList<D> {
@@ -12,7 +13,7 @@ impl<const D: usize> PairList<D> {
     pub(crate) fn select(&mut self, whole: &PairList<D>, starts: &[u32], seconds: &[(u32, u32)]) {
         let disk_count = starts.len() - 1;
         // No two centres are the same in `whole`.
-        let _ = self.fill((disk_count, disk_count), false, whole.listed.kinds, || Selected { whole, starts, seconds });
+        let _ = self.fill((disk_count, disk_count), false, || Selected { whole, starts, seconds });
     }
 }
 
@@ -35,13 +36,10 @@ impl<const D: usize> Source<D> for Selected<'_, D> {
         self.seconds[pair as usize].0
     }
 
-    fn kind(&self, _first: u32, pair: u32) -> u8 {
-        self.whole.listed.kind(self.seconds[pair as usize].1 as usize)
-    }
-
-    fn measure(&mut self, _first: &[u32], pairs: &[u32], measured: &mut Measured<D>) {
+    fn measure(&mut self, _first: &[u32], pairs: &[u32], measured: &mut PairBlock<D>) {
         for (place, &pair) in pairs.iter().enumerate() {
-            self.whole.listed.take(self.seconds[pair as usize].1 as usize, (measured, place));
+            let there = self.seconds[pair as usize].1 as usize;
+            measured.copy(place, (&self.whole.pair_blocks[there / BLOCK], there % BLOCK));
         }
     }
 }

@@ -15,7 +15,7 @@ pub(crate) enum Stage {
 
 /// One stage of one tile, when so many tiles have moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Turn {
+struct Step {
     last_moved: u32,
     stage: Stage,
     place: u32,
@@ -23,28 +23,28 @@ struct Turn {
 
 /// Every stage of every tile, in an order in which each finds what it needs; of a single tile the first stage alone.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Turns(Vec<Turn>);
+pub(crate) struct TileSchedule(Vec<Step>);
 
-impl Turns {
-    /// The turns of these tiles. `moving` tells in which tile the second disk of a pair is, if it moves.
+impl TileSchedule {
+    /// The schedule of these tiles. `moving` tells in which tile the second disk of a pair is, if it moves.
     pub fn take(&mut self, tiles: &[Tile], moving: impl Fn(usize) -> Option<usize>) {
-        let Turns(turns) = self;
+        let TileSchedule(schedule) = self;
         let places = 0..tiles.len() as u32;
-        turns.clear();
-        turns.extend(places.clone().map(|place| Turn { last_moved: place, stage: Stage::Inside, place }));
+        schedule.clear();
+        schedule.extend(places.clone().map(|place| Step { last_moved: place, stage: Stage::Inside, place }));
         if tiles.len() == 1 {
             return;
         }
         for (tile, place) in tiles.iter().zip(places.clone()) {
             let seconds = tile.border_pairs.clone().filter_map(&moving).map(|tile| tile as u32);
-            turns.push(Turn { last_moved: seconds.fold(place, u32::max), stage: Stage::Border, place });
+            schedule.push(Step { last_moved: seconds.fold(place, u32::max), stage: Stage::Border, place });
         }
         for (tile, place) in tiles.iter().zip(places) {
-            let known = |place: u32| turns[tiles.len() + place as usize].last_moved;
+            let known = |place: u32| schedule[tiles.len() + place as usize].last_moved;
             let last_moved = tile.incoming.iter().fold(known(place), |last, &(_, from, _)| last.max(known(from)));
-            turns.push(Turn { last_moved, stage: Stage::Margins, place });
+            schedule.push(Step { last_moved, stage: Stage::Margins, place });
         }
-        turns.sort_unstable();
+        schedule.sort_unstable();
     }
 
     /// Stages and places of the tiles, one after the other.
@@ -72,9 +72,9 @@ mod tests {
         let count = 9;
         let tiles = ring(count);
         let next = |pair: usize| Some(pair / 10 + 1).filter(|&next| next + 1 < count);
-        let mut turns = Turns::default();
-        turns.take(&tiles, next);
-        let order: Vec<_> = turns.iter().collect();
+        let mut schedule = TileSchedule::default();
+        schedule.take(&tiles, next);
+        let order: Vec<_> = schedule.iter().collect();
         assert_eq!(order.len(), 3 * count);
         let at =
             |stage, place| order.iter().position(|&turn| turn == (stage, place)).expect("every stage of every tile");
@@ -89,7 +89,7 @@ mod tests {
                 assert!(at(Stage::Border, place) < at(Stage::Inside, place + 2), "soon: no tile later than it must");
             }
         }
-        turns.take(&ring(1), |_| None);
-        assert_eq!(turns.iter().collect::<Vec<_>>(), [(Stage::Inside, 0)]);
+        schedule.take(&ring(1), |_| None);
+        assert_eq!(schedule.iter().collect::<Vec<_>>(), [(Stage::Inside, 0)]);
     }
 }

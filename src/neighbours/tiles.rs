@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-use crate::neighbours::pair_list::Block;
-use crate::neighbours::tile_groups::Pass;
+use crate::neighbours::block::Block;
 use crate::parallel;
 
 /// A tile: its blocks, and what comes to its disks from others.
@@ -11,10 +10,6 @@ use crate::parallel;
 pub(crate) struct Tile {
     /// Blocks of pairs within the tile.
     pub inner: Range<usize>,
-    /// The groups of these, but not the pairs that were added since; none in a list of one tile.
-    pub passes: Vec<Pass>,
-    /// Disks of added pairs within the tile, counted from its first one, in order; none where there are no passes.
-    pub amended: Vec<u32>,
     /// Blocks of pairs whose second disk is in another tile.
     pub border: Range<usize>,
     /// Pairs of `border`.
@@ -23,20 +18,6 @@ pub(crate) struct Tile {
     pub interior: Range<usize>,
     /// Disk of this tile, the tile that has the pair, and the pair's place among the border pairs there.
     pub incoming: Vec<(u32, u32, u32)>,
-}
-
-impl Tile {
-    /// Takes note of the disks of a pair that was added within the tile, if it has passes.
-    pub fn amend_by(&mut self, disks: [u32; 2]) {
-        if self.passes.is_empty() {
-            return;
-        }
-        for disk in disks {
-            if let Err(place) = self.amended.binary_search(&disk) {
-                self.amended.insert(place, disk);
-            }
-        }
-    }
 }
 
 /// Finds what comes to each tile from others, and what lies inside of it.
@@ -66,9 +47,5 @@ pub(crate) fn connect(tiles: &mut [Tile], tile_size: usize, blocks: &[Block], (f
             }
             begin += run.len() + 1;
         }
-        let amended = blocks[tile.added()].iter().flat_map(Block::pairs).flat_map(|pair| [first[pair], second[pair]]);
-        tile.amended = amended.map(|disk| disk - (place * tile_size) as u32).collect();
-        tile.amended.sort_unstable();
-        tile.amended.dedup();
     });
 }

@@ -4,12 +4,12 @@
 //! disk has moved by half the skin. Each pair carries its separation at the anchors, so the box and its images are
 //! looked at only while the list is built.
 
+use crate::neighbours::block::BLOCK;
 use crate::neighbours::cell_grid::{CellGrid, Run};
-use crate::neighbours::fast_disks::Far;
-use crate::neighbours::missing_pairs::Roaming;
-use crate::neighbours::pair_block::Measured;
-use crate::neighbours::pair_list::{BLOCK, PairList, Search, Source};
-use crate::neighbours::pair_types::Classes;
+use crate::neighbours::fast_disks::FastDisks;
+use crate::neighbours::fast_disks::UpdatedDisks;
+use crate::neighbours::pair_block::PairBlock;
+use crate::neighbours::pair_list::{PairList, Search, Source};
 use crate::packing::{Domain, PackingError};
 use crate::parallel::{self, PIECE};
 use crate::processor;
@@ -27,8 +27,6 @@ pub struct Disks<'a, const D: usize> {
     pub radii: &'a [f64],
     /// How many of them, from the front, are mobile.
     pub mobile_count: usize,
-    /// Their classes, if pairs are to be packed.
-    pub(crate) classes: Option<&'a Classes>,
 }
 
 impl<const D: usize> Disks<'_, D> {
@@ -46,9 +44,9 @@ pub struct ListRoom<const D: usize> {
     /// Centres and radii in the order of the cells, so that the disks of a run lie side by side.
     sorted: Vec<(Vector<D>, f64)>,
     /// Disks that were listed anew since.
-    pub(crate) roaming: Roaming,
+    pub(crate) updated: UpdatedDisks,
     /// First disks of pairs that are looked up.
-    pub(crate) asked: Far,
+    pub(crate) asked: FastDisks,
 }
 
 /// Order of the disks cell by cell in rows, mobile ones before held ones: neighbours in space are neighbours in memory.
@@ -87,8 +85,8 @@ pub fn build_pairs<const D: usize>(
             return Err(PackingError::BoxTooSmall { axis, length: lengths[axis], range: 2.0 * largest });
         }
     }
-    let ListRoom { grid, points, sorted, roaming, .. } = room;
-    roaming.clear();
+    let ListRoom { grid, points, sorted, updated, .. } = room;
+    updated.clear();
     points.resize(disks.anchors.len(), [0.0; D]);
     let centres = disks.anchors.chunks(PIECE).zip(disks.displacements.chunks(PIECE));
     parallel::each(points.chunks_mut(PIECE).zip(centres), |(points, (anchors, displacements))| {
@@ -106,7 +104,7 @@ pub fn build_pairs<const D: usize>(
     let (grid, points, sorted) = (&*grid, &*points, &*sorted);
     let nearby = Nearby { disks, skin, lengths, grid, points, sorted };
     let (counts, keeps_places) = ((points.len(), disks.mobile_count), PairList::<D>::keeps_places(points.len()));
-    pairs.fill(counts, keeps_places, disks.classes.map(|classes| classes.kinds), || TileSearch {
+    pairs.fill(counts, keeps_places, || TileSearch {
         nearby,
         cell: usize::MAX,
         runs: Vec::new(),
@@ -185,11 +183,7 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for TileSearch<'_, D, C> 
         self.anchored.second(pair)
     }
 
-    fn kind(&self, first: u32, pair: u32) -> u8 {
-        self.anchored.kind(first, pair)
-    }
-
-    fn measure(&mut self, first: &[u32], second: &[u32], measured: &mut Measured<D>) {
+    fn measure(&mut self, first: &[u32], second: &[u32], measured: &mut PairBlock<D>) {
         self.anchored.measure(first, second, measured);
     }
 }
@@ -200,11 +194,7 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for Anchored<'_, D, C> {
         pair
     }
 
-    fn kind(&self, first: u32, pair: u32) -> u8 {
-        self.disks.classes.map_or(0, |classes| classes.kind(first as usize, pair as usize))
-    }
-
-    fn measure(&mut self, first: &[u32], second: &[u32], measured: &mut Measured<D>) {
+    fn measure(&mut self, first: &[u32], second: &[u32], measured: &mut PairBlock<D>) {
         let Anchored { disks, coefficient, ends } = self;
         let lengths = disks.domain.lengths();
         for (place, (&first, &second)) in first.iter().zip(second).enumerate() {
@@ -213,13 +203,6 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for Anchored<'_, D, C> {
             ends.radii[place] = (disks.radii[first], disks.radii[second]);
         }
         processor::dispatch(Measure { ends, lengths, coefficient, measured });
-        if let Some(classes) = disks.classes {
-            // The numbers of a packed list, whether it is packed or not.
-            for (place, (&first, &second)) in first.iter().zip(second).enumerate() {
-                let kind = classes.kind(first as usize, second as usize);
-                measured.distance[place] = classes.kinds.distance(kind, measured.overlap[place]);
-            }
-        }
     }
 }
 
@@ -236,7 +219,7 @@ struct Measure<'a, const D: usize, C> {
     /// Sides of a periodic box.
     lengths: Option<Vector<D>>,
     coefficient: &'a C,
-    measured: &'a mut Measured<D>,
+    measured: &'a mut PairBlock<D>,
 }
 
 impl<const D: usize, C: Fn(f64, f64) -> f64> pulp::WithSimd for Measure<'_, D, C> {
@@ -245,7 +228,7 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> pulp::WithSimd for Measure<'_, D, C
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
         let Measure { ends: Ends { anchors, radii }, lengths, coefficient, measured } = self;
-        let Measured { separation, distance, overlap, coefficient: coefficients } = measured;
+        let PairBlock { separation, distance, overlap, coefficient: coefficients } = measured;
         for k in 0..BLOCK {
             coefficients[k] = coefficient(radii[k].0, radii[k].1);
         }

@@ -1,11 +1,10 @@
 //! The machine's vectors: what [`pulp`] leaves to be done, with the same bits whatever width they have.
 
-pub mod ahead;
 pub mod components;
 pub mod lanes;
+pub mod prefetch;
 pub mod real;
 pub mod roots;
-pub mod table;
 
 use pulp::Simd;
 

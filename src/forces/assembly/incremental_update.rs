@@ -5,9 +5,9 @@
 use std::ops::Range;
 
 use crate::forces::assembly::Assembly;
-use crate::forces::assembly::list_keeping::LISTED;
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::missing_pairs::amend_pairs;
+use crate::neighbours::displacement_bounds::LISTED;
+use crate::neighbours::missing_pairs::insert_missing_pairs;
 use crate::neighbours::pair_list::PairList;
 use crate::neighbours::verlet_list::ListRoom;
 use crate::vector::{Vector, difference, dot, longest_difference_squared};
@@ -20,7 +20,7 @@ pub(crate) struct Tuning {
     /// A disk has gone far if it went this share of the way for which its list holds \[1\].
     far: f64,
     /// Disks of which one may have been listed anew since a list was made.
-    roaming_one_of: usize,
+    updated_one_of: usize,
     /// Time of amending near pairs over that of picking them \[1\].
     amending: f64,
     /// Widest skin of near pairs over that of the list in use \[1\]. A twelfth of a radius lasts some 70 steps where it is the best; picking the
@@ -28,8 +28,8 @@ pub(crate) struct Tuning {
     pub widest_near: f64,
 }
 
-const SHORT: Tuning = Tuning { far: 0.5, roaming_one_of: 64, amending: 0.4, widest_near: 0.16 };
-const LONG: Tuning = Tuning { far: 0.7, roaming_one_of: 8, amending: 0.1, widest_near: 0.3 };
+const SHORT: Tuning = Tuning { far: 0.5, updated_one_of: 64, amending: 0.4, widest_near: 0.16 };
+const LONG: Tuning = Tuning { far: 0.7, updated_one_of: 8, amending: 0.1, widest_near: 0.3 };
 
 /// Time of picking near pairs of large lists over what it gains, over that of small ones \[1\].
 const PICKING: f64 = 3.5;
@@ -83,13 +83,13 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
         // Disks that go far in near pairs are looked for in the cells of the list of all pairs, and must not be far from there.
         let of_all = self.amend_all();
-        let amended = match self.near_skin {
+        let amended = match self.inner_skin {
             None => of_all == Some(true),
             Some(skin) => of_all.is_some() && self.amend_near(skin),
         };
         if amended {
             self.listing_number.1 += 1;
-            if self.near_skin.is_none() && !self.pairs.is_long() {
+            if self.inner_skin.is_none() && !self.pairs.is_long() {
                 // How fast disks are is looked at as for a new list.
                 self.prune_lists(self.prunes);
             }
@@ -107,7 +107,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.far.set(disks, self.order.len());
         let mut room = std::mem::take(&mut self.list_room);
         let mut pairs = std::mem::take(&mut self.pairs);
-        let amended = room.roam(&self.disks(), &self.far, self.len() / self.tuning().roaming_one_of)
+        let amended = room.note_updated(&self.disks(), &self.far, self.len() / self.tuning().updated_one_of)
             && self.amend_list((&self.listed, self.skin), &mut room, &mut pairs);
         (self.pairs, self.list_room) = (pairs, room);
         if !amended {
@@ -116,7 +116,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         for &disk in self.far.disks() {
             self.listed[disk as usize] = self.displacements[disk as usize];
         }
-        match self.near_skin {
+        match self.inner_skin {
             Some(_) => self.take_ways_before(&portions),
             None => self.take_ways_of(portions),
         }
@@ -126,17 +126,17 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// The same of near pairs.
     fn amend_near(&mut self, skin: f64) -> bool {
         let portions: Vec<usize> = self.far_portions().collect();
-        let Some(disks) = self.far_of(&portions, &self.near_listed, skin).filter(|disks| !disks.is_empty()) else {
+        let Some(disks) = self.far_of(&portions, &self.inner_at_build, skin).filter(|disks| !disks.is_empty()) else {
             return false;
         };
         self.far.set(disks, self.order.len());
         let mut room = std::mem::take(&mut self.list_room);
-        let mut pairs = std::mem::take(&mut self.near_pairs);
-        let amended = self.amend_list((&self.near_listed, skin), &mut room, &mut pairs);
-        (self.near_pairs, self.list_room) = (pairs, room);
+        let mut pairs = std::mem::take(&mut self.inner_pairs);
+        let amended = self.amend_list((&self.inner_at_build, skin), &mut room, &mut pairs);
+        (self.inner_pairs, self.list_room) = (pairs, room);
         if amended {
             for &disk in self.far.disks() {
-                self.near_listed[disk as usize] = self.displacements[disk as usize];
+                self.inner_at_build[disk as usize] = self.displacements[disk as usize];
             }
             self.take_ways_before(&portions);
             self.take_ways_of(portions);
@@ -146,7 +146,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     fn amend_list(&self, listing: (&[Vector<D>], f64), room: &mut ListRoom<D>, pairs: &mut PairList<D>) -> bool {
         let law = self.law;
-        amend_pairs(&self.disks(), listing, &self.far, |a, b| law.coefficient(a, b), room, pairs)
+        insert_missing_pairs(&self.disks(), listing, &self.far, |a, b| law.coefficient(a, b), room, pairs)
     }
 
     /// Portions of which a disk may have gone far in the list in use.
@@ -188,11 +188,11 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     fn take_ways_before(&mut self, portions: &[usize]) {
         for &portion in portions {
             let disks = self.ways.disks_of(portion);
-            self.ways_before[portion] = longest(&self.near_listed[disks.clone()], &self.listed[disks]);
+            self.ways_before[portion] = longest(&self.inner_at_build[disks.clone()], &self.listed[disks]);
         }
     }
 
-    /// The way from where they were by which disks wear near pairs out: as much less by those that roam as amending takes less than
+    /// The way from where they were by which disks wear near pairs out: as much less by those that note_updated as amending takes less than
     /// picking; for large lists more, as picking takes longer there.
     pub(crate) fn felt_way(&self, from: &[Vector<D>]) -> f64 {
         let longest = self.longest_way(from);
@@ -203,7 +203,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
     }
 
-    /// The way from where they were that all mobile disks but a few, which may roam, did not exceed \[length\].
+    /// The way from where they were that all mobile disks but a few, which may note_updated, did not exceed \[length\].
     pub(crate) fn common_way(&self, from: &[Vector<D>]) -> f64 {
         if !self.pairs.keeps_places || self.mobile_count == 0 {
             return self.longest_way(from);

@@ -2,23 +2,20 @@
 
 use crate::forces::assembly::Assembly;
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::displacement_bounds::{PORTION, Ways, is_within};
+use crate::neighbours::displacement_bounds::{LISTED, PORTION, Ways, is_within};
 use crate::neighbours::inner_list::{best_skin, best_skin_of_all};
 use crate::neighbours::pair_list::PairList;
 use crate::packing::PackingError;
 use crate::parallel;
 use crate::vector::{Vector, larger, longest_difference_squared};
 
-/// How far a disk may go from where it was listed over the width of the skin: half of it, less the rounding of the comparison.
-pub(crate) const LISTED: f64 = 0.4999;
-
 /// Calls of [`Assembly::keep_listed`] after which the way of the disks is looked at for the first time; then at twice as many.
 const FIRST_LOOK: usize = 16;
 
 impl<const D: usize, L: PairLaw> Assembly<D, L> {
     #[cfg(test)]
-    pub(crate) fn near_pairs_used(&self) -> bool {
-        self.near_skin.is_some()
+    pub(crate) fn inner_list_is_used(&self) -> bool {
+        self.inner_skin.is_some()
     }
 
     #[cfg(test)]
@@ -50,8 +47,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// The list in use, where it has the disks, the way it holds for, and what they have gone of it.
     pub(crate) fn listing(&mut self) -> (&PairList<D>, &[Vector<D>], f64, &mut Ways) {
         let limit = LISTED * self.skin();
-        let (pairs, listed) = match self.near_skin {
-            Some(_) => (&self.near_pairs, &self.near_listed),
+        let (pairs, listed) = match self.inner_skin {
+            Some(_) => (&self.inner_pairs, &self.inner_at_build),
             None => (&self.pairs, &self.listed),
         };
         (pairs, listed, limit, &mut self.ways)
@@ -136,13 +133,13 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
         let way = if self.prunes { self.felt_way(self.listed_in_use()) / self.age as f64 } else { f64::INFINITY };
         let best = best_skin(self.smallest_radius, way);
-        if self.near_skin.is_none() || self.longest_way(&self.listed) > LISTED * self.skin {
+        if self.inner_skin.is_none() || self.longest_way(&self.listed) > LISTED * self.skin {
             self.choose_skin();
             self.rebuild()?;
             self.picks(best, self.skin);
         } else if !self.picks(best, self.skin) {
             // As long as the list of all pairs lasts it is used itself.
-            self.near_skin = None;
+            self.inner_skin = None;
             self.ways_before.clear();
             self.listing_number = (self.listing_number.0 + 1, 0);
             self.take_ways();
@@ -155,7 +152,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         let (narrowest, widest) = (*self.skins.start(), *self.skins.end());
         if narrowest < widest {
             // Disks whose near pairs are in use are slow.
-            let way = if self.near_skin.is_none() { self.common_way(&self.listed) / self.age as f64 } else { 0.0 };
+            let way = if self.inner_skin.is_none() { self.common_way(&self.listed) / self.age as f64 } else { 0.0 };
             self.skin = best_skin_of_all(self.smallest_radius, way).clamp(narrowest, widest);
         }
     }
@@ -172,9 +169,9 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             return false;
         }
         let skin = best.min(longest);
-        self.near_pairs.prune(&self.pairs, &self.displacements, skin);
-        self.near_skin = Some(skin);
-        self.near_listed.clone_from(&self.displacements);
+        self.inner_pairs.prune(&self.pairs, &self.displacements, skin);
+        self.inner_skin = Some(skin);
+        self.inner_at_build.clone_from(&self.displacements);
         self.ways_before = self.ways_from(&self.listed);
         self.listing_number = (self.listing_number.0 + 1, 0);
         self.begin_list();
@@ -188,7 +185,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// The list of all pairs is new.
     pub(crate) fn begin_all(&mut self) {
-        self.near_skin = None;
+        self.inner_skin = None;
         self.ways_before.clear();
         self.listed.clone_from(&self.displacements);
         self.listing_number = (self.listing_number.0 + 1, 0);
@@ -203,12 +200,12 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// Where the disks were when the list in use was made, or listed anew.
     pub(crate) fn listed_in_use(&self) -> &[Vector<D>] {
-        if self.near_skin.is_some() { &self.near_listed } else { &self.listed }
+        if self.inner_skin.is_some() { &self.inner_at_build } else { &self.listed }
     }
 
     /// Width of the skin of the list in use \[length\].
     pub fn skin(&self) -> f64 {
-        self.near_skin.unwrap_or(self.skin)
+        self.inner_skin.unwrap_or(self.skin)
     }
 
     /// How far every disk may go before the list must be made anew, at least \[length\].
