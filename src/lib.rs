@@ -167,17 +167,17 @@ mod book {
     mod packing {}
     #[doc = include_str!("../book/src/io.md")]
     mod io {}
-    #[doc = include_str!("../book/src/contact/law.md")]
+    #[doc = include_str!("../book/src/law.md")]
     mod contact_law {}
-    #[doc = include_str!("../book/src/contact/damping.md")]
+    #[doc = include_str!("../book/src/law/damping.md")]
     mod contact_damping {}
-    #[doc = include_str!("../book/src/contact/neighbours.md")]
+    #[doc = include_str!("../book/src/neighbours.md")]
     mod contact_neighbours {}
-    #[doc = include_str!("../book/src/contact/forces.md")]
+    #[doc = include_str!("../book/src/forces.md")]
     mod contact_forces {}
-    #[doc = include_str!("../book/src/contact/network.md")]
+    #[doc = include_str!("../book/src/network.md")]
     mod contact_network {}
-    #[doc = include_str!("../book/src/contact/on_site.md")]
+    #[doc = include_str!("../book/src/law/on_site.md")]
     mod contact_on_site {}
     #[cfg(feature = "linear")]
     #[doc = include_str!("../book/src/linear.md")]

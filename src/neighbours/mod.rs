@@ -3,7 +3,7 @@
 //! Start from [`PairList`], the list, and [`verlet_list`], which builds it. An inner list has the near pairs of a list; pairs of a few fast
 //! disks are inserted without building it again.
 
-pub(crate) mod block;
+pub mod block;
 pub(crate) mod cell_grid;
 pub(crate) mod concatenated;
 pub(crate) mod displacement_bounds;

@@ -178,6 +178,7 @@ mod agreement;
 mod derivatives;
 mod invariance;
 mod network;
+mod places;
 mod refusals;
 mod roaming;
 mod single;
