@@ -141,7 +141,7 @@ mod tests {
     use crate::forces::elastic;
     use crate::io::read_packing;
     use crate::law::damping::ConstantDamping;
-    use crate::law::pair_law::Hertzian;
+    use crate::law::power_laws::Hertzian;
     use crate::vector::{difference, norm};
 
     /// Both passes give the same sums, of terms of up to 10⁴ and 10⁶, to their rounding.

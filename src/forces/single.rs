@@ -353,7 +353,7 @@ impl<const D: usize> LawKernel for Arithmetic<'_, D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::pair_law::Hertzian;
+    use crate::law::power_laws::Hertzian;
     use crate::processor::Processor;
 
     /// The forces of a block, with every width of vectors, prefetched or not.

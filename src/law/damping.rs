@@ -123,21 +123,13 @@ pub enum DampingChoice {
 }
 
 impl Default for DampingChoice {
-    /// Constant, γ = 500. Source: the model of design §4.
+    /// Constant, γ = 500. Source: the published study.
     fn default() -> Self {
         DampingChoice::Constant(ConstantDamping { rate: 500.0 })
     }
 }
 
 impl DampingChoice {
-    /// The damping of contacts of a law.
-    pub fn of_contacts(&self, law: &impl crate::law::pair_law::PairLaw) -> ContactDamping {
-        match self {
-            DampingChoice::Constant(damping) => ContactDamping::Constant(*damping),
-            DampingChoice::Viscoelastic(damping) => law.viscoelastic(damping.rate),
-        }
-    }
-
     /// γ of either law \[force / velocity, or 1 / (time length)\].
     pub fn rate(&self) -> f64 {
         match self {

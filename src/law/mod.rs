@@ -1,9 +1,13 @@
 //! What happens at one contact: force and energy of an overlap ([`PairLaw`]), [`damping`], and forces from sites ([`OnSite`]).
 
+pub mod choice;
 pub mod damping;
 pub(crate) mod kernel;
 pub mod on_site;
 pub mod pair_law;
+pub mod power_laws;
 
+pub use choice::{LawChoice, LawError};
 pub use on_site::OnSite;
-pub use pair_law::{Hertzian, Hookean, LawChoice, LawError, LawVisitor, PairLaw, PowerLaw};
+pub use pair_law::{LawVisitor, PairLaw};
+pub use power_laws::{Hertzian, Hookean, PowerLaw};

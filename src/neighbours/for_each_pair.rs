@@ -91,7 +91,7 @@ mod tests {
     use crate::forces::assembly::Assembly;
     use crate::forces::elastic::geometry;
     use crate::io::read_packing;
-    use crate::law::pair_law::Hertzian;
+    use crate::law::power_laws::Hertzian;
 
     #[test]
     fn every_pair_is_met_once_with_the_bits_of_its_geometry() {

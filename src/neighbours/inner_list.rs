@@ -147,7 +147,7 @@ mod tests {
     use super::*;
     use crate::forces::assembly::Assembly;
     use crate::io::read_packing;
-    use crate::law::pair_law::Hertzian;
+    use crate::law::power_laws::Hertzian;
     use crate::vector::{difference, norm};
 
     /// Every disk goes its own way, `way` long, for so many steps; after each, energy, contacts and forces are those of a list

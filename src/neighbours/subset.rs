@@ -50,7 +50,7 @@ mod tests {
     use crate::forces::assembly::Assembly;
     use crate::forces::elastic::{Across, forces};
     use crate::io::read_packing;
-    use crate::law::pair_law::Hertzian;
+    use crate::law::power_laws::Hertzian;
     use crate::packing::{Mixture, Packing};
     use crate::preparation::random_points;
     use crate::vector::{Vector, difference, norm};

@@ -109,7 +109,7 @@ impl Relaxer for DampedDynamics {
         law: &L,
         trace: &mut impl Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
-        self.relax_with(packing, law, &self.damping.of_contacts(law), trace)
+        self.relax_with(packing, law, &law.contact_damping(&self.damping), trace)
     }
 
     fn passing(&self, limit: f64) -> Option<Self> {
@@ -450,7 +450,7 @@ fn longest_stable(stiffness: f64, damping: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::law::damping::ConstantDamping;
-    use crate::law::pair_law::Hookean;
+    use crate::law::power_laws::Hookean;
     use crate::packing::Domain;
 
     /// Two disks pressed together, Hookean with damping: the overlap is a damped oscillator,

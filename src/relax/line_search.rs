@@ -167,7 +167,7 @@ pub fn acceptance<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::pair_law::Hookean;
+    use crate::law::power_laws::Hookean;
     use crate::packing::{Domain, Packing};
 
     /// A disk pressed to the right by one at −0.9, one at 1.5 in its way and one at 3.3 beyond: at 2.4 the slope is zero too,

@@ -9,7 +9,7 @@ use crate::analysis::Analysis;
 use crate::certificate::Certificate;
 use crate::displacement::DisplacementField;
 use crate::io::{Column, write_atomically, write_packing};
-use crate::law::pair_law::LawChoice;
+use crate::law::choice::LawChoice;
 use crate::packing::Packing;
 use crate::processor::{Processor, Vectors};
 use crate::report::data_file::DataFile;

@@ -211,7 +211,8 @@ fn by_spectrum(_response: &Response) -> Option<Phase> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::pair_law::{Hertzian, LawChoice};
+    use crate::law::choice::LawChoice;
+    use crate::law::power_laws::Hertzian;
     use crate::observe::state::State;
     use crate::packing::{Domain, Packing};
     use crate::verdict::{RestVerdict, VerdictSettings};

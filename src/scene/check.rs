@@ -1,7 +1,7 @@
 //! [`SceneError`]: whether every number of a scene makes sense.
 
 use crate::inflation::Boundary;
-use crate::law::pair_law::LawError;
+use crate::law::choice::LawError;
 use crate::memory::TooLarge;
 use crate::packing::PackingError;
 #[cfg(feature = "linear")]

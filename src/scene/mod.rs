@@ -28,7 +28,7 @@ pub use observables::{ProfileFitSettings, SpectrumFitSettings};
 pub use protocol::ProtocolChoice;
 
 use crate::inflation::Inflation;
-use crate::law::pair_law::LawChoice;
+use crate::law::choice::LawChoice;
 use crate::packing::Mixture;
 use crate::relax::RelaxerChoice;
 use crate::verdict::VerdictSettings;

@@ -2,7 +2,7 @@
 //!
 //! A relaxation whose answer lies below rounding does not fail, it goes on to its last step. So it is refused before.
 
-use crate::law::pair_law::LawChoice;
+use crate::law::choice::LawChoice;
 use crate::law::pair_law::PairLaw;
 use crate::scene::{Scene, SceneError, Source};
 use crate::vector::larger;

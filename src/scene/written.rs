@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use crate::inflation::Inflation;
-use crate::law::pair_law::LawChoice;
+use crate::law::choice::LawChoice;
 use crate::packing::Mixture;
 use crate::relax::RelaxerChoice;
 use crate::scene::protocol::ProtocolChoice;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use sha2::{Digest, Sha256};
 
 use crate::inflation::Boundary;
-use crate::law::pair_law::LawChoice;
+use crate::law::choice::LawChoice;
 use crate::memory::{Memory, TooLarge};
 use crate::scene::Scene;
 use crate::scene::reduced_pressure::mobile_count;

@@ -6,7 +6,8 @@
 use serde::Serialize;
 
 use crate::inflation::Boundary;
-use crate::law::pair_law::{Hertzian, Hookean, LawChoice};
+use crate::law::choice::LawChoice;
+use crate::law::power_laws::{Hertzian, Hookean};
 use crate::relax::{Fire, RelaxerChoice};
 use crate::scene::{Observables, ProtocolChoice, Scene};
 use crate::study::settings::{Part, Seeds, Study, Target};

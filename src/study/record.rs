@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[cfg(feature = "fit")]
 use crate::fit::angular::{CrossoverOutcome, SlopeOutcome};
 use crate::inflation::{Boundary, InflationError};
-use crate::law::pair_law::LawChoice;
+use crate::law::choice::LawChoice;
 use crate::observe::isostatic::IsostaticOutcome;
 use crate::observe::multipoles::MultipoleFit;
 use crate::preparation::PreparationError;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::inflation::Boundary;
-use crate::law::pair_law::LawChoice;
+use crate::law::choice::LawChoice;
 use crate::memory::{Limit, TooLarge};
 use crate::relax::RelaxerChoice;
 use crate::scene::reduced_pressure::reduction;

@@ -15,7 +15,7 @@ use crate::fit::ensemble::{
     BootstrapInterval, CollapseOutcome, CollapseQuality, CollapseSettings, Curve, MeasuredPoint, PowerLaw,
     bootstrap_all, collapse, collapse_quality, fit_power_law,
 };
-use crate::law::pair_law::LawChoice;
+use crate::law::choice::LawChoice;
 use crate::relax::RelaxerChoice;
 use crate::study::Merged;
 use crate::transition::pressure::{Method, TransitionPressure};

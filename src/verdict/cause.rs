@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::law::pair_law::LawChoice;
+use crate::law::choice::LawChoice;
 use crate::verdict::Digits;
 
 /// The residual under another law.

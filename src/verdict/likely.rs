@@ -1,6 +1,8 @@
 //! What is likely where states are not at rest: their forces under other laws, and where the unbalanced disks are.
 
-use crate::law::pair_law::{Hertzian, Hookean, LawChoice, PairLaw, PowerLaw};
+use crate::law::choice::LawChoice;
+use crate::law::pair_law::PairLaw;
+use crate::law::power_laws::{Hertzian, Hookean, PowerLaw};
 use crate::observe::state::State;
 use crate::packing::{Packing, ball_volume};
 use crate::vector::{Vector, dot, larger, norm};

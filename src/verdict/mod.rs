@@ -19,7 +19,8 @@ pub use balance::{Balance, StateBalance};
 pub use cause::{Cause, OtherLaw};
 pub use digits::Digits;
 
-use crate::law::pair_law::{LawChoice, PairLaw};
+use crate::law::choice::LawChoice;
+use crate::law::pair_law::PairLaw;
 use crate::observe::state::State;
 
 /// A residual above this counts as rest nowhere: neither by a limit of a relaxer nor by that of a verdict \[1\].

@@ -53,7 +53,7 @@ pub(super) fn choice_tables<L: PairLaw>(
     let mut tables = fits::tables(state, grown, observables);
     #[cfg(not(feature = "fit"))]
     let (mut tables, _) = (Vec::new(), observables);
-    let damping = damping.of_contacts(law);
+    let damping = law.contact_damping(&damping);
     tables.push(trajectory::time_steps(grown, law, &damping)?);
     tables.push(trajectory::skins(grown, law, &damping)?);
     let wavenumber = state.measured.fitted.map_or(0.0, |fitted| fitted.wavenumber);

@@ -128,7 +128,7 @@ impl Relaxer for ImplicitDynamics {
             finish: self.finish,
             step_limit: self.step_limit,
         };
-        run.relax(packing, law, &self.damping.of_contacts(law), Inertia::Massive, trace)
+        run.relax(packing, law, &law.contact_damping(&self.damping), Inertia::Massive, trace)
     }
 
     fn passing(&self, limit: f64) -> Option<Self> {

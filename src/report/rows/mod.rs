@@ -5,7 +5,7 @@ mod frequency;
 pub(crate) mod response;
 mod states;
 
-use crate::law::pair_law::LawChoice;
+use crate::law::choice::LawChoice;
 use crate::response::Measurement;
 use crate::run::{Report, SampleOutcome, SampleReport, SampleResult};
 use crate::scene::Sample;

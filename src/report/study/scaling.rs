@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::law::pair_law::LawChoice;
+use crate::law::choice::LawChoice;
 use crate::relax::RelaxerChoice;
 use crate::report::figures::Figure;
 use crate::report::figures::palette::{BLUE, VERMILLION};

@@ -342,7 +342,7 @@ mod tests {
     use super::*;
     use crate::io::read_packing;
     use crate::law::damping::ConstantDamping;
-    use crate::law::pair_law::Hertzian;
+    use crate::law::power_laws::Hertzian;
     use crate::relax::implicit::Inertia;
 
     type Motion = ImplicitMotion<2, Hertzian, ConstantDamping>;

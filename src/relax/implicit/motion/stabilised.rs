@@ -262,7 +262,7 @@ mod tests {
     use crate::forces::damped::add_damping;
     use crate::io::read_packing;
     use crate::law::damping::ConstantDamping;
-    use crate::law::pair_law::Hertzian;
+    use crate::law::power_laws::Hertzian;
 
     fn stored() -> ImplicitMotion<2, Hertzian, ConstantDamping> {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz");

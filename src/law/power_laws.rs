@@ -1,0 +1,283 @@
+//! The laws of the field: Hertzian, Hookean, and the dimensionless power law.
+//!
+//! Every law here is a power of the overlap δ, with a coefficient c that depends on the two radii alone:
+//!
+//! ```text
+//! F(δ) = c δ^(α−1)      u(δ) = F δ / α      F'(δ) = (α − 1) F / δ      for δ > 0, all 0 otherwise
+//! ```
+//!
+//! | law | α | c |
+//! |---|---|---|
+//! | [`Hertzian`] | 5/2 | k' √R_ij, R_ij = R_i R_j / (R_i + R_j) |
+//! | [`Hookean`] | 2 | k' |
+//! | [`PowerLaw`] | any ≥ 2 | ε / σ_ij^α, σ_ij = R_i + R_j |
+
+use pulp::Simd;
+use serde::{Deserialize, Serialize};
+
+use crate::law::damping::{ContactDamping, MassDamping, ViscoelasticDamping, effective_radius};
+use crate::law::pair_law::PairLaw;
+use crate::processor::Processor;
+use crate::simd::roots::square_roots;
+
+/// Hertzian contact.
+///
+/// ```text
+/// F = k' √(δ R_ij) δ        u = (2/5) F δ        R_ij = R_i R_j / (R_i + R_j)
+/// ```
+///
+/// # Source
+/// Johnson, Contact Mechanics (1985), §4.2; in this form LAMMPS `pair_style gran/hertz`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hertzian {
+    /// Stiffness constant k' \[force / length²\].
+    pub stiffness: f64,
+}
+
+/// Hookean contact, `F = k' δ`, `u = k' δ² / 2`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hookean {
+    /// Stiffness constant k' \[force / length\].
+    pub stiffness: f64,
+}
+
+/// The dimensionless power law, `u = (ε/α) (1 − r/σ_ij)^α` with `σ_ij = R_i + R_j`.
+///
+/// α = 2 is the harmonic law and α = 5/2 the "Hertzian" one of much of the jamming literature; neither equals
+/// [`Hookean`] or [`Hertzian`], whose coefficients depend on the radii in another way.
+///
+/// # Source
+/// O'Hern, Silbert, Liu, Nagel (2003), Phys. Rev. E 68, 011306.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PowerLaw {
+    /// Energy scale ε \[energy\].
+    pub energy_scale: f64,
+    /// Exponent α ≥ 2 \[1\].
+    pub exponent: f64,
+}
+
+/// Default stiffness k' of both laws in the units of the model. Source: the published study, k' = 2·10⁵.
+pub const MODEL_STIFFNESS: f64 = 2e5;
+
+impl Default for Hertzian {
+    fn default() -> Self {
+        Hertzian { stiffness: MODEL_STIFFNESS }
+    }
+}
+
+impl Default for Hookean {
+    fn default() -> Self {
+        Hookean { stiffness: MODEL_STIFFNESS }
+    }
+}
+
+impl PairLaw for Hertzian {
+    fn viscoelastic(&self, rate: f64) -> ContactDamping {
+        ContactDamping::Viscoelastic(ViscoelasticDamping { rate })
+    }
+    #[inline(always)]
+    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
+        self.stiffness * effective_radius(first_radius, second_radius).sqrt()
+    }
+    #[inline(always)]
+    fn coefficient_growth(&self, first_radius: f64, second_radius: f64) -> f64 {
+        // ln c = (ln R_i + ln R_j − ln(R_i + R_j))/2 + constant.
+        0.5 * second_radius / (first_radius * (first_radius + second_radius))
+    }
+    #[inline(always)]
+    fn force(&self, coefficient: f64, overlap: f64) -> f64 {
+        coefficient * overlap * overlap.sqrt()
+    }
+    #[inline(always)]
+    fn forces<S: Simd>(&self, simd: S, [c, d]: [S::f64s; 2], overlaps: [S::f64s; 2]) -> [S::f64s; 2] {
+        let ([a, b], [a_root, b_root]) = (overlaps, square_roots(simd, Processor::here().roots(), overlaps));
+        [simd.mul_f64s(simd.mul_f64s(c, a), a_root), simd.mul_f64s(simd.mul_f64s(d, b), b_root)]
+    }
+    #[inline(always)]
+    fn forces_in_single<S: Simd>(&self, simd: S, coefficients: S::f32s, overlaps: S::f32s) -> S::f32s {
+        simd.mul_f32s(simd.mul_f32s(coefficients, overlaps), simd.sqrt_f32s(overlaps))
+    }
+    #[inline(always)]
+    fn exponent(&self) -> f64 {
+        2.5
+    }
+}
+
+impl PairLaw for Hookean {
+    const ONE_COEFFICIENT: bool = true;
+    fn viscoelastic(&self, rate: f64) -> ContactDamping {
+        ContactDamping::Mass(MassDamping { rate })
+    }
+    #[inline(always)]
+    fn coefficient(&self, _first_radius: f64, _second_radius: f64) -> f64 {
+        self.stiffness
+    }
+    #[inline(always)]
+    fn coefficient_growth(&self, _first_radius: f64, _second_radius: f64) -> f64 {
+        0.0
+    }
+    #[inline(always)]
+    fn force(&self, _coefficient: f64, overlap: f64) -> f64 {
+        // That of every pair: the loop need not load it.
+        self.stiffness * overlap
+    }
+    #[inline(always)]
+    fn forces<S: Simd>(&self, simd: S, _coefficients: [S::f64s; 2], [a, b]: [S::f64s; 2]) -> [S::f64s; 2] {
+        let stiffness = simd.splat_f64s(self.stiffness);
+        [simd.mul_f64s(stiffness, a), simd.mul_f64s(stiffness, b)]
+    }
+    #[inline(always)]
+    fn forces_in_single<S: Simd>(&self, simd: S, coefficients: S::f32s, overlaps: S::f32s) -> S::f32s {
+        simd.mul_f32s(coefficients, overlaps)
+    }
+    #[inline(always)]
+    fn exponent(&self) -> f64 {
+        2.0
+    }
+}
+
+impl PairLaw for PowerLaw {
+    fn viscoelastic(&self, rate: f64) -> ContactDamping {
+        ContactDamping::Mass(MassDamping { rate })
+    }
+    #[inline(always)]
+    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
+        self.energy_scale * libm::pow(first_radius + second_radius, -self.exponent)
+    }
+    #[inline(always)]
+    fn coefficient_growth(&self, first_radius: f64, second_radius: f64) -> f64 {
+        -self.exponent / (first_radius + second_radius)
+    }
+    #[inline(always)]
+    fn force(&self, coefficient: f64, overlap: f64) -> f64 {
+        coefficient * libm::pow(overlap, self.exponent - 1.0)
+    }
+    #[inline(always)]
+    fn exponent(&self) -> f64 {
+        self.exponent
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pulp::bytemuck::cast_slice;
+
+    use super::*;
+    use crate::processor::dispatch;
+
+    fn check_law(law: impl PairLaw) {
+        let coefficient = law.coefficient(0.5, 0.7);
+        assert_eq!(law.force(coefficient, 0.0), 0.0);
+        assert!(law.force(coefficient, f64::NAN).is_nan());
+        for overlap in [1e-3, 0.05, 0.3] {
+            let energy = |x: f64| law.energy(law.force(coefficient, x), x);
+            let h = 1e-5 * overlap;
+            let slope = (energy(overlap + h) - energy(overlap - h)) / (2.0 * h);
+            let force = law.force(coefficient, overlap);
+            // Central difference: truncation (h/δ)² ≈ 1e-10, rounding ε/(h/δ) ≈ 2e-11; a few of each.
+            assert!((slope / force - 1.0).abs() < 1e-9, "{law:?} force at {overlap}");
+            let slope = (law.force(coefficient, overlap + h) - law.force(coefficient, overlap - h)) / (2.0 * h);
+            assert!((slope / law.stiffness(force, overlap) - 1.0).abs() < 1e-9, "{law:?} stiffness at {overlap}");
+        }
+        let h = 1e-5;
+        let slope = (law.coefficient(0.5 + h, 0.7) - law.coefficient(0.5 - h, 0.7)) / (2.0 * h);
+        // Truncation h² times a third derivative below 10² of c, rounding ε/h = 2e-11.
+        assert!((slope / coefficient - law.coefficient_growth(0.5, 0.7)).abs() < 1e-8, "{law:?} growth");
+    }
+
+    #[test]
+    fn force_and_stiffness_are_derivatives() {
+        check_law(Hertzian::default());
+        check_law(Hookean::default());
+        check_law(PowerLaw { energy_scale: 3.0, exponent: 2.0 });
+        check_law(PowerLaw { energy_scale: 3.0, exponent: 3.7 });
+    }
+
+    /// The forces of sixteen pairs, as vectors.
+    struct Forces<'a, L>(&'a L, [f64; 16], [f64; 16]);
+
+    impl<L: PairLaw> pulp::WithSimd for Forces<'_, L> {
+        type Output = Vec<f64>;
+
+        fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
+            let Forces(law, coefficients, overlaps) = self;
+            let (coefficients, overlaps) = (S::as_simd_f64s(&coefficients).0, S::as_simd_f64s(&overlaps).0);
+            let vectors = coefficients.as_chunks().0.iter().zip(overlaps.as_chunks().0);
+            let forces: Vec<S::f64s> = vectors.flat_map(|(&c, &overlap)| law.forces(simd, c, overlap)).collect();
+            cast_slice(&forces).to_vec()
+        }
+    }
+
+    fn check_vectors(law: &impl PairLaw) {
+        let some = [0.0, 1e-20, 1e-9, 3e-3, 0.01, 0.1, 0.3, f64::NAN];
+        let overlaps = std::array::from_fn(|pair| some[(pair + pair / 8) % 8]);
+        let coefficients = std::array::from_fn(|pair| law.coefficient(0.3 + 0.1 * pair as f64, 0.5));
+        for processor in Processor::all() {
+            let found = processor.run(|| dispatch(Forces(law, coefficients, overlaps)));
+            for ((force, coefficient), overlap) in found.iter().zip(coefficients).zip(overlaps) {
+                let alone = law.force(coefficient, overlap);
+                let same = force.to_bits() == alone.to_bits() || overlap.is_nan() && force.is_nan();
+                assert!(same, "{law:?} at {overlap}, {processor:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_forces_of_a_vector_are_those_of_its_pairs() {
+        check_vectors(&Hertzian::default());
+        check_vectors(&Hookean::default());
+        check_vectors(&PowerLaw { energy_scale: 3.0, exponent: 2.5 });
+        check_vectors(&crate::law::on_site::OnSite { law: Hertzian::default(), coupling: -0.5 });
+    }
+
+    /// Forces in single precision of sixteen pairs, as vectors.
+    struct SingleForces<'a, L>(&'a L, [f32; 16], [f32; 16]);
+
+    impl<L: PairLaw> pulp::WithSimd for SingleForces<'_, L> {
+        type Output = Vec<f32>;
+
+        fn with_simd<S: Simd>(self, simd: S) -> Vec<f32> {
+            let SingleForces(law, coefficients, overlaps) = self;
+            let (coefficients, overlaps) = (S::as_simd_f32s(&coefficients).0, S::as_simd_f32s(&overlaps).0);
+            let vectors = coefficients.iter().zip(overlaps);
+            let forces: Vec<S::f32s> = vectors.map(|(&c, &overlap)| law.forces_in_single(simd, c, overlap)).collect();
+            cast_slice(&forces).to_vec()
+        }
+    }
+
+    #[test]
+    fn forces_in_single_precision_are_the_power_of_the_overlap() {
+        fn check(law: &impl PairLaw) {
+            let some = [0.0, 1e-12, 1e-9, 3e-3, 0.01, 0.1, 0.3, f32::NAN];
+            let overlaps: [f32; 16] = std::array::from_fn(|pair| some[(pair + pair / 8) % 8]);
+            let coefficients: [f32; 16] = std::array::from_fn(|pair| 0.3 + 0.1 * pair as f32);
+            let found = dispatch(SingleForces(law, coefficients, overlaps));
+            for processor in Processor::all() {
+                let again = processor.run(|| dispatch(SingleForces(law, coefficients, overlaps)));
+                let bits = |forces: &[f32]| forces.iter().map(|force| force.to_bits()).collect::<Vec<_>>();
+                assert_eq!(bits(&again), bits(&found), "{law:?}, {processor:?}");
+            }
+            for ((force, c), overlap) in found.into_iter().zip(coefficients).zip(overlaps) {
+                let expected = f64::from(c) * f64::from(overlap).powf(law.exponent() - 1.0);
+                // Two products and a root, half a unit each.
+                let near = (f64::from(force) - expected).abs() <= 3.0 * 0.5 * f64::from(f32::EPSILON) * expected;
+                assert!(near || overlap.is_nan() && force.is_nan(), "{law:?} at {overlap}: {force}");
+            }
+        }
+        check(&Hertzian::default());
+        check(&Hookean::default());
+        check(&PowerLaw { energy_scale: 3.0, exponent: 2.7 });
+    }
+
+    #[test]
+    fn the_power_law_is_the_formula_of_its_source() {
+        // r = 1.1, σ = 1.2, α = 5/2, ε = 1: u = 0.4 (1 − r/σ)^2.5, to rounding times the powers taken.
+        let law = PowerLaw { energy_scale: 1.0, exponent: 2.5 };
+        let overlap = 0.1;
+        let energy = law.energy(law.force(law.coefficient(0.5, 0.7), overlap), overlap);
+        assert!((energy / (0.4 * (overlap / 1.2f64).powf(2.5)) - 1.0).abs() < 1e-14);
+    }
+}
