@@ -10,7 +10,7 @@ use std::iter::repeat_with;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::forces::elastic::{Across, Kernel, Task, add_incoming, sweep, sweep_border};
-use crate::neighbours::displacement_bounds::{Bound, PORTION, Ways, is_within};
+use crate::neighbours::displacement_bounds::{Bound, DisplacementBounds, PORTION, is_within};
 use crate::neighbours::pair_list::PairList;
 use crate::neighbours::tile_schedule::Stage;
 use crate::parallel;
@@ -50,7 +50,7 @@ pub(crate) struct Reach<'a, F> {
     /// The way it holds for \[length\].
     pub limit: f64,
     /// What disks have gone of it.
-    pub ways: &'a mut Ways,
+    pub bounds: &'a mut DisplacementBounds,
     /// The longest way of disks from this one on since they were listed, from their displacements \[length\].
     pub longest: F,
 }
@@ -70,7 +70,7 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     look: impl Fn(&[[K::Number; D]], &[[K::Number; D]]) -> P + Send + Sync,
 ) -> Option<Vec<P>> {
     let Movers { velocities, displacements, forces } = movers;
-    let Reach { limit, ways, longest } = reach;
+    let Reach { limit, bounds, longest } = reach;
     let (tiles, size) = (pairs.tiles.as_slice(), pairs.tile_size);
     let spent = AtomicBool::new(false);
     let is_spent = || spent.load(Ordering::Relaxed);
@@ -78,10 +78,10 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     // Moves disks of a portion, from this one on.
     let moves = |disk: usize, (forces, velocities, displacements): Moving<'_, _, D>, bound: &mut Bound| {
         bound.step = kick(forces, velocities, displacements);
-        bound.way += bound.step;
-        if !is_within(bound.way, limit) {
-            bound.way = longest(disk, displacements);
-            if !is_within(bound.way, limit) {
+        bound.total += bound.step;
+        if !is_within(bound.total, limit) {
+            bound.total = longest(disk, displacements);
+            if !is_within(bound.total, limit) {
                 spent.store(true, Ordering::Relaxed);
             }
         }
@@ -116,12 +116,12 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
         [look(&forces[..begin], &velocities[..begin]), look(&forces[end..mobile], &velocities[end..])]
     };
     across.fit(pairs);
-    let of_tile = ways.of_tile;
+    let of_tile = bounds.of_tile;
     let (mut insides, mut marginals) = (Vec::with_capacity(tiles.len()), Vec::new());
     if parallel::is_shared(tiles.len()) {
         // Tiles of held disks have no velocities.
         let moving =
-            velocities.chunks_mut(size).zip(ways.bounds.chunks_mut(of_tile)).chain(repeat_with(Default::default));
+            velocities.chunks_mut(size).zip(bounds.portions.chunks_mut(of_tile)).chain(repeat_with(Default::default));
         let arrays = displacements.chunks_mut(size).zip(forces.chunks_mut(size)).zip(moving);
         insides = parallel::each(arrays.enumerate(), |(place, ((u, f), (v, bounds)))| inside(place, (f, v, u), bounds));
         if is_spent() {
@@ -142,9 +142,10 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
             let forces = &mut forces[begin..end];
             match stage {
                 Stage::Inside => {
-                    let portions = ways.bounds.len().min(place * of_tile)..ways.bounds.len().min((place + 1) * of_tile);
+                    let portions =
+                        bounds.portions.len().min(place * of_tile)..bounds.portions.len().min((place + 1) * of_tile);
                     let disks = (forces, &mut velocities[moving], &mut displacements[begin..end]);
-                    insides.push(inside(place, disks, &mut ways.bounds[portions]));
+                    insides.push(inside(place, disks, &mut bounds.portions[portions]));
                 }
                 _ if is_spent() => {}
                 Stage::Border => border(place, displacements, forces, &mut across.0[place]),

@@ -18,7 +18,7 @@ use crate::forces::elastic::{Across, Plain};
 use crate::forces::stiffness_bound::{Weight, stiffness_rows};
 use crate::forces::totals::Totals;
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::displacement_bounds::{LISTED, Ways};
+use crate::neighbours::displacement_bounds::{DisplacementBounds, LISTED};
 use crate::neighbours::fast_disks::FastDisks;
 use crate::neighbours::pair_list::PairList;
 use crate::neighbours::verlet_list::{Disks, ListRoom, build_pairs, spatial_order};
@@ -75,9 +75,9 @@ pub struct Assembly<const D: usize, L> {
     /// Displacements to come back to, if the relaxer set a checkpoint.
     checkpoint: Vec<Vector<D>>,
     /// How far disks may have moved since they were listed in the list in use.
-    ways: Ways,
+    bounds: DisplacementBounds,
     /// How far each portion of them had gone in the list of all pairs when they were listed in near pairs; none unless these are in use.
-    ways_before: Vec<f64>,
+    bounds_before: Vec<f64>,
     /// Lists that were in use so far, and how often this one was amended.
     listing_number: (usize, usize),
     rebuild_count: usize,
@@ -144,8 +144,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             inner_at_build: Vec::new(),
             far: FastDisks::default(),
             checkpoint: Vec::new(),
-            ways: Ways::default(),
-            ways_before: Vec::new(),
+            bounds: DisplacementBounds::default(),
+            bounds_before: Vec::new(),
             listing_number: (0, 0),
             rebuild_count: 0,
             from_sites: Vec::new(),
@@ -274,7 +274,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         let longest = |first: usize, displacements: &[Vector<D>]| {
             longest_difference_squared(displacements, &listed[first..first + displacements.len()]).sqrt()
         };
-        let reach = Reach { limit, ways: &mut self.ways, longest };
+        let reach = Reach { limit, bounds: &mut self.bounds, longest };
         Advanced::of(advance(&Plain { law: &self.law, pairs }, pairs, (movers, &mut self.across), reach, kick, look))
     }
 

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! b, the base, are displacements in double precision; D_b and δ_b, separations and overlaps there, are found in double precision and then
-//! rounded. Only the ways m from the base, small ones, and what follows from them have 24 bits: a force is known to 2⁻²⁴ of itself and of what
-//! a relative way m_i − m_j changes it by. A net force is so much less exact than a contact force, so this
+//! rounded. Only the offsets m from the base, small ones, and what follows from them have 24 bits: a force is known to 2⁻²⁴ of itself and of what
+//! a relative offset m_i − m_j changes it by. A net force is so much less exact than a contact force, so this
 //! is for residuals well above 10⁻⁷. Half of the bytes are moved, and twice as many pairs fit in a vector; the formulas are those of [`crate::forces::elastic`].
 //!
 //! Units are powers of two near a radius and the force of its overlap, so that no number leaves the range of single precision, whatever
@@ -85,7 +85,7 @@ pub struct Single<const D: usize> {
     units: Units,
     blocks: SingleBlocks<D>,
     base: Vec<Vector<D>>,
-    ways: Vec<[f32; D]>,
+    offsets: Vec<[f32; D]>,
     /// Forces of the last evaluation, all disks \[`Units::force`\].
     pub forces: Vec<[f32; D]>,
     across: Across<f32, D>,
@@ -104,14 +104,14 @@ impl<const D: usize> Single<D> {
             units: Units::of(radius, assembly.law().force_scale(radius))?,
             blocks: SingleBlocks::default(),
             base: Vec::new(),
-            ways: vec![[0.0; D]; assembly.len()],
+            offsets: vec![[0.0; D]; assembly.len()],
             forces: vec![[0.0; D]; assembly.len()],
             across: Across::default(),
             listing: None,
         })
     }
 
-    /// Units of ways, forces and velocities.
+    /// Units of offsets, forces and velocities.
     pub fn units(&self) -> Units {
         self.units
     }
@@ -138,14 +138,15 @@ impl<const D: usize> Single<D> {
             // Where another list was made the disks were settled, and may have other anchors since.
             return;
         }
-        let places = assembly.displacements.chunks_mut(PIECE).zip(self.base.chunks(PIECE)).zip(self.ways.chunks(PIECE));
+        let places =
+            assembly.displacements.chunks_mut(PIECE).zip(self.base.chunks(PIECE)).zip(self.offsets.chunks(PIECE));
         let unit = self.units.length;
-        parallel::each(places, |((to, base), ways)| place(unit, (base, ways), to));
+        parallel::each(places, |((to, base), offsets)| place(unit, (base, offsets), to));
     }
 
     /// The same for these disks.
     fn settle_some<L: PairLaw>(&self, assembly: &mut Assembly<D, L>, disks: Range<usize>) {
-        let from = (&self.base[disks.clone()], &self.ways[disks.clone()]);
+        let from = (&self.base[disks.clone()], &self.offsets[disks.clone()]);
         place(self.units.length, from, &mut assembly.displacements[disks]);
     }
 
@@ -166,12 +167,12 @@ impl<const D: usize> Single<D> {
             return;
         }
         self.base.clone_from(&assembly.displacements);
-        self.ways.fill([0.0; D]);
+        self.offsets.fill([0.0; D]);
         self.blocks.round_all(pairs, &self.base, factors);
     }
 
     /// Moves all mobile disks and evaluates the forces where they then are, as [`Assembly::advance`] does; `kick` gets (forces, velocities,
-    /// ways) of some of them and returns a bound on how far it moved any \[length\].
+    /// offsets) of some of them and returns a bound on how far it moved any \[length\].
     pub fn advance<L: PairLaw, P: Send>(
         &mut self,
         assembly: &mut Assembly<D, L>,
@@ -184,14 +185,14 @@ impl<const D: usize> Single<D> {
         }
         self.prepare(assembly);
         let (law, unit, base) = (*assembly.law(), self.units.length, self.base.as_slice());
-        let (pairs, listed, limit, ways) = assembly.listing();
-        let longest = |first: usize, ways: &[[f32; D]]| {
-            let disks = first..first + ways.len();
-            longest_way(unit, (&base[disks.clone()], ways), &listed[disks])
+        let (pairs, at_build, limit, bounds) = assembly.listing();
+        let longest = |first: usize, offsets: &[[f32; D]]| {
+            let disks = first..first + offsets.len();
+            longest_offset(unit, (&base[disks.clone()], offsets), &at_build[disks])
         };
         let kernel = Pressed { law: &law, pairs, blocks: &self.blocks };
-        let movers = Movers { velocities, displacements: &mut self.ways, forces: &mut self.forces };
-        let reach = Reach { limit, ways, longest };
+        let movers = Movers { velocities, displacements: &mut self.offsets, forces: &mut self.forces };
+        let reach = Reach { limit, bounds, longest };
         let advanced = Advanced::of(advance(&kernel, pairs, (movers, &mut self.across), reach, kick, look));
         if matches!(advanced, Advanced::Moved) || assembly.looks_next() {
             // The assembly looks at its disks.
@@ -209,7 +210,7 @@ impl<const D: usize> Single<D> {
         self.prepare(assembly);
         let pairs = assembly.pairs();
         let kernel = Pressed { law: assembly.law(), pairs, blocks: &self.blocks };
-        let _ = all_tiles(&kernel, pairs, &self.ways, &mut self.across, &mut self.forces);
+        let _ = all_tiles(&kernel, pairs, &self.offsets, &mut self.across, &mut self.forces);
     }
 
     /// Moves all mobile disks by `kick` alone.
@@ -221,25 +222,29 @@ impl<const D: usize> Single<D> {
     ) -> K {
         self.prepare(assembly);
         let mobile = assembly.mobile_count();
-        kick(&self.forces[..mobile], velocities, &mut self.ways[..mobile])
+        kick(&self.forces[..mobile], velocities, &mut self.offsets[..mobile])
     }
 }
 
-/// Where disks at base + way are.
-fn place<const D: usize>(unit: f64, (base, ways): (&[Vector<D>], &[[f32; D]]), places: &mut [Vector<D>]) {
-    let from = base.as_flattened().iter().zip(ways.as_flattened());
-    for (place, (base, way)) in places.as_flattened_mut().iter_mut().zip(from) {
-        *place = base + unit * f64::from(*way);
+/// Where disks at base + offset are.
+fn place<const D: usize>(unit: f64, (base, offsets): (&[Vector<D>], &[[f32; D]]), places: &mut [Vector<D>]) {
+    let from = base.as_flattened().iter().zip(offsets.as_flattened());
+    for (place, (base, offset)) in places.as_flattened_mut().iter_mut().zip(from) {
+        *place = base + unit * f64::from(*offset);
     }
 }
 
-/// The longest way from where disks were listed, of those at base + way, as they are settled.
-fn longest_way<const D: usize>(unit: f64, (base, ways): (&[Vector<D>], &[[f32; D]]), listed: &[Vector<D>]) -> f64 {
+/// The longest offset from where disks were listed, of those at base + offset, as they are settled.
+fn longest_offset<const D: usize>(
+    unit: f64,
+    (base, offsets): (&[Vector<D>], &[[f32; D]]),
+    listed: &[Vector<D>],
+) -> f64 {
     let mut places = [[0.0; D]; 64];
-    let pieces = base.chunks(64).zip(ways.chunks(64)).zip(listed.chunks(64));
-    let squares = pieces.map(|((base, ways), listed)| {
+    let pieces = base.chunks(64).zip(offsets.chunks(64)).zip(listed.chunks(64));
+    let squares = pieces.map(|((base, offsets), listed)| {
         let places = &mut places[..base.len()];
-        place(unit, (base, ways), places);
+        place(unit, (base, offsets), places);
         longest_difference_squared(places, listed)
     });
     squares.fold(0.0, larger).sqrt()
@@ -264,11 +269,11 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Pressed<'_, D, L> {
     fn pull<'a>(
         &self,
         block: usize,
-        ways: (&[[f32; D]], u32),
+        offsets: (&[[f32; D]], u32),
         (columns, ()): &'a mut (Columns<D>, ()),
     ) -> &'a [[f32; D]; BLOCK] {
         prefetch_rows(self.pairs, &self.pairs.blocks[block]);
-        gather(&mut columns.pull, self.pairs, &self.pairs.blocks[block], ways);
+        gather(&mut columns.pull, self.pairs, &self.pairs.blocks[block], offsets);
         let (of_pairs, pair_count) = (self.blocks.block(block), self.pairs.blocks[block].pair_count);
         dispatch(self.law, Arithmetic { block: of_pairs, columns, pair_count, prefetches: self.pairs.prefetches() });
         &columns.pull
@@ -315,12 +320,12 @@ impl<const D: usize> LawKernel for Arithmetic<'_, D> {
         let (anchor_distance, anchor_overlap) = (read(&block.distance), read(&block.overlap));
         let (coefficients, one_coefficient) = (read(&block.coefficient), simd.splat_f32s(block.coefficient[0]));
         for k in 0..count {
-            let way = components::split_single::<S, D>(simd, &pull[D * k..D * (k + 1)]);
+            let offset = components::split_single::<S, D>(simd, &pull[D * k..D * (k + 1)]);
             let (mut square, mut changed) = (zero, zero);
             for d in 0..D {
-                let along = simd.add_f32s(separation[d][k], way[d]);
+                let along = simd.add_f32s(separation[d][k], offset[d]);
                 let squared = simd.mul_f32s(along, along);
-                let change = simd.mul_f32s(way[d], simd.add_f32s(separation[d][k], along));
+                let change = simd.mul_f32s(offset[d], simd.add_f32s(separation[d][k], along));
                 (square, changed) = match d {
                     0 => (squared, change),
                     _ => (simd.add_f32s(square, squared), simd.add_f32s(changed, change)),
@@ -364,14 +369,14 @@ mod tests {
         };
         let (separation, overlap) = ([wave(1.3, 0.4, 0.5), wave(2.7, 0.6, 0.3)], wave(1.9, 0.0, 0.2));
         let [x, y] = [wave(3.1, 0.0, 0.05), wave(0.9, 0.0, 0.05)];
-        let ways: [[f32; 2]; BLOCK] = std::array::from_fn(|k| [x[k], y[k]]);
+        let offsets: [[f32; 2]; BLOCK] = std::array::from_fn(|k| [x[k], y[k]]);
         let block =
             &SingleBlock::<2> { separation, distance: wave(0.7, 1.0, 0.1), overlap, coefficient: wave(0.3, 2.0, 1.0) };
         let law = &Hertzian::default();
         let mut forces = Vec::new();
         for prefetches in [None, Some(Cache::First), Some(Cache::Second)] {
             for processor in Processor::all() {
-                let columns = &mut Columns { pull: ways, ..Columns::new() };
+                let columns = &mut Columns { pull: offsets, ..Columns::new() };
                 processor.run(|| dispatch(law, Arithmetic { block, columns, pair_count: BLOCK, prefetches }));
                 forces.push(columns.pull);
             }

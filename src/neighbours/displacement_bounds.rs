@@ -19,29 +19,29 @@ const STEP_GROWTH: f64 = 1.25;
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Bound {
     /// Since they were listed.
-    pub way: f64,
+    pub total: f64,
     /// In the last step.
     pub step: f64,
 }
 
 /// A bound for each portion of the mobile disks, tile by tile.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Ways {
-    pub bounds: Vec<Bound>,
+pub(crate) struct DisplacementBounds {
+    pub portions: Vec<Bound>,
     /// Portions of a tile.
     pub of_tile: usize,
     mobile_count: usize,
     tile_size: usize,
 }
 
-impl Ways {
+impl DisplacementBounds {
     /// None has moved.
     pub fn begin(&mut self, mobile_count: usize, tile_size: usize) {
         self.of_tile = tile_size.min(mobile_count).div_ceil(PORTION).max(1);
         (self.mobile_count, self.tile_size) = (mobile_count, tile_size);
         let (tiles, rest) = (mobile_count / tile_size, mobile_count % tile_size);
-        self.bounds.clear();
-        self.bounds.resize(tiles * self.of_tile + rest.div_ceil(PORTION), Bound::default());
+        self.portions.clear();
+        self.portions.resize(tiles * self.of_tile + rest.div_ceil(PORTION), Bound::default());
     }
 
     /// The disks of a portion.
@@ -53,18 +53,18 @@ impl Ways {
 
     /// No disk has moved by more than this in one step more \[length\].
     pub fn add(&mut self, step: f64) {
-        self.bounds.iter_mut().for_each(|bound| *bound = Bound { way: bound.way + step, step });
+        self.portions.iter_mut().for_each(|bound| *bound = Bound { total: bound.total + step, step });
     }
 
     /// The longest of them; NaN if one is.
     pub fn longest(&self) -> f64 {
-        self.bounds.iter().fold(0.0, |longest, bound| larger(longest, bound.way))
+        self.portions.iter().fold(0.0, |longest, bound| larger(longest, bound.total))
     }
 
     /// The portions whose bound may be longer than this after one step more.
     pub fn nearly_spent(&self, limit: f64) -> impl Iterator<Item = usize> {
-        let portions = self.bounds.iter().enumerate();
-        portions.filter(move |(_, bound)| bound.way + STEP_GROWTH * bound.step > limit).map(|(portion, _)| portion)
+        let portions = self.portions.iter().enumerate();
+        portions.filter(move |(_, bound)| bound.total + STEP_GROWTH * bound.step > limit).map(|(portion, _)| portion)
     }
 }
 
@@ -80,9 +80,9 @@ mod tests {
     #[test]
     fn portions_are_all_the_mobile_disks_tile_by_tile() {
         for mobile in [0, 1, 1024, 1025, 8191, 8192, 8193, 20_000, 24_576] {
-            let mut ways = Ways::default();
-            ways.begin(mobile, 8192 + 10);
-            let disks: Vec<_> = (0..ways.bounds.len()).map(|portion| ways.disks_of(portion)).collect();
+            let mut bounds = DisplacementBounds::default();
+            bounds.begin(mobile, 8192 + 10);
+            let disks: Vec<_> = (0..bounds.portions.len()).map(|portion| bounds.disks_of(portion)).collect();
             assert_eq!(disks.iter().cloned().flatten().collect::<Vec<_>>(), (0..mobile).collect::<Vec<_>>());
             let within = |disks: &Range<usize>| !disks.is_empty() && disks.start / 8202 == (disks.end - 1) / 8202;
             assert!(disks.iter().all(|disks| within(disks) && disks.len() <= PORTION), "{mobile}");
@@ -91,22 +91,23 @@ mod tests {
 
     #[test]
     fn a_bound_that_is_no_number_is_not_within() {
-        let mut ways = Ways::default();
-        ways.begin(3000, 8192);
-        ways.add(0.25);
-        assert!(is_within(ways.longest(), 0.25) && !is_within(ways.longest(), 0.2));
-        ways.bounds[1].way = f64::NAN;
-        assert!(ways.longest().is_nan() && !is_within(ways.longest(), f64::INFINITY));
+        let mut bounds = DisplacementBounds::default();
+        bounds.begin(3000, 8192);
+        bounds.add(0.25);
+        assert!(is_within(bounds.longest(), 0.25) && !is_within(bounds.longest(), 0.2));
+        bounds.portions[1].total = f64::NAN;
+        assert!(bounds.longest().is_nan() && !is_within(bounds.longest(), f64::INFINITY));
     }
 
     #[test]
     fn a_portion_is_nearly_spent_if_a_step_like_the_last_one_may_spend_it() {
-        let mut ways = Ways::default();
-        ways.begin(3000, 8192);
-        ways.bounds = vec![Bound { way: 0.5, step: 0.2 }, Bound { way: 0.5, step: 0.1 }, Bound { way: 0.9, step: 0.0 }];
-        assert_eq!(ways.nearly_spent(0.74).collect::<Vec<_>>(), [0, 2]);
-        assert_eq!(ways.nearly_spent(0.95).count(), 0);
-        ways.bounds[0].step = f64::NAN;
-        assert_eq!(ways.nearly_spent(0.74).collect::<Vec<_>>(), [2], "that is not known");
+        let mut bounds = DisplacementBounds::default();
+        bounds.begin(3000, 8192);
+        bounds.portions =
+            vec![Bound { total: 0.5, step: 0.2 }, Bound { total: 0.5, step: 0.1 }, Bound { total: 0.9, step: 0.0 }];
+        assert_eq!(bounds.nearly_spent(0.74).collect::<Vec<_>>(), [0, 2]);
+        assert_eq!(bounds.nearly_spent(0.95).count(), 0);
+        bounds.portions[0].step = f64::NAN;
+        assert_eq!(bounds.nearly_spent(0.74).collect::<Vec<_>>(), [2], "that is not known");
     }
 }

@@ -19,6 +19,7 @@ mod precision;
 mod report;
 #[cfg(feature = "cli")]
 mod sizes;
+mod structure;
 mod study;
 #[cfg(feature = "cli")]
 mod study_command;

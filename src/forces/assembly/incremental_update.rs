@@ -53,26 +53,26 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Amends the list in use if a step like the last one may spend it. True if that was done.
     pub(crate) fn amend_ahead(&mut self) -> bool {
         let limit = LISTED * self.skin();
-        let nearly: Vec<usize> = self.ways.nearly_spent(limit).collect();
+        let nearly: Vec<usize> = self.bounds.nearly_spent(limit).collect();
         if !self.looks_ahead() || nearly.is_empty() {
             return false;
         }
-        self.take_ways_of(nearly);
-        self.ways.nearly_spent(limit).next().is_some() && self.amend()
+        self.measure_portions(nearly);
+        self.bounds.nearly_spent(limit).next().is_some() && self.amend()
     }
 
     /// The disks that [`Assembly::keep`] looks at after a step that did not spend the list.
     pub(crate) fn disks_to_see(&self) -> Vec<Range<usize>> {
         let limit = LISTED * self.skin();
-        if !self.looks_ahead() || self.ways.nearly_spent(limit).next().is_none() {
+        if !self.looks_ahead() || self.bounds.nearly_spent(limit).next().is_none() {
             return Vec::new();
         }
-        let mut portions: Vec<usize> = self.ways.nearly_spent(limit).collect();
+        let mut portions: Vec<usize> = self.bounds.nearly_spent(limit).collect();
         portions.extend(self.far_portions());
         portions.extend(self.far_portions_of_all());
         portions.sort_unstable();
         portions.dedup();
-        portions.into_iter().map(|portion| self.ways.disks_of(portion)).collect()
+        portions.into_iter().map(|portion| self.bounds.disks_of(portion)).collect()
     }
 
     /// Lists the disks that went far anew, if they are few, and adds the pairs that the list in use lacks then. False if that cannot be: then
@@ -117,8 +117,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             self.listed[disk as usize] = self.displacements[disk as usize];
         }
         match self.inner_skin {
-            Some(_) => self.take_ways_before(&portions),
-            None => self.take_ways_of(portions),
+            Some(_) => self.measure_portions_before(&portions),
+            None => self.measure_portions(portions),
         }
         Some(true)
     }
@@ -138,8 +138,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             for &disk in self.far.disks() {
                 self.inner_at_build[disk as usize] = self.displacements[disk as usize];
             }
-            self.take_ways_before(&portions);
-            self.take_ways_of(portions);
+            self.measure_portions_before(&portions);
+            self.measure_portions(portions);
         }
         amended
     }
@@ -152,22 +152,22 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Portions of which a disk may have gone far in the list in use.
     fn far_portions(&self) -> impl Iterator<Item = usize> {
         let limit = self.tuning().far * LISTED * self.skin();
-        let bounds = self.ways.bounds.iter().enumerate();
-        bounds.filter(move |(_, bound)| bound.way > limit).map(|(portion, _)| portion)
+        let bounds = self.bounds.portions.iter().enumerate();
+        bounds.filter(move |(_, bound)| bound.total > limit).map(|(portion, _)| portion)
     }
 
     /// The same in the list of all pairs.
     fn far_portions_of_all(&self) -> impl Iterator<Item = usize> {
         let limit = self.tuning().far * LISTED * self.skin;
-        let before = self.ways_before.iter().copied().chain(std::iter::repeat(0.0));
-        let ways = self.ways.bounds.iter().zip(before).map(|(bound, before)| before + bound.way);
-        ways.enumerate().filter(move |(_, way)| *way > limit).map(|(portion, _)| portion)
+        let before = self.bounds_before.iter().copied().chain(std::iter::repeat(0.0));
+        let bounds = self.bounds.portions.iter().zip(before).map(|(bound, before)| before + bound.total);
+        bounds.enumerate().filter(move |(_, way)| *way > limit).map(|(portion, _)| portion)
     }
 
     /// The disks of some portions that went far from where they were listed, if they are few.
     fn far_of(&self, portions: &[usize], listed: &[Vector<D>], skin: f64) -> Option<Vec<u32>> {
         let limit = self.tuning().far * LISTED * skin;
-        let disks = portions.iter().flat_map(|&portion| self.ways.disks_of(portion));
+        let disks = portions.iter().flat_map(|&portion| self.bounds.disks_of(portion));
         let is_far = |disk: &usize| {
             let way = difference(self.displacements[*disk], listed[*disk]);
             dot(way, way) > limit * limit
@@ -177,34 +177,35 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     }
 
     /// Takes how far the disks of some portions have gone since they were listed, in place of bounds on it.
-    pub(crate) fn take_ways_of(&mut self, portions: Vec<usize>) {
+    pub(crate) fn measure_portions(&mut self, portions: Vec<usize>) {
         for portion in portions {
-            let disks = self.ways.disks_of(portion);
-            self.ways.bounds[portion].way = longest(&self.displacements[disks.clone()], &self.listed_in_use()[disks]);
+            let disks = self.bounds.disks_of(portion);
+            self.bounds.portions[portion].total =
+                longest(&self.displacements[disks.clone()], &self.listed_in_use()[disks]);
         }
     }
 
     /// The same for how far they had gone in the list of all pairs when they were listed in near pairs.
-    fn take_ways_before(&mut self, portions: &[usize]) {
+    fn measure_portions_before(&mut self, portions: &[usize]) {
         for &portion in portions {
-            let disks = self.ways.disks_of(portion);
-            self.ways_before[portion] = longest(&self.inner_at_build[disks.clone()], &self.listed[disks]);
+            let disks = self.bounds.disks_of(portion);
+            self.bounds_before[portion] = longest(&self.inner_at_build[disks.clone()], &self.listed[disks]);
         }
     }
 
     /// The way from where they were by which disks wear near pairs out: as much less by those that note_updated as amending takes less than
     /// picking; for large lists more, as picking takes longer there.
-    pub(crate) fn felt_way(&self, from: &[Vector<D>]) -> f64 {
+    pub(crate) fn effective_displacement(&self, from: &[Vector<D>]) -> f64 {
         let longest = self.longest_way(from);
         if self.pairs.keeps_places {
-            PICKING * (self.common_way(from) + self.tuning().amending * longest)
+            PICKING * (self.common_displacement(from) + self.tuning().amending * longest)
         } else {
             longest
         }
     }
 
     /// The way from where they were that all mobile disks but a few, which may note_updated, did not exceed \[length\].
-    pub(crate) fn common_way(&self, from: &[Vector<D>]) -> f64 {
+    pub(crate) fn common_displacement(&self, from: &[Vector<D>]) -> f64 {
         if !self.pairs.keeps_places || self.mobile_count == 0 {
             return self.longest_way(from);
         }

@@ -2,7 +2,7 @@
 
 use crate::forces::assembly::Assembly;
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::displacement_bounds::{LISTED, PORTION, Ways, is_within};
+use crate::neighbours::displacement_bounds::{DisplacementBounds, LISTED, PORTION, is_within};
 use crate::neighbours::inner_list::{best_skin, best_skin_of_all};
 use crate::neighbours::pair_list::PairList;
 use crate::packing::PackingError;
@@ -45,31 +45,31 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     }
 
     /// The list in use, where it has the disks, the way it holds for, and what they have gone of it.
-    pub(crate) fn listing(&mut self) -> (&PairList<D>, &[Vector<D>], f64, &mut Ways) {
+    pub(crate) fn listing(&mut self) -> (&PairList<D>, &[Vector<D>], f64, &mut DisplacementBounds) {
         let limit = LISTED * self.skin();
         let (pairs, listed) = match self.inner_skin {
             Some(_) => (&self.inner_pairs, &self.inner_at_build),
             None => (&self.pairs, &self.listed),
         };
-        (pairs, listed, limit, &mut self.ways)
+        (pairs, listed, limit, &mut self.bounds)
     }
 
     /// Takes how far disks have moved since they were listed, in place of bounds on it.
-    fn take_ways(&mut self) {
-        let ways = self.ways_from(self.listed_in_use());
-        self.ways.bounds.iter_mut().zip(ways).for_each(|(bound, way)| bound.way = way);
+    fn measure_all_portions(&mut self) {
+        let bounds = self.longest_displacements_from(self.listed_in_use());
+        self.bounds.portions.iter_mut().zip(bounds).for_each(|(bound, way)| bound.total = way);
     }
 
     /// How far the disks of each portion have moved from where they were, at most \[length\].
-    fn ways_from(&self, before: &[Vector<D>]) -> Vec<f64> {
+    fn longest_displacements_from(&self, before: &[Vector<D>]) -> Vec<f64> {
         let mobile = self.mobile_count;
         let tiles = self.displacements[..mobile].chunks(self.pairs.tile_size);
         let tiles = tiles.zip(before[..mobile].chunks(self.pairs.tile_size));
         let longest = |(now, before): (&[_], &[_])| longest_difference_squared(now, before).sqrt();
-        let ways = parallel::each(tiles, |(now, before)| {
+        let bounds = parallel::each(tiles, |(now, before)| {
             now.chunks(PORTION).zip(before.chunks(PORTION)).map(longest).collect::<Vec<_>>()
         });
-        ways.concat()
+        bounds.concat()
     }
 
     /// Whether the way of the disks is looked at in the next call of [`Assembly::keep_listed`], however short it is.
@@ -83,7 +83,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// # Errors
     /// Two disks with the same centre.
     pub fn keep_listed(&mut self, bound: f64) -> Result<bool, PackingError> {
-        self.ways.add(bound);
+        self.bounds.add(bound);
         self.change()
     }
 
@@ -100,14 +100,14 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.age += 1;
         let looks = self.prunes && self.age == self.look_at;
         let limit = LISTED * self.skin();
-        if is_within(self.ways.longest(), limit) && !looks {
+        if is_within(self.bounds.longest(), limit) && !looks {
             return Ok(false);
         }
-        let bounds = self.ways.bounds.iter().enumerate();
-        self.take_ways_of(
-            bounds.filter(|(_, bound)| !is_within(bound.way, limit)).map(|(portion, _)| portion).collect(),
+        let bounds = self.bounds.portions.iter().enumerate();
+        self.measure_portions(
+            bounds.filter(|(_, bound)| !is_within(bound.total, limit)).map(|(portion, _)| portion).collect(),
         );
-        let longest = self.ways.longest();
+        let longest = self.bounds.longest();
         if longest.is_nan() {
             // Not a position any more: the forces are NaN too, and the relaxer stops on them.
             return Ok(false);
@@ -120,7 +120,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// Looks at how fast disks are, and picks near pairs if they are slow. True if that was done.
     fn look(&mut self) -> bool {
-        let way = self.felt_way(&self.seen) / (self.age - self.seen_at) as f64;
+        let way = self.effective_displacement(&self.seen) / (self.age - self.seen_at) as f64;
         self.seen.clone_from(&self.displacements);
         (self.seen_at, self.look_at) = (self.age, 2 * self.age);
         self.picks(best_skin(self.smallest_radius, way), self.skin())
@@ -131,7 +131,11 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         if self.prunes && self.amend() {
             return Ok(());
         }
-        let way = if self.prunes { self.felt_way(self.listed_in_use()) / self.age as f64 } else { f64::INFINITY };
+        let way = if self.prunes {
+            self.effective_displacement(self.listed_in_use()) / self.age as f64
+        } else {
+            f64::INFINITY
+        };
         let best = best_skin(self.smallest_radius, way);
         if self.inner_skin.is_none() || self.longest_way(&self.listed) > LISTED * self.skin {
             self.choose_skin();
@@ -140,9 +144,9 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         } else if !self.picks(best, self.skin) {
             // As long as the list of all pairs lasts it is used itself.
             self.inner_skin = None;
-            self.ways_before.clear();
+            self.bounds_before.clear();
             self.listing_number = (self.listing_number.0 + 1, 0);
-            self.take_ways();
+            self.measure_all_portions();
         }
         Ok(())
     }
@@ -152,7 +156,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         let (narrowest, widest) = (*self.skins.start(), *self.skins.end());
         if narrowest < widest {
             // Disks whose near pairs are in use are slow.
-            let way = if self.inner_skin.is_none() { self.common_way(&self.listed) / self.age as f64 } else { 0.0 };
+            let way =
+                if self.inner_skin.is_none() { self.common_displacement(&self.listed) / self.age as f64 } else { 0.0 };
             self.skin = best_skin_of_all(self.smallest_radius, way).clamp(narrowest, widest);
         }
     }
@@ -172,7 +177,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.inner_pairs.prune(&self.pairs, &self.displacements, skin);
         self.inner_skin = Some(skin);
         self.inner_at_build.clone_from(&self.displacements);
-        self.ways_before = self.ways_from(&self.listed);
+        self.bounds_before = self.longest_displacements_from(&self.listed);
         self.listing_number = (self.listing_number.0 + 1, 0);
         self.begin_list();
         true
@@ -180,13 +185,13 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// The longest way of a mobile disk from where it was \[length\]; NaN if one is.
     pub(crate) fn longest_way(&self, from: &[Vector<D>]) -> f64 {
-        self.ways_from(from).into_iter().fold(0.0, larger)
+        self.longest_displacements_from(from).into_iter().fold(0.0, larger)
     }
 
     /// The list of all pairs is new.
     pub(crate) fn begin_all(&mut self) {
         self.inner_skin = None;
-        self.ways_before.clear();
+        self.bounds_before.clear();
         self.listed.clone_from(&self.displacements);
         self.listing_number = (self.listing_number.0 + 1, 0);
         self.begin_list();
@@ -194,7 +199,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// The list in use is new.
     pub(crate) fn begin_list(&mut self) {
-        self.ways.begin(self.mobile_count, self.pairs().tile_size);
+        self.bounds.begin(self.mobile_count, self.pairs().tile_size);
         self.prune_lists(self.prunes);
     }
 
@@ -210,6 +215,6 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// How far every disk may go before the list must be made anew, at least \[length\].
     pub fn listed_way(&self) -> f64 {
-        LISTED * self.skin() - self.ways.longest()
+        LISTED * self.skin() - self.bounds.longest()
     }
 }

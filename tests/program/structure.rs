@@ -1,0 +1,169 @@
+//! The structure of the crate: data goes one way, so no two source files import each other, directly or through others.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// Longest file \[lines\].
+const LONGEST_FILE: usize = 450;
+
+/// Tables of numbers, longer than that.
+const TABLES: [&str; 1] = ["reference::bessel::modified_tables"];
+
+/// Source files by the path of their module, "" for `lib.rs`.
+fn sources() -> BTreeMap<String, String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let (mut files, mut folders) = (BTreeMap::new(), vec![root.clone()]);
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let parts: Vec<String> = path
+                .strip_prefix(&root)
+                .expect("below src")
+                .with_extension("")
+                .iter()
+                .map(|part| part.to_string_lossy().into_owned())
+                .filter(|part| part != "mod" && part != "lib")
+                .collect();
+            // The program is a crate of its own, and imports the library by its name.
+            if parts[..].first().is_some_and(|first| first == "main" || first == "cli") {
+                continue;
+            }
+            files.insert(parts.join("::"), std::fs::read_to_string(&path).expect("text"));
+        }
+    }
+    files
+}
+
+/// The code of a file: no comments, no tests.
+fn code(text: &str) -> String {
+    let tests = text.find("#[cfg(test)]\nmod tests").unwrap_or(text.len());
+    text[..tests].lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n")
+}
+
+/// All paths of a `use` tree.
+fn paths(tree: &str) -> Vec<String> {
+    let Some(open) = tree.find('{') else { return vec![tree.trim().into()] };
+    let (prefix, body) = (tree[..open].trim(), &tree[open + 1..tree.rfind('}').unwrap_or(tree.len())]);
+    let (mut depth, mut item, mut items) = (0, String::new(), Vec::new());
+    for letter in body.chars().chain([',']) {
+        match letter {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            _ => {}
+        }
+        if letter == ',' && depth == 0 {
+            items.extend(paths(&std::mem::take(&mut item)));
+        } else {
+            item.push(letter);
+        }
+    }
+    items.retain(|item| !item.is_empty());
+    items.into_iter().map(|item| format!("{prefix}{item}")).collect()
+}
+
+/// Paths that a file names, from the root of the crate.
+fn named(module: &str, code: &str) -> Vec<String> {
+    let mut all = Vec::new();
+    for (at, _) in code.match_indices("use ") {
+        if at == 0 || !code[..at].ends_with(|letter: char| letter.is_whitespace()) {
+            continue;
+        }
+        let tree = code[at + 4..].split(';').next().unwrap_or("");
+        let reexport = code[..at].trim_end().ends_with("pub");
+        all.extend(paths(tree).into_iter().map(|path| match path.split("::").next() {
+            Some("crate" | "super" | "self") => path,
+            _ if reexport => format!("self::{path}"),
+            _ => String::new(),
+        }));
+    }
+    for start in ["crate::", "super::"] {
+        for (at, _) in code.match_indices(start) {
+            let end = code[at..].find(|letter: char| !letter.is_alphanumeric() && !"_:".contains(letter));
+            all.push(code[at..end.map_or(code.len(), |end| at + end)].trim_end_matches(':').into());
+        }
+    }
+    let own: Vec<&str> = module.split("::").filter(|part| !part.is_empty()).collect();
+    let absolute = |path: &String| {
+        let parts: Vec<&str> = path.split("::").collect();
+        let up = parts.iter().take_while(|&&part| part == "super").count();
+        let base = match parts[0] {
+            "crate" => &[][..],
+            "self" => &own[..],
+            "super" => &own[..own.len().saturating_sub(up)],
+            _ => return None,
+        };
+        Some([base, &parts[up.max(1)..]].concat().join("::"))
+    };
+    all.iter().filter_map(absolute).collect()
+}
+
+/// Which files each file imports from.
+fn imports(files: &BTreeMap<String, String>) -> BTreeMap<&str, BTreeSet<&str>> {
+    let owner = |path: &str| {
+        let mut path = path;
+        loop {
+            if let Some((owner, _)) = files.get_key_value(path).filter(|_| !path.is_empty()) {
+                return Some(owner.as_str());
+            }
+            path = &path[..path.rfind("::")?];
+        }
+    };
+    let of = |(module, text): (&'_ String, &'_ String)| -> BTreeSet<&str> {
+        let named = named(module, &code(text));
+        named.iter().filter_map(|path| owner(path)).filter(|other| other != module).collect()
+    };
+    files.iter().map(|file| (file.0.as_str(), of(file))).collect()
+}
+
+/// What can be reached from a file.
+fn reached<'a>(from: &str, imports: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> BTreeSet<&'a str> {
+    let (mut found, mut open) = (BTreeSet::new(), vec![from]);
+    while let Some(next) = open.pop() {
+        for &other in imports.get(next).into_iter().flatten() {
+            if found.insert(other) {
+                open.push(other);
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn no_file_imports_itself_through_others() {
+    let files = sources();
+    let imports = imports(&files);
+    assert!(imports["relax::fire"].contains("forces::assembly") || imports.len() > 200, "the files are read");
+    let circles: Vec<&str> = imports.keys().filter(|&&file| reached(file, &imports).contains(file)).copied().collect();
+    assert!(circles.is_empty(), "in a circle of imports: {circles:?}");
+}
+
+#[test]
+fn files_are_read_in_one_sitting() {
+    let files = sources();
+    let long = files.iter().filter(|(module, _)| !TABLES.contains(&module.as_str()));
+    let long: Vec<_> = long.filter(|(_, text)| text.lines().count() > LONGEST_FILE).map(|(module, _)| module).collect();
+    assert!(long.is_empty(), "longer than {LONGEST_FILE} lines: {long:?}");
+    for (module, text) in &files {
+        assert!(text.starts_with("//!"), "{module} says what it is for");
+    }
+}
+
+#[test]
+fn a_circle_is_seen() {
+    let file = |name: &str, text: &str| (name.to_string(), text.to_string());
+    let files = BTreeMap::from([
+        file("a", "pub use b::{One, c::Two};\nmod b;"),
+        file("a::b", "//! one\nuse crate::d::E;\n// use crate::a::Two;\npub struct One;"),
+        file("a::b::c", "use super::One;"),
+        file("d", "fn f() -> crate::a::One { todo!() }"),
+    ]);
+    let imports = imports(&files);
+    assert_eq!(imports["a"], BTreeSet::from(["a::b", "a::b::c"]));
+    assert_eq!((imports["a::b"].len(), imports["a::b::c"].len()), (1, 1));
+    let circles: Vec<&str> = imports.keys().filter(|&&file| reached(file, &imports).contains(file)).copied().collect();
+    assert_eq!(circles, ["a", "a::b", "a::b::c", "d"]);
+}
