@@ -147,7 +147,7 @@ const RELAXATION_LIMIT: usize = 60;
 
 /// Relative residual at which a state that the search for a pressure passes through counts as at rest \[1\]; a tenth of the
 /// tolerance on the pressure, if that is less. Changes which packing is found, not what it is. Evaluations of forces against a
-/// search that brings every state to rest, staged relaxer, 1000 disks (`examples/preparation_cost`): 0.71 at p = 0.1, 0.67 at 1,
+/// search that brings every state to rest, staged relaxer, 1000 disks (`benches/measurements/preparation_cost`): 0.71 at p = 0.1, 0.67 at 1,
 /// 0.97 at 100, 0.91 at 1000; at 10⁻⁴ 0.79, 0.97, 0.95, 0.96; at 10⁻² 0.76, 0.65, 1.02, 0.82.
 pub const PASSING: f64 = 1e-3;
 

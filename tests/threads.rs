@@ -2,7 +2,7 @@
 //!
 //! Seven tiles of 8192 disks and less, three threads, whatever the machine has.
 
-#[path = "../examples/scenes/tiled.rs"]
+#[path = "../benches/measurements/scenes/tiled.rs"]
 mod tiled;
 
 use std::sync::Once;

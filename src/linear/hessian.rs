@@ -50,7 +50,7 @@ pub enum Members {
 ///
 /// # Cost
 /// Linear in pairs of the list: nine to fifteen evaluations of the forces with totals, from 1 000 to 89 000 disks
-/// (`examples/scaling`).
+/// (`benches/measurements/scaling`).
 #[derive(Debug, Clone)]
 pub struct Hessian<const D: usize> {
     prestress: Prestress,

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The same matrices, factorised by jamscope and by CHOLMOD in one run, one thread each: the table of examples/orderings.rs with
+# The same matrices, factorised by jamscope and by CHOLMOD in one run, one thread each: the table of benches/measurements/orderings.rs with
 # CHOLMOD's rows below. Needs what setup.sh installs. Usage: compare.sh
 set -eu
 cd "$(dirname "$0")/../../.."

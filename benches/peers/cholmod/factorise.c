@@ -1,5 +1,5 @@
 /* CHOLMOD on matrices in Matrix Market files: for each ordering the least of three times of analysis, factorisation and
- * solution with one refinement, and the values in the factor. Rows of the table that `examples/orderings.rs` prints.
+ * solution with one refinement, and the values in the factor. Rows of the table that `benches/measurements/orderings.rs` prints.
  *
  * cc -O2 factorise.c -lcholmod -lm -o factorise && OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 ./factorise matrix.mtx ...
  */

@@ -39,7 +39,7 @@ pub enum CorrelationEstimator {
 
 impl Default for CorrelationEstimator {
     /// The spectrum's own defaults: nearest to the true G at 60, 1000 and 4000 disks, with noise and without
-    /// (`examples/angular_estimators.rs`).
+    /// (`benches/measurements/angular_estimators.rs`).
     fn default() -> Self {
         CorrelationEstimator::Spectral(SpectrumSettings::default())
     }

@@ -42,7 +42,7 @@ pub enum SpectrumEstimator {
 
 impl Default for SpectrumEstimator {
     /// Gaps as weights, leakage removed: least biased where disks have values of their own, and with the nearest G
-    /// (`examples/angular_estimators.rs`).
+    /// (`benches/measurements/angular_estimators.rs`).
     fn default() -> Self {
         SpectrumEstimator::Direct { weights: Weights::Gaps, leakage: Leakage::Removed }
     }

@@ -10,5 +10,5 @@ pub mod rest;
 #[path = "../../scenes/square_lattice.rs"]
 pub mod square_lattice;
 pub mod starts;
-#[path = "../../../examples/scenes/tiled.rs"]
+#[path = "../../../benches/measurements/scenes/tiled.rs"]
 pub mod tiled;

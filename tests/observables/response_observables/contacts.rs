@@ -155,7 +155,7 @@ fn left_changed(pressure: f64, seeds: std::ops::Range<u64>) -> f64 {
     1e3 * left as f64 / all as f64
 }
 
-/// The smallest form of what `examples/angular_study` measures in ensembles (chapter "Contact changes"): p̂ = 2·10⁵ and 3·10⁸, 16 packings
+/// The smallest form of what `benches/measurements/angular_study` measures in ensembles (chapter "Contact changes"): p̂ = 2·10⁵ and 3·10⁸, 16 packings
 /// each. That at least twice as many contacts are left changed below was asked before these seeds were looked at; the share that
 /// returns, of those that change, does not tell the two apart at this size.
 #[cfg(feature = "linear")]

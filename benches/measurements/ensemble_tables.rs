@@ -1,10 +1,10 @@
 //! The tables of the book that rest on `fixtures/ensembles`, and the calibration of phases: both are written where they stand.
 //!
 //! ```text
-//! cargo run --release --example ensemble_tables
+//! cargo run --release --features measurements --example ensemble_tables
 //! ```
 
-#[path = "../tests/program/ensembles/tables.rs"]
+#[path = "../../tests/program/ensembles/tables.rs"]
 mod tables;
 
 use std::error::Error;

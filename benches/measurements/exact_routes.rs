@@ -9,7 +9,7 @@
 //! shows and no route); a rounding is 1.1·10⁻¹⁶. Times are a median of repeated passes over all points of a table row, the set-up of
 //! each κ not counted. A second table has the Bessel functions against multi-precision.
 
-#[path = "../tests/twins/precise_bessel.rs"]
+#[path = "../../tests/twins/precise_bessel.rs"]
 mod precise_bessel;
 
 use std::error::Error;

@@ -1,7 +1,7 @@
 //! When a motion after an inflation decides its minimum: the states that FIRE and Newton's method reach from points along it.
 //!
 //! ```text
-//! cargo run --release --example inherent_states -- [--disks N] [--pressures A,B,...] [--seeds FIRST,COUNT]
+//! cargo run --release --features measurements --example inherent_states -- [--disks N] [--pressures A,B,...] [--seeds FIRST,COUNT]
 //! ```
 //!
 //! Random points are quenched at a pressure, cut to a circle with a held rim and brought to rest; the centre grows by 0.1. From there damped
