@@ -31,7 +31,10 @@ fn tables_of_the_book_are_those_of_the_records() {
     for chapter in CHAPTERS {
         let text = std::fs::read_to_string(book.join(chapter)).expect("a chapter");
         let (expected, found) = filled(&text, &tables);
-        assert_eq!(text, expected, "{chapter}; cargo run --release --features measurements --example ensemble_tables writes its tables");
+        assert_eq!(
+            text, expected,
+            "{chapter}; cargo run --release --features measurements --example ensemble_tables writes its tables"
+        );
         missing.retain(|title| !found.contains(title));
     }
     assert!(missing.is_empty(), "not in the book: {missing:?}");
