@@ -8,23 +8,12 @@
 mod tables;
 
 use std::error::Error;
+use std::path::Path;
 
-use tables::{CHAPTERS, Ensemble, calibration, filled, tables};
+use tables::{CHAPTERS, calibration, ensembles, filled, tables};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut archives = Vec::new();
-    for entry in std::fs::read_dir("fixtures/ensembles")? {
-        let path = entry?.path();
-        if path.to_string_lossy().ends_with(".jsonl.gz") {
-            archives.push(path);
-        }
-    }
-    archives.sort();
-    let mut ensembles = Vec::new();
-    for path in &archives {
-        let folder = tempfile::tempdir()?;
-        ensembles.push(Ensemble::read(path, folder.path()));
-    }
+    let ensembles = ensembles(Path::new("fixtures/ensembles"));
     let tables = tables(&ensembles);
     let mut missing: Vec<&String> = tables.iter().map(|(title, _)| title).collect();
     for chapter in CHAPTERS {

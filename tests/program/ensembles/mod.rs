@@ -4,27 +4,11 @@ mod tables;
 
 use std::path::Path;
 
-use tables::{CHAPTERS, Ensemble, calibration, filled, tables};
-
-fn ensembles() -> Vec<Ensemble> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/ensembles");
-    let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
-    let mut archives: Vec<_> = entries.filter(|path| path.to_string_lossy().ends_with(".jsonl.gz")).collect();
-    archives.sort();
-    assert!(!archives.is_empty());
-    let read = |path: &std::path::PathBuf| {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        Ensemble::read(path, folder.path())
-    };
-    std::thread::scope(|scope| {
-        let all: Vec<_> = archives.iter().map(|path| scope.spawn(move || read(path))).collect();
-        all.into_iter().map(|one| one.join().expect("an archive that can be read")).collect()
-    })
-}
+use tables::{CHAPTERS, calibration, ensembles, filled, tables};
 
 #[test]
 fn tables_of_the_book_are_those_of_the_records() {
-    let ensembles = ensembles();
+    let ensembles = ensembles(&Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/ensembles"));
     let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("book/src");
     let tables = tables(&ensembles);
     let mut missing: Vec<&String> = tables.iter().map(|(title, _)| title).collect();

@@ -8,7 +8,7 @@ use std::path::Path;
 use flate2::read::GzDecoder;
 use jamscope::law::LawChoice;
 use jamscope::response::{Calibration, WordCounts};
-use jamscope::study::{CellSamples, Merged, NumberStatistics, Target, merge};
+use jamscope::study::{CellSamples, Merged, NumberStatistics, Part, Study, Target, merge};
 use jamscope::transition::{Method, Series, Transition, TransitionPressure};
 
 /// A study of `fixtures/ensembles`, merged.
@@ -30,22 +30,26 @@ const FIRST_ZERO: f64 = 3.831_705_970_207_512;
 impl Ensemble {
     /// Unpacks an archive (see `archive.py` beside it) into a folder and merges that.
     pub fn read(archive: &Path, folder: &Path) -> Self {
-        let file = std::fs::File::open(archive).expect("an archive");
-        let lines = BufReader::new(GzDecoder::new(file)).lines().map(|line| line.expect("text"));
-        let lines: Vec<String> = lines.collect();
-        let samples = folder.join("samples");
-        std::fs::create_dir_all(&samples).expect("a folder");
-        std::fs::write(folder.join("study.json"), &lines[0]).expect("written");
-        for sample in lines[1..].chunks(3) {
-            let header: serde_json::Value = serde_json::from_str(&sample[0]).expect("a header");
-            let name = format!("{}.jsonl", &header["identity"].as_str().expect("an identity")[..24]);
-            std::fs::write(samples.join(name), sample.join("\n") + "\n").expect("written");
-        }
+        let study = unpack(archive, folder);
+        let name = archive.file_name().expect("a name").to_string_lossy().replace(".jsonl.gz", "");
+        Self::of(&name, &study, folder)
+    }
+
+    /// Several archives as one study of many parts: its series share power laws and collapses.
+    pub fn united(name: &str, archives: &[&Path], folder: &Path) -> Self {
+        let studies: Vec<Study> =
+            archives.iter().map(|archive| serde_json::from_str(&unpack(archive, folder)).expect("a study")).collect();
+        let parts = studies.iter().flat_map(parts_of).collect();
+        let study = Study { parts, ..studies[0].clone() };
+        Self::of(name, &serde_json::to_string(&study).expect("JSON"), folder)
+    }
+
+    fn of(name: &str, study: &str, folder: &Path) -> Self {
+        std::fs::write(folder.join("study.json"), study).expect("written");
         let merged = merge(folder).expect("a study");
         assert!(merged.damaged.is_empty() && merged.foreign.is_empty(), "{:?} {:?}", merged.damaged, merged.foreign);
         let transition = Transition::of(&merged);
-        let name = archive.file_name().expect("a name").to_string_lossy().replace(".jsonl.gz", "");
-        Ensemble { name, merged, transition }
+        Ensemble { name: name.into(), merged, transition }
     }
 
     /// The series with samples of one size: one a relaxer and an inflation.
@@ -172,6 +176,31 @@ impl Ensemble {
         table
     }
 
+    /// Numbers beside published ones, but for the p̂_c: of the series of a relaxer, its collapses and power laws.
+    pub fn comparison(&self, relaxer_name: &str) -> String {
+        let mut table = "| what | of | found (95 %) | least samples a cell | published | |\n".to_string();
+        table += &format!("|{}\n", "---|".repeat(6));
+        let of_relaxer = |of: &str| of.split(", ").any(|word| word == relaxer_name);
+        let all = self.transition.comparisons.iter();
+        for one in all.filter(|one| of_relaxer(&one.of) && !one.quantity.starts_with("p̂_c by")) {
+            let interval = one.interval.map_or(String::new(), |[low, high]| format!(" ({low:.2} to {high:.2})"));
+            let found = one.value.map_or("–".into(), |value| format!("{value:.2}{interval}"));
+            let reason = one.reason.map_or(String::new(), |reason| format!(": {}", reason.words()));
+            writeln!(
+                table,
+                "| {} | {} | {} | {} | {:.2} | {}{reason} |",
+                one.quantity,
+                one.of.replace(&format!(", {relaxer_name}"), ""),
+                found.replace('-', "−"),
+                one.sample_count,
+                one.published,
+                one.verdict.name()
+            )
+            .expect("text");
+        }
+        table
+    }
+
     fn is_hookean(&self) -> bool {
         self.transition.series.iter().any(|one| matches!(one.cell.law, LawChoice::Hookean(_)))
     }
@@ -202,10 +231,57 @@ impl Ensemble {
     }
 }
 
+/// Writes the samples of an archive into a folder; its study is returned.
+fn unpack(archive: &Path, folder: &Path) -> String {
+    let file = std::fs::File::open(archive).expect("an archive");
+    let lines = BufReader::new(GzDecoder::new(file)).lines().map(|line| line.expect("text"));
+    let lines: Vec<String> = lines.collect();
+    let samples = folder.join("samples");
+    std::fs::create_dir_all(&samples).expect("a folder");
+    for sample in lines[1..].chunks(3) {
+        let header: serde_json::Value = serde_json::from_str(&sample[0]).expect("a header");
+        let name = format!("{}.jsonl", &header["identity"].as_str().expect("an identity")[..24]);
+        std::fs::write(samples.join(name), sample.join("\n") + "\n").expect("written");
+    }
+    lines[0].clone()
+}
+
+/// The parts of a study that name everything themselves.
+fn parts_of(study: &Study) -> Vec<Part> {
+    let whole = Part {
+        disk_counts: vec![study.scene.disk_count],
+        targets: study.targets.clone(),
+        increases: study.increases.clone(),
+        laws: vec![study.scene.law],
+        relaxers: study.relaxers.clone(),
+        seeds: Some(study.seeds),
+        boundary: Some(study.scene.inflation.boundary),
+    };
+    let own = |part: &Part| {
+        let mut all = whole.clone();
+        let lists = |of: &Part| (of.disk_counts.clone(), of.targets.clone(), of.increases.clone(), of.relaxers.clone());
+        let (disk_counts, targets, increases, relaxers) = lists(part);
+        all.disk_counts = if disk_counts.is_empty() { all.disk_counts } else { disk_counts };
+        all.targets = if targets.is_empty() { all.targets } else { targets };
+        all.increases = if increases.is_empty() { all.increases } else { increases };
+        all.relaxers = if relaxers.is_empty() { all.relaxers } else { relaxers };
+        all.seeds = part.seeds.or(all.seeds);
+        all.boundary = part.boundary.or(all.boundary);
+        all
+    };
+    if study.parts.is_empty() { vec![whole] } else { study.parts.iter().map(own).collect() }
+}
+
 /// Every table of the chapters, with its title.
 pub fn tables(ensembles: &[Ensemble]) -> Vec<(String, String)> {
     let mut all = Vec::new();
     for one in ensembles {
+        if one.name == "all sizes" || one.name == "hookean" {
+            for relaxer in ["FIRE and Newton", "viscoelastic 500"] {
+                all.push((format!("{}: {relaxer}", one.name), one.comparison(relaxer)));
+            }
+            continue;
+        }
         for disk_count in one.disk_counts() {
             let title = |of: &str| format!("{}, {disk_count} disks: {of}", one.name);
             all.push((title("radial"), one.radial(disk_count)));
@@ -219,9 +295,40 @@ pub fn tables(ensembles: &[Ensemble]) -> Vec<(String, String)> {
     all
 }
 
+/// All ensembles of `fixtures/ensembles`, and those of one law together.
+pub fn ensembles(folder: &Path) -> Vec<Ensemble> {
+    let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let mut archives: Vec<_> = entries.filter(|path| path.to_string_lossy().ends_with(".jsonl.gz")).collect();
+    archives.sort();
+    assert!(!archives.is_empty());
+    let of_law = |hookean: bool| -> Vec<&Path> {
+        let is = |path: &&std::path::PathBuf| path.to_string_lossy().contains("hookean") == hookean;
+        archives.iter().filter(is).map(|path| path.as_path()).collect()
+    };
+    let (hertzian, hookean) = (of_law(false), of_law(true));
+    let mut jobs: Vec<(Option<&str>, &[&Path])> = vec![(Some("all sizes"), &hertzian)];
+    if hookean.len() > 1 {
+        jobs.push((Some("hookean"), &hookean));
+    }
+    let single: Vec<[&Path; 1]> = archives.iter().map(|path| [path.as_path()]).collect();
+    jobs.extend(single.iter().map(|path| (None, &path[..])));
+    let read = |(name, paths): (Option<&str>, &[&Path])| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        match name {
+            Some(name) => Ensemble::united(name, paths, folder.path()),
+            None => Ensemble::read(paths[0], folder.path()),
+        }
+    };
+    std::thread::scope(|scope| {
+        let all: Vec<_> = jobs.into_iter().map(|job| scope.spawn(move || read(job))).collect();
+        all.into_iter().map(|one| one.join().expect("an archive that can be read")).collect()
+    })
+}
+
 /// The calibration of the program: that of all ensembles.
 pub fn calibration(ensembles: &[Ensemble]) -> Calibration {
-    let all = ensembles.iter().flat_map(|one| one.transition.calibration.ensembles.iter().cloned());
+    let own = ensembles.iter().filter(|one| one.name != "all sizes" && one.name != "hookean");
+    let all = own.flat_map(|one| one.transition.calibration.ensembles.iter().cloned());
     Calibration { ensembles: all.collect() }
 }
 
