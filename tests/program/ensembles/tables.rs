@@ -9,7 +9,7 @@ use flate2::read::GzDecoder;
 use jamscope::law::LawChoice;
 use jamscope::response::{Calibration, WordCounts};
 use jamscope::study::{CellSamples, Merged, NumberStatistics, Part, Study, Target, merge};
-use jamscope::transition::{Method, Series, Transition, TransitionPressure};
+use jamscope::transition::{Comparison, Method, Series, Transition, TransitionPressure};
 
 /// A study of `fixtures/ensembles`, merged.
 pub struct Ensemble {
@@ -182,18 +182,24 @@ impl Ensemble {
         table += &format!("|{}\n", "---|".repeat(6));
         let of_relaxer = |of: &str| of.split(", ").any(|word| word == relaxer_name);
         let all = self.transition.comparisons.iter();
-        for one in all.filter(|one| of_relaxer(&one.of) && !one.quantity.starts_with("p̂_c by")) {
-            let interval = one.interval.map_or(String::new(), |[low, high]| format!(" ({low:.2} to {high:.2})"));
-            let found = one.value.map_or("–".into(), |value| format!("{value:.2}{interval}"));
+        // p̂_c has tables of its own, and ℓ_iso around a held disk is a length of the circle.
+        let elsewhere = |one: &Comparison| ["p̂_c by", "ℓ_iso ΔZ"].iter().any(|it| one.quantity.starts_with(it));
+        let number = |value: f64| match value.abs() < 1e4 {
+            true => format!("{value:.2}").replace('-', "−"),
+            false => power(value),
+        };
+        for one in all.filter(|one| of_relaxer(&one.of) && !elsewhere(one)) {
+            let ends = |[low, high]: [f64; 2]| format!(" ({} to {})", number(low), number(high));
+            let interval = one.interval.map_or(String::new(), ends);
+            let found = one.value.map_or("–".into(), |value| number(value) + &interval);
             let reason = one.reason.map_or(String::new(), |reason| format!(": {}", reason.words()));
             writeln!(
                 table,
-                "| {} | {} | {} | {} | {:.2} | {}{reason} |",
+                "| {} | {} | {found} | {} | {} | {}{reason} |",
                 one.quantity,
                 one.of.replace(&format!(", {relaxer_name}"), ""),
-                found.replace('-', "−"),
                 one.sample_count,
-                one.published,
+                number(one.published),
                 one.verdict.name()
             )
             .expect("text");
