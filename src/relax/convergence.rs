@@ -1,0 +1,290 @@
+//! When to stop: the residual on the backbone, looked at now and then, and the rounding floor.
+
+use std::time::Instant;
+
+use crate::forces::assembly::Assembly;
+use crate::forces::totals::Totals;
+use crate::law::pair_law::PairLaw;
+use crate::network::{Links, Peeling};
+use crate::packing::Packing;
+use crate::relax::energy_account::EnergyAccount;
+use crate::relax::force_limit::{ForceLimit, RUNAWAY, UNJAMMED_FORCE};
+use crate::relax::outcome::{Cost, Criterion, Outcome, Residual, Stop};
+use crate::relax::rounding::{floor_of, mean_force};
+use crate::relax::trace::{Look, Trace};
+use crate::vector::{Vector, dot, larger};
+
+/// Evaluations between two looks at the residual. An evaluation with a look costs half as much again.
+pub const LOOK_EVERY: usize = 20;
+
+/// Of so many looks one is made while forces are far from small.
+const FAR_LOOKS: usize = 4;
+
+/// A force is far from small if it is this many times what a look waits for \[1\].
+const FAR: f64 = 30.0;
+
+/// Mean contact force below which a residual is not known \[force\]: the square of its last digit is below the smallest normal
+/// number, √(2⁻¹⁰²²)/2⁻⁵². Residuals come from squares of net forces.
+const SMALLEST_FORCE: f64 = f64::from_bits((1023 - 511 + 52) << 52);
+
+/// The watch of relaxers whose steps cost one evaluation.
+const WATCH: Watch = Watch { refresh_every: 10, patience: 150, waits_for_rattlers: false };
+
+/// How often a monitor does what costs time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Watch {
+    /// Looks after which the backbone is determined anew even if nothing suggests convergence.
+    pub refresh_every: usize,
+    /// Looks without progress near the rounding floor after which it counts as reached.
+    pub patience: usize,
+    /// Whether a backbone within its limit waits for rattlers at the floor, however long they take.
+    pub waits_for_rattlers: bool,
+}
+
+/// Elastic energy at rest over that at the start, up to which it counts as no gain: two states within the same limit on forces may
+/// differ by the square of a residual of 10⁻⁴.
+const ENERGY_GAIN: f64 = 1e-8;
+
+/// Watches one relaxation.
+pub struct Monitor {
+    limit: ForceLimit,
+    watch: Watch,
+    unjammed_force: f64,
+    /// Whether forces of the law that count are below [`SMALLEST_FORCE`].
+    weak: bool,
+    /// Way from a site that ends the relaxation; infinite unless the law pushes disks from theirs.
+    farthest: f64,
+    backbone: Vec<bool>,
+    links: Links,
+    peeling: Peeling,
+    /// Room for sums over the contacts of each disk.
+    row: Vec<f64>,
+    look_count: usize,
+    best: f64,
+    best_look: usize,
+    floor: f64,
+    anchors_felt: bool,
+    last: Residual,
+    /// Elastic energy at the first and at the last check, and what the rounding of the first is relative to.
+    energies: Option<(f64, f64)>,
+    first_scale: f64,
+}
+
+impl Monitor {
+    /// A watch with this limit.
+    pub fn new<const D: usize, L: PairLaw>(limit: ForceLimit, assembly: &Assembly<D, L>) -> Self {
+        Monitor::with(limit, WATCH, assembly)
+    }
+
+    /// A watch with this limit for steps of another cost.
+    pub fn with<const D: usize, L: PairLaw>(limit: ForceLimit, watch: Watch, assembly: &Assembly<D, L>) -> Self {
+        let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
+        let unjammed_force = UNJAMMED_FORCE * assembly.law().force_scale(radius);
+        let pushed = assembly.law().on_site_coupling() > 0.0;
+        let farthest =
+            if pushed { RUNAWAY * assembly.radii().iter().copied().fold(0.0, f64::max) } else { f64::INFINITY };
+        Monitor {
+            limit,
+            watch,
+            // Who asks for less than what counts as no force gets it.
+            unjammed_force: match limit {
+                ForceLimit::Absolute(limit) => unjammed_force.min(limit),
+                ForceLimit::Relative(_) => unjammed_force,
+            },
+            weak: unjammed_force < SMALLEST_FORCE,
+            farthest,
+            backbone: vec![true; assembly.len()],
+            links: Links::default(),
+            peeling: Peeling::default(),
+            row: Vec::new(),
+            look_count: 0,
+            best: f64::INFINITY,
+            best_look: 0,
+            floor: 0.0,
+            anchors_felt: false,
+            last: Residual { largest_net_force: f64::INFINITY, mean_contact_force: 1.0 },
+            energies: None,
+            first_scale: 0.0,
+        }
+    }
+
+    /// Looks at the net forces just evaluated, one a mobile disk.
+    pub fn check<const D: usize, L: PairLaw>(
+        &mut self,
+        assembly: &Assembly<D, L>,
+        net_forces: &[Vector<D>],
+        totals: &Totals<D>,
+        report: Look,
+        trace: &mut impl Trace,
+    ) -> Option<Stop> {
+        self.look_count += 1;
+        let first = self.energies.map_or(totals.energy, |(first, _)| first);
+        if self.energies.is_none() {
+            self.first_scale = totals.energy_scale();
+        }
+        self.energies = Some((first, totals.energy));
+        let (inner, outer) = self.largest(net_forces);
+        let mean = totals.mean_contact_force();
+        self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
+        trace.look(&Look { residual: self.last.relative(), ..report });
+        if trace.interrupted() {
+            return Some(Stop::Interrupted);
+        }
+        if self.ran_away(assembly) {
+            return Some(Stop::NoMinimum);
+        }
+        if !(inner + outer + totals.energy).is_finite() {
+            return Some(Stop::NonFinite);
+        }
+        if self.weak && totals.contact_count > 0 && mean < SMALLEST_FORCE {
+            return Some(Stop::Underflow);
+        }
+        if larger(inner, outer) <= self.unjammed_force && mean <= self.unjammed_force {
+            return Some(Stop::Converged(Criterion::Unjammed));
+        }
+        let promising = self.within(inner, mean);
+        let due = promising || self.look_count.is_multiple_of(self.watch.refresh_every) || self.look_count == 1;
+        let converged = if due { self.refresh(assembly, net_forces) } else { None };
+        if converged.is_some() {
+            let gained = totals.energy - first > ENERGY_GAIN * (self.first_scale + totals.energy_scale());
+            return if gained { Some(Stop::EnergyGained) } else { converged };
+        }
+        self.at_the_floor().then_some(Stop::RoundingFloor)
+    }
+
+    /// Whether a look is worth while after this step, at which the largest component of a net force is `largest_force`: every
+    /// [`LOOK_EVERY`] steps, but while some disk is far from rest one in [`FAR_LOOKS`] of these. A disk off the backbone may be
+    /// far from it for long.
+    pub fn is_due(&self, step: usize, largest_force: f64) -> bool {
+        let Residual { mean_contact_force: mean, .. } = self.last;
+        let awaited = match self.limit {
+            ForceLimit::Relative(limit) => limit * mean,
+            ForceLimit::Absolute(limit) => limit,
+        };
+        let far = largest_force > FAR * larger(awaited, self.floor * mean);
+        step.is_multiple_of(if far { FAR_LOOKS * LOOK_EVERY } else { LOOK_EVERY })
+    }
+
+    /// Whether a disk pushed from its site is too far from it. To be asked after every new list as well: between two looks a
+    /// disk may go a long way.
+    pub fn ran_away<const D: usize, L: PairLaw>(&self, assembly: &Assembly<D, L>) -> bool {
+        assembly.law().has_sites() && assembly.longest_way_from_site() >= self.farthest
+    }
+
+    /// Determines the backbone and the residual on it (on all disks where there are forces but no backbone); whether it is
+    /// within the limit.
+    fn refresh<const D: usize, L: PairLaw>(
+        &mut self,
+        assembly: &Assembly<D, L>,
+        net_forces: &[Vector<D>],
+    ) -> Option<Stop> {
+        let mobile = assembly.mobile_count();
+        self.links.take(assembly);
+        self.peeling.peel::<D>(|disk| disk >= mobile, &self.links.ends, &mut self.backbone);
+        let rigid = self.backbone[..mobile].iter().any(|&member| member);
+        if !rigid && self.links.forces.iter().any(|&force| force > self.unjammed_force) {
+            // A chain between walls has no backbone and may be at rest under forces all the same: every disk counts.
+            self.backbone.fill(true);
+        }
+        let members = &self.backbone;
+        let mean = mean_force(&self.links, members);
+        let (inner, outer) = self.largest(net_forces);
+        let row = &mut self.row;
+        self.floor = floor_of(assembly, members, mean, assembly.longest_displacement(), row);
+        self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
+        // Felt: within a factor 20 of the residual, and new anchors would lower the floor by more than 4.
+        self.anchors_felt =
+            self.floor > 0.05 * self.last.relative() && self.floor > 4.0 * floor_of(assembly, members, mean, 0.0, row);
+        let stop = match self.limit {
+            ForceLimit::Relative(limit) => (mean > 0.0 && inner <= limit * mean && outer <= limit.sqrt() * mean)
+                .then_some(Criterion::RelativeForce),
+            ForceLimit::Absolute(limit) if rigid => {
+                (inner <= limit && outer <= limit.sqrt() * mean.max(limit)).then_some(Criterion::AbsoluteForce)
+            }
+            ForceLimit::Absolute(limit) => (larger(inner, outer) <= limit).then_some(Criterion::AbsoluteForce),
+        };
+        stop.map(Stop::Converged)
+    }
+
+    /// Largest net force on the backbone, and off it.
+    fn largest<const D: usize>(&self, net_forces: &[Vector<D>]) -> (f64, f64) {
+        let mut largest = [0.0; 2];
+        for (force, &member) in net_forces.iter().zip(&self.backbone) {
+            let slot = usize::from(!member);
+            largest[slot] = larger(dot(*force, *force), largest[slot]);
+        }
+        (largest[0].sqrt(), largest[1].sqrt())
+    }
+
+    fn within(&self, largest: f64, mean: f64) -> bool {
+        match self.limit {
+            ForceLimit::Relative(limit) => largest <= limit * mean,
+            ForceLimit::Absolute(limit) => largest <= limit,
+        }
+    }
+
+    fn at_the_floor(&mut self) -> bool {
+        let residual = self.last.relative();
+        // A tenth less counts as progress; fluctuations at the floor are larger, so the best one there stays.
+        if residual < 0.9 * self.best {
+            self.best = residual;
+            self.best_look = self.look_count;
+        }
+        // Without a backbone the residual is 0 and says nothing.
+        let told = self.last.largest_net_force > 0.0;
+        told && self.near_the_floor() && self.look_count - self.best_look >= self.watch.patience
+    }
+
+    /// Whether the residual of the last look is one that rounding may make, and not one that only waits for rattlers.
+    pub fn near_the_floor(&self) -> bool {
+        let waits =
+            self.watch.waits_for_rattlers && self.within(self.last.largest_net_force, self.last.mean_contact_force);
+        self.last.relative() <= 16.0 * self.floor && !waits
+    }
+
+    /// Whether each disk, in working order, counted for the last residual.
+    #[cfg(feature = "linear")]
+    pub fn backbone(&self) -> &[bool] {
+        &self.backbone
+    }
+
+    /// The residual of the last look.
+    pub fn residual(&self) -> Residual {
+        self.last
+    }
+
+    /// Whether the rounding of displacements from the anchors is felt, so that the caller should re-anchor; asked once a look.
+    pub fn takes_new_anchors(&mut self) -> bool {
+        std::mem::take(&mut self.anchors_felt)
+    }
+
+    /// Elastic energies at the first and at the last check.
+    pub fn energies(&self) -> Option<EnergyAccount> {
+        self.energies.map(|(before, after)| EnergyAccount { before, after, ..EnergyAccount::default() })
+    }
+
+    /// The outcome of a relaxer whose net forces are those of the assembly, which began at `start`.
+    pub fn outcome<const D: usize, L: PairLaw>(
+        self,
+        assembly: Assembly<D, L>,
+        packing: Packing<D>,
+        (stop, cost): (Stop, Cost),
+        start: Instant,
+    ) -> Outcome<Packing<D>> {
+        let energies = cost.energies.or(self.energies());
+        let (residual, rounding_floor) = self.finish(&assembly, &assembly.forces[..assembly.mobile_count()]);
+        let (rebuild_count, seconds) = (assembly.rebuild_count(), start.elapsed().as_secs_f64());
+        let cost = Cost { rebuild_count, seconds, energies, ..cost };
+        Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost }
+    }
+
+    /// The residual and the floor for the outcome, with the backbone determined anew.
+    pub fn finish<const D: usize, L: PairLaw>(
+        mut self,
+        assembly: &Assembly<D, L>,
+        net_forces: &[Vector<D>],
+    ) -> (Residual, f64) {
+        let _ = self.refresh(assembly, net_forces);
+        (self.last, self.floor)
+    }
+}

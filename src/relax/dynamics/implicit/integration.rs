@@ -1,0 +1,247 @@
+//! [`Integration`]: a motion from its start to rest, step by step, each as long as its error allows.
+
+use std::time::Instant;
+
+use crate::forces::assembly::Assembly;
+use crate::forces::totals::Totals;
+use crate::law::damping::DampingLaw;
+use crate::law::pair_law::PairLaw;
+use crate::neighbours::for_each_pair::walk;
+use crate::packing::{Packing, PackingError};
+use crate::relax::convergence::Monitor;
+use crate::relax::dynamics::damped::NetForce;
+use crate::relax::dynamics::energy_balance::{Energies, EnergyBalance};
+use crate::relax::dynamics::implicit::allowed_error::Allowed;
+use crate::relax::dynamics::implicit::explicit_phase;
+use crate::relax::dynamics::implicit::finish::{Finish, Finishing, Standing};
+use crate::relax::dynamics::implicit::inertia::{Inertia, Stepped};
+use crate::relax::dynamics::implicit::method_selection::{Kind, Pace};
+use crate::relax::dynamics::implicit::motion::ImplicitMotion;
+use crate::relax::dynamics::implicit::rkc::phase;
+use crate::relax::dynamics::implicit::stagnation::Restless;
+use crate::relax::dynamics::implicit::step_control::{LARGEST_GROWTH, SMALLEST_GROWTH, growth};
+use crate::relax::force_limit::ForceLimit;
+use crate::relax::minimise::newton_descent::WATCH;
+use crate::relax::outcome::{Cost, Outcome, Stop};
+use crate::relax::trace::{Look, Trace};
+use crate::vector::{Vector, larger, norm};
+
+/// Settings of either.
+pub(crate) struct Integration {
+    pub(crate) limit: ForceLimit,
+    pub(crate) net_force: NetForce,
+    pub(crate) tolerance: f64,
+    pub(crate) finish: Finish,
+    pub(crate) step_limit: usize,
+}
+
+/// Ratio after a step whose matrix was not positive definite.
+const INDEFINITE_GROWTH: f64 = 0.5;
+
+/// Ratio after a step that broke the balance of energies.
+const UNBALANCED_GROWTH: f64 = 0.5;
+
+/// Overlap over a radius that stands in for the mean one where nothing is pressed \[1\].
+const SMALLEST_OVERLAP: f64 = 1e-6;
+
+/// (hγ)² λ, or hγ λ/ζ, of the stiffest contacts beyond which a step grows no more: disks that touch nothing are held by the
+/// mass term alone, and the pivots of the matrix must stay well apart from rounding.
+const LONGEST_STEP: f64 = 1e12;
+
+impl Integration {
+    pub(crate) fn relax<const D: usize, L: PairLaw, C: DampingLaw>(
+        &self,
+        packing: Packing<D>,
+        law: &L,
+        damping: &C,
+        inertia: Inertia,
+        trace: &mut impl Trace,
+    ) -> Result<Outcome<Packing<D>>, PackingError> {
+        let start = Instant::now();
+        let mut motion = ImplicitMotion::new(&packing, law, damping, inertia)?;
+        let mut monitor = Monitor::with(self.limit, WATCH, &motion.assembly);
+        let mut cost = Cost::default();
+        let totals = motion.evaluate();
+        let mut balance = EnergyBalance::new(Energies::new(&totals, 0.0, 0.0));
+        let stop = self.run(totals, &mut motion, &mut monitor, (&mut cost, &mut balance), trace)?;
+        let assembly = &motion.assembly;
+        let net_forces = self.judged(&motion);
+        cost.energies = monitor.energies().map(|energies| balance.account(energies.after));
+        let (residual, rounding_floor) = monitor.finish(assembly, net_forces);
+        cost.force_evaluation_count += motion.work.evaluation_count;
+        cost.factorisation_count += motion.work.factorisation_count;
+        cost.iteration_count += motion.work.iteration_count;
+        cost.simulated_time = motion.time;
+        cost.rebuild_count = assembly.rebuild_count();
+        cost.seconds = start.elapsed().as_secs_f64();
+        Ok(Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost })
+    }
+
+    fn run<const D: usize, L: PairLaw, C: DampingLaw>(
+        &self,
+        mut totals: Totals<D>,
+        motion: &mut ImplicitMotion<D, L, C>,
+        monitor: &mut Monitor,
+        (cost, balance): (&mut Cost, &mut EnergyBalance),
+        trace: &mut impl Trace,
+    ) -> Result<Stop, PackingError> {
+        let mut finishing = match self.finish {
+            Finish::Motion => None,
+            Finish::Newton(residual) => Some(Finishing::from(residual)),
+        };
+        let mut time_step = 0.0;
+        let mut overlaps = Vec::new();
+        let mut restless = Restless::default();
+        let mut pace = Pace::new(motion);
+        loop {
+            let kinetic_energy = motion.kinetic_energy();
+            let look = Look {
+                step_count: cost.step_count,
+                energy: totals.energy,
+                kinetic_energy,
+                residual: 0.0,
+                time_step,
+                restart: false,
+            };
+            if let Some(stop) = monitor.check(&motion.assembly, self.judged(motion), &totals, look, trace) {
+                return Ok(stop);
+            }
+            let residual = monitor.residual().relative();
+            if restless.after(cost.step_count, (kinetic_energy, motion.dissipated), residual) {
+                return Ok(Stop::Restless);
+            }
+            if monitor.takes_new_anchors() {
+                motion.reanchor()?;
+            }
+            let overlap = typical_overlap(&motion.assembly, &mut overlaps);
+            if let Some(finishing) = &mut finishing {
+                let kinetic = motion.kinetic_energy_of(monitor.backbone());
+                let standing = Standing { residual, kinetic, scale: totals.energy_scale(), overlap };
+                if finishing.is_due(&standing)
+                    && let Some(stop) = finishing.attempt(motion, monitor, cost, &standing, trace)?
+                {
+                    return Ok(stop);
+                }
+            }
+            if time_step == 0.0 {
+                time_step = first_step(motion, self.tolerance * overlap);
+            }
+            // Explicit steps follow contacts that come and go; where there is no backbone, nothing bounds them.
+            let pressed = monitor.backbone()[..motion.assembly.mobile_count()].iter().any(|&member| member);
+            let kind = if pressed { pace.kind(time_step) } else { Kind::Implicit };
+            if kind != Kind::Implicit {
+                if cost.step_count >= self.step_limit {
+                    return Ok(Stop::StepLimit);
+                }
+                cost.step_count += 1;
+            }
+            let allowed = Allowed { overlap, tolerance: self.tolerance, backbone: monitor.backbone() };
+            match kind {
+                Kind::Explicit => {
+                    match explicit_phase::explicit(motion, &mut pace, &mut time_step, (cost, &mut *balance))? {
+                        Ok(reached) => totals = reached,
+                        Err(stop) => return Ok(stop),
+                    }
+                }
+                Kind::Stabilised { .. } => {
+                    let account = (&mut *cost, &mut *balance);
+                    if let Some(reached) = phase::stabilised(motion, &mut pace, &mut time_step, account, &allowed)? {
+                        totals = reached;
+                    }
+                }
+                Kind::Implicit => {
+                    let account = (&mut *cost, &mut *balance);
+                    match self.advance(motion, account, &mut time_step, (&allowed, pressed.then_some(&pace)))? {
+                        Ok(Some(reached)) => {
+                            totals = reached;
+                            pace.stepped();
+                        }
+                        // Back at the start of the step.
+                        Ok(None) => {}
+                        Err(stop) => return Ok(stop),
+                    }
+                }
+            }
+        }
+    }
+
+    /// One implicit step, repeated with shorter ones until its error is small enough; `time_step` is that of the next
+    /// afterwards. None if it would have to be so short that other steps pay.
+    fn advance<const D: usize, L: PairLaw, C: DampingLaw>(
+        &self,
+        motion: &mut ImplicitMotion<D, L, C>,
+        (cost, balance): (&mut Cost, &mut EnergyBalance),
+        time_step: &mut f64,
+        (allowed, pace): (&Allowed<'_>, Option<&Pace>),
+    ) -> Result<Result<Option<Totals<D>>, Stop>, PackingError> {
+        motion.prestressed.copy_from_slice(allowed.backbone);
+        motion.margin = allowed.overlap;
+        *time_step = time_step.min(motion.longest_step(LONGEST_STEP));
+        let mut rejected = false;
+        loop {
+            if cost.step_count >= self.step_limit {
+                return Ok(Err(Stop::StepLimit));
+            }
+            cost.step_count += 1;
+            let growth = match motion.step(*time_step)? {
+                Stepped::OutOfMemory => return Ok(Err(Stop::OutOfMemory)),
+                Stepped::Indefinite => INDEFINITE_GROWTH,
+                Stepped::TooFar => SMALLEST_GROWTH,
+                Stepped::Moved(reached) => {
+                    let error = allowed.share(motion, |motion, disk| motion.error(*time_step, disk));
+                    let growth = growth(error, LARGEST_GROWTH);
+                    let energies = || Energies::new(&reached, motion.kinetic_energy(), motion.dissipated);
+                    let balanced = |balance: &mut EnergyBalance| match motion.has_masses() {
+                        true => balance.accept(energies()),
+                        false => balance.accept_descent(energies()),
+                    };
+                    if error <= 1.0 && balanced(balance) {
+                        *time_step *= if rejected { growth.min(1.0) } else { growth };
+                        return Ok(Ok(Some(reached)));
+                    }
+                    if error <= 1.0 { UNBALANCED_GROWTH } else { growth }
+                }
+            };
+            cost.rejected_count += 1;
+            rejected = true;
+            motion.take_back()?;
+            *time_step *= growth;
+            if pace.is_some_and(|pace| pace.kind(*time_step) != Kind::Implicit) {
+                return Ok(Ok(None));
+            }
+        }
+    }
+
+    /// The net forces the limit is on.
+    fn judged<'a, const D: usize, L: PairLaw, C: DampingLaw>(
+        &self,
+        motion: &'a ImplicitMotion<D, L, C>,
+    ) -> &'a [Vector<D>] {
+        match self.net_force {
+            NetForce::Elastic => &motion.assembly.forces[..motion.assembly.mobile_count()],
+            NetForce::Total => motion.net_forces(),
+        }
+    }
+}
+
+/// The median overlap of all contacts: not moved by the few that an inflation presses a thousand times as far \[length\].
+fn typical_overlap<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, overlaps: &mut Vec<f64>) -> f64 {
+    let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
+    overlaps.clear();
+    walk(assembly.pairs(), &assembly.displacements, &mut |pair| {
+        if pair.overlap > 0.0 {
+            overlaps.push(pair.overlap);
+        }
+    });
+    let middle = overlaps.len() / 2;
+    let median = if overlaps.is_empty() { 0.0 } else { *overlaps.select_nth_unstable_by(middle, f64::total_cmp).1 };
+    larger(median, SMALLEST_OVERLAP * radius)
+}
+
+/// The step in which the largest force moves a disk by as much as an error may be.
+fn first_step<const D: usize, L: PairLaw, C: DampingLaw>(motion: &ImplicitMotion<D, L, C>, allowed: f64) -> f64 {
+    let largest = motion.net_forces().iter().fold(0.0, |most, &force| larger(norm(force), most));
+    let step = motion.time_of_way(allowed, largest);
+    // Nothing pushes: any step is as good, and the look that follows finds it at rest.
+    if step.is_finite() && step > 0.0 { step } else { 1.0 }
+}
