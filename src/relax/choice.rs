@@ -20,7 +20,7 @@ use crate::relax::outcome::Outcome;
 use crate::relax::relaxer::Relaxer;
 use crate::relax::trace::Trace;
 
-/// A relaxer chosen at run time, as a scene names it.
+/// A relaxer chosen at run time, as named in a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RelaxerChoice {
@@ -71,9 +71,9 @@ impl RelaxerChoice {
         }
     }
 
-    /// What it is, in the words of a report: dynamics by their damping law and rate, "viscoelastic 500".
+    /// Its description in a report. Dynamics are described by their damping law and rate: "viscoelastic 500".
     ///
-    /// It has what a minimum depends on, but no limits and no tolerances.
+    /// It contains what a minimum depends on, but no limits and no tolerances.
     pub fn description(&self) -> String {
         let precise = |words: &str, precision: Precision| match precision {
             Precision::Double => words.to_string(),

@@ -1,5 +1,5 @@
-//! Sums over flat columns in a fixed order, in lanes the compiler can turn into vector instructions. Long columns are cut into
-//! pieces of a fixed length, which may be worked on side by side; their sums are added in order.
+//! Operations on long columns of numbers, with sums in a fixed order. The compiler can use vector instructions for their lanes. Long
+//! columns are cut into pieces of a fixed length, which may be processed in parallel; their sums are added in order.
 
 use crate::parallel;
 use crate::processor;
@@ -7,7 +7,7 @@ use crate::simd::lanes::{self, Summed};
 use crate::simd::real::Real;
 use crate::vector::larger;
 
-/// Length of a piece of a long column; fixed, so the bits do not depend on the number of threads.
+/// Length of a piece of a long column. It is fixed, so the bits do not depend on the number of threads.
 const PIECE: usize = 1 << 15;
 
 /// The products a step of FIRE needs.
@@ -19,20 +19,20 @@ pub struct Products {
     pub force_squared: f64,
     /// v·v.
     pub speed_squared: f64,
-    /// The largest component of F, whatever its sign; a NaN may get lost here, not in the others.
+    /// The largest size of a component of F. A NaN may be lost here, but not in the others.
     pub largest_force: f64,
 }
 
 impl Products {
-    /// Those of no disk.
+    /// The products of no disk.
     pub const ZERO: Self = Products { power: 0.0, force_squared: 0.0, speed_squared: 0.0, largest_force: 0.0 };
 
-    /// Whether all of them are; a NaN among forces or velocities is seen.
+    /// Whether all products are finite. A NaN among forces or velocities makes them NaN.
     pub fn is_finite(&self) -> bool {
         (self.power + self.force_squared + self.speed_squared).is_finite()
     }
 
-    /// Those of both parts.
+    /// The products of both parts together.
     pub fn with(&self, part: &Self) -> Self {
         Products {
             power: self.power + part.power,
@@ -43,7 +43,7 @@ impl Products {
     }
 }
 
-/// F·v, F·F and v·v in one pass. Sums of up to some thousand terms are of the precision given, those of the parts in double.
+/// F·v, F·F and v·v in one pass. Sums of up to some thousand terms have the given precision, the sums of these parts are double.
 pub fn products<T: Summed>(force: &[T], velocity: &[T]) -> Products {
     let of_piece = |(force, velocity)| processor::dispatch(ProductsOf { force, velocity });
     if force.len() <= PIECE {
@@ -72,7 +72,7 @@ impl<T: Summed> pulp::WithSimd for ProductsOf<'_, T> {
     }
 }
 
-/// `v ← keep·v + push·F`, then `u ← u + dt·v`; the largest component of v, whatever its sign, is returned.
+/// `v ← keep·v + push·F`, then `u ← u + dt·v`. Returns the largest size of a component of v.
 pub fn kick_and_drift<T: Real>(
     keep: f64,
     push: f64,
@@ -111,10 +111,10 @@ impl<T: Real> pulp::WithSimd for KickAndDrift<'_, T> {
         let (force, force_rest) = T::vectors::<S>(self.force);
         let (velocity, velocity_rest) = T::vectors_mut::<S>(self.velocity);
         let (displacement, displacement_rest) = T::vectors_mut::<S>(self.displacement);
-        // A NaN may get lost here; it is in v and u.
+        // A NaN may be lost here; it stays in v and u.
         let mut fastest = splat(T::default());
         for ((&f, v), u) in force.iter().zip(velocity).zip(displacement) {
-            // Kept, not read again: where a vector lies across two lines, what was just stored is long in coming back.
+            // Kept in a register: a vector that crosses a cache line is slow to read after it was stored.
             let kicked = T::plus(simd, T::times(simd, keep, *v), T::times(simd, push, f));
             *v = kicked;
             *u = T::plus(simd, *u, T::times(simd, time_step, kicked));

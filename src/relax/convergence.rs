@@ -1,4 +1,4 @@
-//! When to stop: the residual on the backbone, looked at now and then, and the rounding floor.
+//! [`Monitor`]: when to stop, by periodic checks of the residual on the backbone and of the rounding floor.
 
 use std::time::Instant;
 
@@ -14,70 +14,74 @@ use crate::relax::rounding::{floor_of, mean_force};
 use crate::relax::trace::{Look, Trace};
 use crate::vector::{Vector, dot, larger};
 
-/// Evaluations between two looks at the residual. An evaluation with a look costs half as much again.
-pub const LOOK_EVERY: usize = 20;
+/// Evaluations between two checks of the residual. A check adds half the cost of an evaluation.
+pub const CHECK_INTERVAL: usize = 20;
 
-/// Of so many looks one is made while forces are far from small.
-const FAR_LOOKS: usize = 4;
+/// While forces are large, one of this many checks is made.
+const FAR_CHECKS: usize = 4;
 
-/// A force is far from small if it is this many times what a look waits for \[1\].
+/// A force is large if it is this many times the force that a check waits for \[1\].
 const FAR: f64 = 30.0;
 
-/// Mean contact force below which a residual is not known \[force\]: the square of its last digit is below the smallest normal
-/// number, √(2⁻¹⁰²²)/2⁻⁵². Residuals come from squares of net forces.
+/// Mean contact force below which the residual is unknown \[force\]. Residuals come from squares of net forces. Below this, the square
+/// of the last digit is less than the smallest normal number: √(2⁻¹⁰²²)/2⁻⁵².
 const SMALLEST_FORCE: f64 = f64::from_bits((1023 - 511 + 52) << 52);
 
-/// The watch of relaxers whose steps cost one evaluation.
-const WATCH: Watch = Watch { refresh_every: 10, patience: 150, waits_for_rattlers: false };
+/// The schedule of relaxers whose steps cost one evaluation.
+const FIRE_SCHEDULE: CheckSchedule = CheckSchedule { refresh_every: 10, patience: 150, waits_for_rattlers: false };
 
-/// How often a monitor does what costs time.
+/// How often a monitor does its costly work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Watch {
-    /// Looks after which the backbone is determined anew even if nothing suggests convergence.
+pub struct CheckSchedule {
+    /// Checks after which the backbone is recomputed even if nothing suggests convergence.
     pub refresh_every: usize,
-    /// Looks without progress near the rounding floor after which it counts as reached.
+    /// Checks without progress near the rounding floor after which the floor counts as reached.
     pub patience: usize,
-    /// Whether a backbone within its limit waits for rattlers at the floor, however long they take.
+    /// Whether a converged backbone waits at the floor for rattlers, however long they take.
     pub waits_for_rattlers: bool,
 }
 
-/// Elastic energy at rest over that at the start, up to which it counts as no gain: two states within the same limit on forces may
+/// Relative rise of the elastic energy from start to rest that does not count as a gain. Two states within the same force limit may
 /// differ by the square of a residual of 10⁻⁴.
 const ENERGY_GAIN: f64 = 1e-8;
 
-/// Watches one relaxation.
+/// Monitors one relaxation.
 pub struct Monitor {
     limit: ForceLimit,
-    watch: Watch,
+    schedule: CheckSchedule,
     unjammed_force: f64,
-    /// Whether forces of the law that count are below [`SMALLEST_FORCE`].
+    /// Whether the smallest relevant forces of the law are below [`SMALLEST_FORCE`].
     weak: bool,
-    /// Way from a site that ends the relaxation; infinite unless the law pushes disks from theirs.
+    /// Distance from a site that ends the relaxation; infinite unless the law pushes disks away from their sites.
     farthest: f64,
     backbone: Vec<bool>,
     links: Links,
     peeling: Peeling,
-    /// Room for sums over the contacts of each disk.
+    /// Buffer for sums over the contacts of each disk.
     row: Vec<f64>,
-    look_count: usize,
+    check_count: usize,
     best: f64,
-    best_look: usize,
+    best_check: usize,
     floor: f64,
     anchors_felt: bool,
     last: Residual,
-    /// Elastic energy at the first and at the last check, and what the rounding of the first is relative to.
+    /// Elastic energies at the first and at the last check, and the scale of the rounding of the first.
     energies: Option<(f64, f64)>,
     first_scale: f64,
 }
 
 impl Monitor {
-    /// A watch with this limit.
+    /// A monitor with this limit.
     pub fn new<const D: usize, L: PairLaw>(limit: ForceLimit, assembly: &Assembly<D, L>) -> Self {
-        Monitor::with(limit, WATCH, assembly)
+        Monitor::with(limit, FIRE_SCHEDULE, assembly)
     }
 
-    /// A watch with this limit for steps of another cost.
-    pub fn with<const D: usize, L: PairLaw>(limit: ForceLimit, watch: Watch, assembly: &Assembly<D, L>) -> Self {
+    /// A monitor with this limit and this schedule.
+    pub fn with<const D: usize, L: PairLaw>(
+        limit: ForceLimit,
+        schedule: CheckSchedule,
+        assembly: &Assembly<D, L>,
+    ) -> Self {
         let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
         let unjammed_force = UNJAMMED_FORCE * assembly.law().force_scale(radius);
         let pushed = assembly.law().on_site_coupling() > 0.0;
@@ -85,8 +89,8 @@ impl Monitor {
             if pushed { RUNAWAY * assembly.radii().iter().copied().fold(0.0, f64::max) } else { f64::INFINITY };
         Monitor {
             limit,
-            watch,
-            // Who asks for less than what counts as no force gets it.
+            schedule,
+            // An absolute limit below the threshold of no force replaces the threshold.
             unjammed_force: match limit {
                 ForceLimit::Absolute(limit) => unjammed_force.min(limit),
                 ForceLimit::Relative(_) => unjammed_force,
@@ -97,9 +101,9 @@ impl Monitor {
             links: Links::default(),
             peeling: Peeling::default(),
             row: Vec::new(),
-            look_count: 0,
+            check_count: 0,
             best: f64::INFINITY,
-            best_look: 0,
+            best_check: 0,
             floor: 0.0,
             anchors_felt: false,
             last: Residual { largest_net_force: f64::INFINITY, mean_contact_force: 1.0 },
@@ -108,7 +112,7 @@ impl Monitor {
         }
     }
 
-    /// Looks at the net forces just evaluated, one a mobile disk.
+    /// Checks the net forces just evaluated, one per mobile disk. Returns why to stop, if so.
     pub fn check<const D: usize, L: PairLaw>(
         &mut self,
         assembly: &Assembly<D, L>,
@@ -117,7 +121,7 @@ impl Monitor {
         report: Look,
         trace: &mut impl Trace,
     ) -> Option<Stop> {
-        self.look_count += 1;
+        self.check_count += 1;
         let first = self.energies.map_or(totals.energy, |(first, _)| first);
         if self.energies.is_none() {
             self.first_scale = totals.energy_scale();
@@ -143,7 +147,7 @@ impl Monitor {
             return Some(Stop::Converged(Criterion::Unjammed));
         }
         let promising = self.within(inner, mean);
-        let due = promising || self.look_count.is_multiple_of(self.watch.refresh_every) || self.look_count == 1;
+        let due = promising || self.check_count.is_multiple_of(self.schedule.refresh_every) || self.check_count == 1;
         let converged = if due { self.refresh(assembly, net_forces) } else { None };
         if converged.is_some() {
             let gained = totals.energy - first > ENERGY_GAIN * (self.first_scale + totals.energy_scale());
@@ -152,9 +156,9 @@ impl Monitor {
         self.at_the_floor().then_some(Stop::RoundingFloor)
     }
 
-    /// Whether a look is worth while after this step, at which the largest component of a net force is `largest_force`: every
-    /// [`LOOK_EVERY`] steps, but while some disk is far from rest one in [`FAR_LOOKS`] of these. A disk off the backbone may be
-    /// far from it for long.
+    /// Whether a check is due after this step. `largest_force` is the largest component of a net force. A check comes every
+    /// [`CHECK_INTERVAL`] steps; while a force is large, only one in [`FAR_CHECKS`] of these. A disk off the backbone may have a
+    /// large force for long.
     pub fn is_due(&self, step: usize, largest_force: f64) -> bool {
         let Residual { mean_contact_force: mean, .. } = self.last;
         let awaited = match self.limit {
@@ -162,17 +166,16 @@ impl Monitor {
             ForceLimit::Absolute(limit) => limit,
         };
         let far = largest_force > FAR * larger(awaited, self.floor * mean);
-        step.is_multiple_of(if far { FAR_LOOKS * LOOK_EVERY } else { LOOK_EVERY })
+        step.is_multiple_of(if far { FAR_CHECKS * CHECK_INTERVAL } else { CHECK_INTERVAL })
     }
 
-    /// Whether a disk pushed from its site is too far from it. To be asked after every new list as well: between two looks a
-    /// disk may go a long way.
+    /// Whether a disk pushed from its site is too far from it. Callers also ask after every rebuilt list, since a disk may move
+    /// far between two checks.
     pub fn ran_away<const D: usize, L: PairLaw>(&self, assembly: &Assembly<D, L>) -> bool {
         assembly.law().has_sites() && assembly.longest_way_from_site() >= self.farthest
     }
 
-    /// Determines the backbone and the residual on it (on all disks where there are forces but no backbone); whether it is
-    /// within the limit.
+    /// Determines the backbone and its residual. Without a backbone, all disks count if there are forces. Returns the criterion met.
     fn refresh<const D: usize, L: PairLaw>(
         &mut self,
         assembly: &Assembly<D, L>,
@@ -183,7 +186,7 @@ impl Monitor {
         self.peeling.peel::<D>(|disk| disk >= mobile, &self.links.ends, &mut self.backbone);
         let rigid = self.backbone[..mobile].iter().any(|&member| member);
         if !rigid && self.links.forces.iter().any(|&force| force > self.unjammed_force) {
-            // A chain between walls has no backbone and may be at rest under forces all the same: every disk counts.
+            // A chain between walls has no backbone but may be at rest under forces: every disk counts.
             self.backbone.fill(true);
         }
         let members = &self.backbone;
@@ -192,7 +195,7 @@ impl Monitor {
         let row = &mut self.row;
         self.floor = floor_of(assembly, members, mean, assembly.longest_displacement(), row);
         self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
-        // Felt: within a factor 20 of the residual, and new anchors would lower the floor by more than 4.
+        // Rounding counts if it is within a factor 20 of the residual and new anchors would lower it by more than a factor 4.
         self.anchors_felt =
             self.floor > 0.05 * self.last.relative() && self.floor > 4.0 * floor_of(assembly, members, mean, 0.0, row);
         let stop = match self.limit {
@@ -206,7 +209,7 @@ impl Monitor {
         stop.map(Stop::Converged)
     }
 
-    /// Largest net force on the backbone, and off it.
+    /// Largest net forces on and off the backbone.
     fn largest<const D: usize>(&self, net_forces: &[Vector<D>]) -> (f64, f64) {
         let mut largest = [0.0; 2];
         for (force, &member) in net_forces.iter().zip(&self.backbone) {
@@ -225,20 +228,20 @@ impl Monitor {
 
     fn at_the_floor(&mut self) -> bool {
         let residual = self.last.relative();
-        // A tenth less counts as progress; fluctuations at the floor are larger, so the best one there stays.
+        // A fall by 10 % counts as progress. Fluctuations at the floor are larger, so the best value stays.
         if residual < 0.9 * self.best {
             self.best = residual;
-            self.best_look = self.look_count;
+            self.best_check = self.check_count;
         }
-        // Without a backbone the residual is 0 and says nothing.
-        let told = self.last.largest_net_force > 0.0;
-        told && self.near_the_floor() && self.look_count - self.best_look >= self.watch.patience
+        // Without a backbone the residual is 0 and contains no information.
+        let known = self.last.largest_net_force > 0.0;
+        known && self.near_the_floor() && self.check_count - self.best_check >= self.schedule.patience
     }
 
-    /// Whether the residual of the last look is one that rounding may make, and not one that only waits for rattlers.
+    /// Whether rounding may explain the last residual, and the backbone does not merely wait for rattlers.
     pub fn near_the_floor(&self) -> bool {
         let waits =
-            self.watch.waits_for_rattlers && self.within(self.last.largest_net_force, self.last.mean_contact_force);
+            self.schedule.waits_for_rattlers && self.within(self.last.largest_net_force, self.last.mean_contact_force);
         self.last.relative() <= 16.0 * self.floor && !waits
     }
 
@@ -248,12 +251,12 @@ impl Monitor {
         &self.backbone
     }
 
-    /// The residual of the last look.
+    /// The residual of the last check.
     pub fn residual(&self) -> Residual {
         self.last
     }
 
-    /// Whether the rounding of displacements from the anchors is felt, so that the caller should re-anchor; asked once a look.
+    /// Whether the caller should re-anchor, because the rounding of displacements is relevant. Asked once per check.
     pub fn takes_new_anchors(&mut self) -> bool {
         std::mem::take(&mut self.anchors_felt)
     }
@@ -263,7 +266,7 @@ impl Monitor {
         self.energies.map(|(before, after)| EnergyAccount { before, after, ..EnergyAccount::default() })
     }
 
-    /// The outcome of a relaxer whose net forces are those of the assembly, which began at `start`.
+    /// The outcome of a relaxer that began at `start`, with the net forces of the assembly.
     pub fn outcome<const D: usize, L: PairLaw>(
         self,
         assembly: Assembly<D, L>,
@@ -278,7 +281,7 @@ impl Monitor {
         Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost }
     }
 
-    /// The residual and the floor for the outcome, with the backbone determined anew.
+    /// The residual and the floor for the outcome, with the backbone recomputed.
     pub fn finish<const D: usize, L: PairLaw>(
         mut self,
         assembly: &Assembly<D, L>,

@@ -13,13 +13,13 @@ pub struct EnergyAccount {
     pub before: f64,
     /// Elastic energy at the end \[energy\].
     pub after: f64,
-    /// Work of damping and friction along a motion; not written where nothing moved \[energy\].
+    /// Work of damping and friction along a motion; not written if 0 \[energy\].
     #[serde(default, skip_serializing_if = "is_none")]
     pub damped: f64,
-    /// Elastic and kinetic energy above the end when the motion was left to Newton's method, or where it stopped \[energy\].
+    /// Elastic and kinetic energy above the end, when the motion stopped or Newton's method took over \[energy\].
     #[serde(default, skip_serializing_if = "is_none")]
     pub left: f64,
-    /// What the steps of a motion left unaccounted for: the sum of |Δ(E + K + W)| \[energy\].
+    /// Energy that the steps of a motion leave unaccounted for: the sum of |Δ(E + K + W)| \[energy\].
     #[serde(default, skip_serializing_if = "is_none")]
     pub imbalance: f64,
 }
@@ -29,7 +29,7 @@ fn is_none(energy: &f64) -> bool {
 }
 
 impl EnergyAccount {
-    /// Of this relaxation and one that begins where it ended.
+    /// The account of this relaxation and of one that begins where it ended.
     pub(crate) fn then(self, next: EnergyAccount) -> EnergyAccount {
         EnergyAccount {
             before: self.before,

@@ -1,10 +1,10 @@
-//! [`Outcome`]: what a relaxer gives back, and [`Relaxed`], which only a converged outcome can make.
+//! [`Outcome`]: the result of a relaxer, and [`Relaxed`], which only a converged outcome can make.
 
 use serde::{Deserialize, Serialize};
 
 use crate::relax::energy_account::EnergyAccount;
 
-/// Which limit a converged state met.
+/// The limit that a converged state met.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Criterion {
@@ -12,8 +12,8 @@ pub enum Criterion {
     RelativeForce,
     /// The absolute residual.
     AbsoluteForce,
-    /// Every contact force and every net force vanished, see [`UNJAMMED_FORCE`]; and is below the limit, if that is
-    /// absolute.
+    /// Every contact force and every net force vanished, see [`UNJAMMED_FORCE`](crate::relax::UNJAMMED_FORCE). An absolute limit
+    /// is met as well.
     Unjammed,
 }
 
@@ -23,38 +23,38 @@ pub enum Criterion {
 pub enum Stop {
     /// At rest by this criterion.
     Converged(Criterion),
-    /// The number of steps allowed is used up.
+    /// The steps allowed are used up.
     StepLimit,
-    /// The residual fluctuates at the rounding floor, above the limit asked for.
+    /// The residual fluctuates at the rounding floor, above the limit.
     RoundingFloor,
     /// A force became NaN or infinite.
     NonFinite,
-    /// Disks overlap, but their forces are so small that the squares of net forces are no longer numbers with all digits: the
-    /// stiffness constant, or the radii, are too small, and no residual can be told.
+    /// Disks overlap, but the squares of their forces underflow: the stiffness constant or the radii are too small, and the residual
+    /// is unknown.
     Underflow,
-    /// A damped motion gained energy, or its energies do not add up, however short its steps: they are too long.
+    /// A damped motion gained energy, or its energies do not balance: its steps are too long, even the shortest.
     Unstable,
-    /// At rest, but higher in energy than at the start: not where a relaxation can lead.
+    /// At rest, but with more energy than at the start. A relaxation cannot lead there.
     EnergyGained,
-    /// Pushed from their sites (Γ > 0), disks ran away: one is [`RUNAWAY`] from where it began. Near the sites the stiffness
-    /// matrix is indefinite or became so on the way, and there is no minimum. The state is the one they ran to; its residual
-    /// says nothing. (Forces alone do not tell a saddle from a minimum: disks that nothing pushes off a saddle stay there and
-    /// count as at rest. The number of negative eigenvalues tells, see `linear`.)
+    /// Disks that the law pushes from their sites (Γ > 0) ran away: one is [`RUNAWAY`](crate::relax::RUNAWAY) from where it began.
+    /// The stiffness matrix is indefinite near the sites or became so later, and there is no minimum. The state is where the disks
+    /// ran to; its residual has no meaning. Forces alone do not distinguish a saddle from a minimum: disks at a saddle count as at
+    /// rest. The number of negative eigenvalues distinguishes them, see `linear`.
     NoMinimum,
-    /// An implicit motion does not come to rest: for thousands of steps its residual has not fallen by a tenth, and damping has
-    /// taken less than half of its kinetic energy.
+    /// An implicit motion stagnates. For thousands of steps its residual has not fallen by 10 %, and damping has taken less
+    /// than half of its kinetic energy.
     #[cfg(feature = "linear")]
     Restless,
     /// The factors of Newton's matrix do not fit in memory.
     #[cfg(feature = "linear")]
     OutOfMemory,
-    /// No step, however short, lowers the energy, and the residual is above what rounding makes.
+    /// No step, however short, lowers the energy, and the residual is above the rounding floor.
     NoDescent,
-    /// Whoever watched asked it to end: [`Trace::interrupted`].
+    /// The trace asked it to end: [`Trace::interrupted`](crate::relax::Trace::interrupted).
     Interrupted,
 }
 
-/// How far from equilibrium a state is.
+/// How far a state is from equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Residual {
     /// Largest net force on a mobile disk of the backbone \[force\].
@@ -64,58 +64,57 @@ pub struct Residual {
 }
 
 impl Residual {
-    /// The first over the second; 0 where there is no force at all \[1\].
+    /// The ratio of the two; 0 without any force \[1\].
     pub fn relative(&self) -> f64 {
         if self.largest_net_force == 0.0 { 0.0 } else { self.largest_net_force / self.mean_contact_force }
     }
 }
 
-/// What a relaxer gives back, converged or not.
+/// The result of a relaxer, converged or not.
 #[must_use]
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome<T> {
-    /// Where it stopped.
+    /// The final state.
     pub state: T,
-    /// Why it stopped.
+    /// Why the relaxer stopped.
     pub stop: Stop,
     /// The residual reached.
     pub residual: Residual,
-    /// What rounding alone makes of the relative residual, by the estimate of [`rounding_floor`] \[1\].
+    /// The rounding floor of the relative residual, estimated by [`rounding_floor`](crate::relax::rounding_floor()) \[1\].
     pub rounding_floor: f64,
-    /// What it cost.
+    /// The cost.
     pub cost: Cost,
 }
 
-/// What a relaxation cost.
+/// The cost of a relaxation.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Cost {
     /// Steps taken.
     pub step_count: usize,
-    /// Steps whose error was too large, so that they were repeated, those within stretches included; not written where there are
-    /// none.
+    /// Rejected steps, whose error was too large; those within explicit phases included. Not written if 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub rejected_count: usize,
-    /// Evaluations in the stretches of explicit and stabilised steps of implicit dynamics, one an explicit step, s a stabilised
-    /// one of s stages; a stretch is one of its steps. Not written where there are none.
+    /// Evaluations in the explicit and stabilised phases of implicit dynamics: one per explicit step, s per stabilised step of s
+    /// stages. A phase counts as one step. Not written if 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub explicit_count: usize,
     /// Evaluations of all forces.
     pub force_evaluation_count: usize,
-    /// Neighbour lists made.
+    /// Neighbour lists built.
     pub rebuild_count: usize,
-    /// Sparse factorisations tried, by the relaxers that make them; not written where there are none.
+    /// Sparse factorisations tried. Not written if 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub factorisation_count: usize,
-    /// Iterations of conjugate gradients on linear systems; not written where there are none.
+    /// Iterations of conjugate gradients on linear systems. Not written if 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub iteration_count: usize,
-    /// Energies at the start and at the end, and of the motion between them.
+    /// Energies at the start, at the end, and of the motion between.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub energies: Option<EnergyAccount>,
-    /// Time that has passed in the motion, by the relaxers that follow one; not written where there is none \[time\].
+    /// Simulated time of relaxers that follow a motion. Not written if 0 \[time\].
     #[serde(default, skip_serializing_if = "is_no_time")]
     pub simulated_time: f64,
-    /// Wall time \[s\]; never written where two runs must agree to the byte.
+    /// Wall time \[s\]. Never written, since two runs must agree to the byte.
     #[serde(skip)]
     pub seconds: f64,
 }
@@ -129,7 +128,7 @@ fn is_no_time(time: &f64) -> bool {
 }
 
 impl Cost {
-    /// Both together, the other after this one.
+    /// The sum of this cost and of one that follows.
     pub fn plus(self, other: Cost) -> Cost {
         Cost {
             step_count: self.step_count + other.step_count,
@@ -166,10 +165,10 @@ impl<T> Relaxed<T> {
 }
 
 impl<T> Outcome<T> {
-    /// The state if it is at rest, otherwise the whole outcome back.
+    /// The state if it is at rest, otherwise the whole outcome.
     ///
     /// # Errors
-    /// The outcome itself, with why it stopped and the residual.
+    /// The outcome itself, with its stop and its residual.
     #[allow(clippy::result_large_err, reason = "the error is the outcome: the state is wanted in both cases")]
     pub fn converged(self) -> Result<Relaxed<T>, Self> {
         if matches!(self.stop, Stop::Converged(_)) { Ok(Relaxed(self.state)) } else { Err(self) }

@@ -1,4 +1,4 @@
-//! What rounding makes of energies and of residuals: [`rounding_floor`].
+//! The rounding of energies and of residuals: [`rounding_floor`].
 
 use crate::forces::assembly::Assembly;
 use crate::law::pair_law::PairLaw;
@@ -8,14 +8,15 @@ use crate::vector::larger;
 /// Rounding of an energy summed over blocks, relative \[1\].
 pub(crate) const ENERGY_ROUNDING: f64 = 1e-13;
 
-/// What rounding alone makes of the relative residual \[1\].
+/// The relative residual that rounding alone leaves \[1\].
 ///
 /// ```text
 /// max_i Σ_j [F'(δ_ij) 4 u w + 4 u F(δ_ij)] / ⟨F⟩          u = 2⁻⁵³
 /// ```
 ///
-/// A law with sites adds |Γ| times the longest way from one. w is the longest displacement from the anchors: an overlap is known to about 4 u of the relative displacement and a
-/// force to about 4 u of itself. With one number a coordinate it would be about `5 F' ulp(L) / ⟨F⟩`, L the side of the box.
+/// Here w is the longest displacement from the anchors. An overlap is known to about 4 u of the relative displacement, and a force
+/// to about 4 u of itself. A law with sites adds |Γ| times the longest distance from a site. With a single number per
+/// coordinate the floor would be about `5 F' ulp(L) / ⟨F⟩`, L the side of the box.
 pub fn rounding_floor<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> f64 {
     let (mut links, mut members) = (Links::default(), vec![true; assembly.len()]);
     links.take(assembly);
@@ -24,7 +25,7 @@ pub fn rounding_floor<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> 
     floor_of(assembly, &members, mean, assembly.longest_displacement(), &mut Vec::new())
 }
 
-/// Mean force of the contacts between members, 0 where there are none \[force\].
+/// Mean force of the contacts between members; 0 without contacts \[force\].
 pub(crate) fn mean_force(links: &Links, members: &[bool]) -> f64 {
     let of_members =
         links.ends.iter().zip(&links.forces).filter(|((a, b), _)| members[*a as usize] && members[*b as usize]);
@@ -32,7 +33,7 @@ pub(crate) fn mean_force(links: &Links, members: &[bool]) -> f64 {
     if count == 0 { 0.0 } else { total / count as f64 }
 }
 
-/// The estimate of [`rounding_floor`] for these members, with disks `moved` from their anchors.
+/// The estimate of [`rounding_floor`] for these members and this longest displacement from the anchors.
 pub(crate) fn floor_of<const D: usize, L: PairLaw>(
     assembly: &Assembly<D, L>,
     members: &[bool],
@@ -44,8 +45,8 @@ pub(crate) fn floor_of<const D: usize, L: PairLaw>(
         return 0.0;
     }
     let exponent = assembly.law().exponent();
-    // F = F' δ / (α − 1). The rows count a contact of two mobile disks twice (for Gershgorin), hence 2 u for 4 u; next to
-    // held disks the estimate is low by half.
+    // F = F' δ / (α − 1). The rows count a contact of two mobile disks twice (for Gershgorin), hence 2 u for 4 u. Next to held
+    // disks the estimate is half as large.
     let noise = |_: usize, overlap: f64, stiffness: f64| stiffness * (moved + overlap / (exponent - 1.0));
     assembly.row_bound(row, Some(&noise));
     let most =

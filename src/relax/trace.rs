@@ -1,25 +1,25 @@
 //! [`Trace`]: what a relaxer reports while it works.
 
-/// What a relaxer tells while it works; `()` hears nothing and costs nothing.
+/// A listener to a relaxer; `()` ignores everything and costs nothing.
 pub trait Trace {
-    /// Whether anything listens; lets the caller leave out what only a listener needs.
+    /// Whether it listens. The caller then leaves out work that only a listener needs.
     const ACTIVE: bool = true;
 
-    /// Called at every look at the residual.
+    /// Called at every check of the residual.
     fn look(&mut self, look: &Look);
 
-    /// Asked after every look: whether the relaxer is to end here, with [`Stop::Interrupted`].
+    /// Asked after every check: whether the relaxer is to end here, with [`Stop::Interrupted`](crate::relax::Stop::Interrupted).
     fn interrupted(&mut self) -> bool {
         false
     }
 }
 
-/// One look at a relaxation.
+/// The state of a relaxation at one check.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Look {
     /// Steps taken so far.
     pub step_count: usize,
-    /// Elastic energy, with that of the sites where the law has one: it may be negative then \[energy\].
+    /// Elastic energy, with that of the sites where the law has them; it may then be negative \[energy\].
     pub energy: f64,
     /// Kinetic energy \[energy\].
     pub kinetic_energy: f64,
@@ -27,7 +27,7 @@ pub struct Look {
     pub residual: f64,
     /// Time step \[time\].
     pub time_step: f64,
-    /// The relaxer restarted from rest here; its energies at restarts never increase.
+    /// Whether the relaxer restarts from rest here. The energies at restarts never increase.
     pub restart: bool,
 }
 

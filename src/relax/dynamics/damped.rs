@@ -1,22 +1,7 @@
 //! Explicit damped dynamics: Newton's equations with contact damping, until everything is at rest.
 //!
-//! ```text
-//! v_{n+1/2} = v_n + (h/2) a_n        u_{n+1} = u_n + h v_{n+1/2}
-//! a_{n+1} = F(u_{n+1}) − Γ(u_{n+1}) (v_n + h a_n)        v_{n+1} = v_{n+1/2} + (h/2) a_{n+1}      (masses 1)
-//! ```
-//!
-//! Velocity Verlet with the velocity of the damping force predicted to the end of the step: second order with one
-//! evaluation of the forces a step, also where forces depend on velocities (with v_{n+1/2} in the damping force, as is
-//! usual, it would be first order).
-//!
-//! A mode of stiffness λ_K and damping λ_Γ is stable for `h λ_Γ + h² λ_K / 4 < 1` (beyond, the scheme multiplies it by less
-//! than −1 each step). The step is bound by that with the largest eigenvalues of the two matrices, both bound in their turn
-//! by Gershgorin's rows. A motion that gains energy all the same, as with a fixed step too long, ends as
-//! [`Stop::Unstable`].
-//!
-//! # Source
-//! Groot, Warren (1997), J. Chem. Phys. 107, 4423 (the predicted velocity). The bound: the roots of the scheme's
-//! characteristic polynomial for one mode; asserted in the book.
+//! The disks move by velocity Verlet, see [`Motion`]. The step is a share of the bound on a stable one. A motion that still gains
+//! energy, as with a fixed step that is too long, ends as [`Stop::Unstable`].
 
 use std::time::Instant;
 
@@ -25,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::law::damping::{DampingChoice, DampingLaw};
 use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
-use crate::relax::convergence::{LOOK_EVERY, Monitor};
+use crate::relax::convergence::{CHECK_INTERVAL, Monitor};
 use crate::relax::dynamics::energy_balance::{Energies, EnergyBalance};
 use crate::relax::dynamics::explicit_step::ExplicitStep;
 use crate::relax::dynamics::verlet::Motion;
@@ -57,7 +42,7 @@ impl Default for DampedDynamics {
             limit: ForceLimit::default(),
             net_force: NetForce::default(),
             time_step: TimeStep::default(),
-            // 10⁴ steps at p > 500, 10⁶ near jamming (design §7).
+            // 10⁴ steps at p > 500, 10⁶ near jamming.
             step_limit: 20_000_000,
         }
     }
@@ -70,7 +55,7 @@ pub enum NetForce {
     /// Elastic forces only: the state is at rest in the energy landscape.
     #[default]
     Elastic,
-    /// Elastic and damping forces: also met by a slow creep, in which the two cancel.
+    /// Elastic and damping forces. A slow creep, in which the two cancel, also meets the limit.
     Total,
 }
 
@@ -78,27 +63,28 @@ pub enum NetForce {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TimeStep {
-    /// Always this \[time\].
+    /// A constant step \[time\].
     Fixed(f64),
-    /// This share of the bound on a stable step, followed as contacts change \[1\].
+    /// This share of the bound on a stable step, updated as contacts change \[1\].
     OfStability(f64),
 }
 
 impl Default for TimeStep {
-    /// 0.9 of the bound: at the bound itself a mode whose row is tight would oscillate for ever. Gershgorin's rows are about twice the eigenvalue of a packing's damping matrix (12 to 14
-    /// against 5.5 to 5.8 at unit damping), so this is about half of the longest stable step.
+    /// 0.9 of the bound: at the bound itself a mode whose row is sharp would oscillate for ever. Gershgorin's rows are about twice
+    /// the eigenvalue of a packing's damping matrix: 12 to 14 against 5.5 to 5.8 at unit damping. So this is about half of the
+    /// longest stable step.
     fn default() -> Self {
         TimeStep::OfStability(0.9)
     }
 }
 
-/// Share of the bound below which steps that gain energy are not shortened any more.
+/// Share of the bound below which steps that gain energy are not shortened further.
 const SMALLEST_SHARE: f64 = 1e-3;
 
-/// Ratio of a step to one that gained energy.
+/// Ratio of a step to the one before, which gained energy.
 const SHORTER: f64 = 0.5;
 
-/// Growth of the share after steps that gained none.
+/// Growth of the share after steps without a gain.
 const SHARE_GROWTH: f64 = 1.2;
 
 impl Relaxer for DampedDynamics {
@@ -132,13 +118,13 @@ impl DampedDynamics {
             TimeStep::Fixed(step) => (step, None),
             TimeStep::OfStability(share) => (0.0, Some(ExplicitStep::new(share))),
         };
-        // The one that made the motion.
+        // The evaluation that initialised the motion.
         let mut evaluation_count = 1;
         let mut balance: Option<EnergyBalance> = None;
         let mut rejected_count = 0;
         let mobile = motion.assembly.mobile_count();
         let stop = loop {
-            if step_count % LOOK_EVERY == 0 {
+            if step_count % CHECK_INTERVAL == 0 {
                 let totals = motion.assembly.evaluate_totals();
                 evaluation_count += 1;
                 let kinetic_energy = motion.kinetic_energy();
@@ -162,7 +148,7 @@ impl DampedDynamics {
                 {
                     control.shorten(SHORTER);
                     motion.take_back()?;
-                    rejected_count += LOOK_EVERY;
+                    rejected_count += CHECK_INTERVAL;
                     continue;
                 } else {
                     break if totals.energy.is_finite() { Stop::Unstable } else { Stop::NonFinite };
@@ -195,7 +181,7 @@ impl DampedDynamics {
             }
         };
         if matches!(stop, Stop::StepLimit | Stop::NoMinimum) {
-            // No look came before: the elastic forces are of an earlier step.
+            // No check came before: the elastic forces belong to an earlier step.
             motion.assembly.evaluate();
             evaluation_count += 1;
         }

@@ -1,17 +1,17 @@
-//! [`EnergyBalance`]: the account of energy along a motion, which judges its steps.
+//! [`EnergyBalance`]: the account of energy along a motion, which accepts or rejects its steps.
 //!
 //! ```text
-//! E + K + W = E_0        E elastic, K kinetic energy, W what damping took, E_0 the elastic energy of the start
+//! E + K + W = E_0        E elastic, K kinetic energy, W work of damping, E_0 the elastic energy at the start
 //! G ← max(0, G + Δ(E + K + W) − ε ΔW)        L ← max(0, L − Δ(E + K + W) − ε ΔW)
 //! M ← max(max K, M − ΔW/2)        G, L ≤ ε M + η E        after every step; ε = 0.05, η = 10⁻⁷
 //! ```
 //!
-//! G and L are what the motion has gained or lost by errors beyond a share ε of what damping took. They are cumulative sums, so a small gain
-//! in every step is found as well as a large one in a single step. Both are compared with the energy in motion M: it goes to and fro between K and
-//! E, and only damping takes it away. Half of ΔW is taken from it, so that a motion whose errors are below half of the tolerance comes off the limit
-//! again. E_0 would say little. The blow of an
-//! inflation has 10⁴ times the energy of a packing near jamming; an error that is small beside it can still tear the packing apart. The floor
-//! η E lies below the energy from which on Newton's method may finish: a long step may damp away what is left there.
+//! G and L are the energies gained or lost by errors, beyond a share ε of the work of damping. They are cumulative sums: a small
+//! gain in every step is detected as well as a large one in a single step. Both are compared with the energy in motion M. It is
+//! exchanged between K and E, and only damping removes it. Half of ΔW is subtracted, so that a motion with errors below half of
+//! the tolerance leaves the limit. E_0 would be too coarse: the initial energy of an inflation is 10⁴ times that of a packing near
+//! jamming, and a small relative error can still destroy the packing. The floor η E lies below the energy at which Newton's
+//! method may finish: a long step may remove the rest.
 //!
 //! # Source
 //! Page (1954), Biometrika 41, 100: cumulative sums that find a drift beneath fluctuations.
@@ -20,14 +20,14 @@ use crate::forces::totals::Totals;
 use crate::relax::energy_account::EnergyAccount;
 use crate::vector::larger;
 
-/// ε. Explicit steps of 0.9 of their bound leave 0.02 to 0.04 of the energy in motion unaccounted for while the front of a blow spreads, and less
-/// afterwards.
+/// ε. Explicit steps of 0.9 of their bound leave 0.02 to 0.04 of the energy in motion unaccounted for while the front of an
+/// inflation spreads, and less afterwards.
 const TOLERANCE: f64 = 0.05;
 
 /// η.
 const FLOOR: f64 = 1e-7;
 
-/// Rounding of energies, over what was added up \[1\].
+/// Relative rounding of summed energies \[1\].
 const ROUNDING: f64 = 1e-13;
 
 /// Energies of a motion at one moment.
@@ -35,11 +35,11 @@ const ROUNDING: f64 = 1e-13;
 pub(crate) struct Energies {
     /// E \[energy\].
     pub(crate) elastic: f64,
-    /// What the rounding of E is relative to \[energy\].
+    /// The scale of the rounding of E \[energy\].
     pub(crate) scale: f64,
     /// K \[energy\].
     pub(crate) kinetic: f64,
-    /// The largest K since the last check, where that is known \[energy\].
+    /// The largest K since the last check, where it is known \[energy\].
     pub(crate) peak: f64,
     /// W \[energy\].
     pub(crate) damped: f64,
@@ -77,7 +77,7 @@ impl EnergyBalance {
         EnergyBalance { start, now: start, gain: 0.0, loss: 0.0, moving: start.kinetic, imbalance: 0.0 }
     }
 
-    /// Takes steps that led to these energies into the account; false, and nothing changes, if they break the balance.
+    /// Adds steps that led to these energies. If they break the balance, returns false and changes nothing.
     pub(crate) fn accept(&mut self, next: Energies) -> bool {
         let damped = next.damped - self.now.damped;
         let defect = next.mechanical() - self.now.mechanical() + damped;
@@ -87,7 +87,7 @@ impl EnergyBalance {
             + ROUNDING * (self.start.scale + next.damped.abs());
         let after = |sum: f64, defect: f64| (sum + defect - TOLERANCE * damped.abs()).max(0.0);
         let (gain, loss) = (after(self.gain, defect), after(self.loss, -defect));
-        // NaN is refused.
+        // NaN is rejected.
         let accepted = defect.is_finite() && larger(gain, loss) <= limit;
         if accepted {
             (self.now, self.gain, self.loss, self.moving) = (next, gain, loss, moving);
@@ -96,11 +96,11 @@ impl EnergyBalance {
         accepted
     }
 
-    /// As [`EnergyBalance::accept`] for a motion without masses, which must go downhill; how fast is no matter, and the work of friction in a
-    /// long step is known roughly.
+    /// Like [`EnergyBalance::accept`], for a motion without masses. It must go downhill, at any rate. The work of friction in a long
+    /// step is known only roughly.
     #[cfg(feature = "linear")]
     pub(crate) fn accept_descent(&mut self, next: Energies) -> bool {
-        // NaN is refused.
+        // NaN is rejected.
         let accepted = next.elastic - self.now.elastic <= 10.0 * ROUNDING * larger(self.now.scale, next.scale);
         if accepted {
             self.imbalance += (next.mechanical() - self.now.mechanical() + next.damped - self.now.damped).abs();
@@ -109,7 +109,7 @@ impl EnergyBalance {
         accepted
     }
 
-    /// The account for a motion at whose end the elastic energy is `after` \[energy\].
+    /// The account of a motion that ends with the elastic energy `after` \[energy\].
     pub(crate) fn account(&self, after: f64) -> EnergyAccount {
         EnergyAccount {
             before: self.start.elastic,
@@ -133,7 +133,7 @@ mod tests {
     fn a_balance_broken_by_more_than_the_tolerance_is_refused_and_changes_nothing() {
         let mut balance = EnergyBalance::new(energies(10.0, 0.0, 0.0));
         assert!(balance.accept(energies(5.0, 4.0, 1.0)));
-        // A gain of 5 % of the kinetic energy and of what damping took is the most: 0.2 + 0.01.
+        // The largest gain is 5 % of the kinetic energy and of the work of damping: 0.2 + 0.01.
         assert!(!balance.accept(energies(5.0, 4.0, 1.0 + 0.22)));
         assert!(!balance.accept(energies(5.0, f64::NAN, 1.0)));
         assert!(!balance.accept(energies(4.7, 4.0, 1.0)));
@@ -152,7 +152,7 @@ mod tests {
             balance.accept(energies(1.0, 1.0 + 0.015 * step, 0.005 * step))
         });
         assert_eq!(accepted.count(), 2);
-        // Fluctuations of the same size are not.
+        // Fluctuations of the same size are accepted.
         let mut balance = EnergyBalance::new(energies(1.0, 1.0, 0.0));
         for step in 1..=1000 {
             let sign = if step % 2 == 0 { 1.0 } else { -1.0 };

@@ -1,13 +1,13 @@
-//! [`ExplicitStep`]: how long explicit steps of damped dynamics are, while contacts stiffen.
+//! [`ExplicitStep`]: the length of explicit steps of damped dynamics while contacts stiffen.
 //!
 //! ```text
 //! δ'_ij = δ_ij + max(0, −v_n) τ + max(0, −a_n) τ²/2        τ = M h: the time until the next check
 //! h = share × the bound on a stable step at overlaps δ'
 //! ```
 //!
-//! The inflation is a blow. While its front spreads, overlaps grow tenfold within a few steps, and contacts that do not exist yet
-//! become the stiffest of all. So the bound is taken where the disks are going to be. The number M of steps between two checks is
-//! halved where the step got much shorter, and doubled where it did not.
+//! While the front of an inflation spreads, overlaps grow tenfold within a few steps, and contacts that do not exist yet become the
+//! stiffest of all. So the bound is computed for the predicted overlaps. The number M of steps between two checks is halved if the
+//! step became much shorter, and doubled otherwise.
 
 use crate::law::damping::DampingLaw;
 use crate::law::pair_law::PairLaw;
@@ -19,8 +19,8 @@ const SHORTEST_INTERVAL: usize = 2;
 /// Most steps between two checks.
 const LONGEST_INTERVAL: usize = 50;
 
-/// Ratio of a step to the one before below which checks come twice as often. Where stiffness changes by less between two checks, the
-/// step stays within the margin that [`TimeStep`](crate::relax::TimeStep) leaves.
+/// Ratio of a step to the one before, below which checks come twice as often. If the stiffness changes by less between two checks,
+/// the step stays within the margin of [`TimeStep`](crate::relax::TimeStep).
 const STEADY: f64 = 0.9;
 
 /// Length of explicit steps.
@@ -50,13 +50,13 @@ impl ExplicitStep {
         self.share
     }
 
-    /// Steps from here on are shorter by this factor.
+    /// Shortens all further steps by this factor.
     pub(crate) fn shorten(&mut self, factor: f64) {
         self.share *= factor;
         (self.left, self.interval, self.time_step) = (0, SHORTEST_INTERVAL, self.time_step * factor);
     }
 
-    /// Steps from the next check on are longer by this factor, up to this share of the bound.
+    /// Lengthens the steps from the next check on by this factor, up to this share of the bound.
     pub(crate) fn lengthen(&mut self, factor: f64, most: f64) {
         self.share = (self.share * factor).min(most);
     }

@@ -1,4 +1,20 @@
 //! [`Motion`]: disks in damped motion, moved by velocity Verlet.
+//!
+//! ```text
+//! v_{n+1/2} = v_n + (h/2) a_n        u_{n+1} = u_n + h v_{n+1/2}
+//! a_{n+1} = F(u_{n+1}) − Γ(u_{n+1}) (v_n + h a_n)        v_{n+1} = v_{n+1/2} + (h/2) a_{n+1}      (masses 1)
+//! ```
+//!
+//! The velocity of the damping force is predicted to the end of the step. The scheme is then of second order with one evaluation
+//! of the forces a step, also where forces depend on velocities. With v_{n+1/2} in the damping force, as is usual, it would be of
+//! first order.
+//!
+//! A mode of stiffness λ_K and damping λ_Γ is stable for `h λ_Γ + h² λ_K / 4 < 1`. Beyond, the scheme multiplies it by less
+//! than −1 each step. [`Motion::stable_step`] takes the largest eigenvalues of the two matrices, bounded by Gershgorin's rows.
+//!
+//! # Source
+//! Groot, Warren (1997), J. Chem. Phys. 107, 4423 (the predicted velocity). The bound: the roots of the scheme's
+//! characteristic polynomial for one mode; asserted in the book.
 
 use crate::forces::assembly::Assembly;
 use crate::forces::damped::{add_damping, damped_forces};
@@ -12,7 +28,7 @@ use crate::vector::{Vector, difference, dot, larger};
 /// A packing in motion: disks of mass 1 under elastic and damping forces.
 #[derive(Debug, Clone)]
 pub struct Motion<const D: usize, L, C> {
-    /// Where the disks are; the elastic forces are those of its last evaluation, which a step is not.
+    /// Positions and elastic forces. The forces are those of the last evaluation; a step evaluates none.
     pub assembly: Assembly<D, L>,
     /// Velocities in working order; those of held disks stay 0 \[length / time\].
     pub velocities: Vec<Vector<D>>,
@@ -22,15 +38,15 @@ pub struct Motion<const D: usize, L, C> {
     damping_coefficient: Vec<f64>,
     /// Work of damping since the start \[energy\].
     pub dissipated: f64,
-    /// What is lost to damping now \[energy / time\].
+    /// Power of damping now \[energy / time\].
     dissipation: f64,
-    /// The largest kinetic energy since it was last asked for \[energy\].
+    /// The largest kinetic energy since the last call of `take_peak` \[energy\].
     peak: f64,
     row: Vec<f64>,
     before: Before<D>,
 }
 
-/// What [`Motion::take_back`] goes back to, beside the places of the disks.
+/// What [`Motion::take_back`] restores, beside the positions.
 #[derive(Debug, Clone, Default)]
 struct Before<const D: usize> {
     velocities: Vec<Vector<D>>,
@@ -48,7 +64,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         Ok(Self::of(Assembly::new(packing, *law)?, damping))
     }
 
-    /// A packing laid out already, at rest.
+    /// An assembled packing, at rest.
     pub fn of(mut assembly: Assembly<D, L>, damping: &C) -> Self {
         assembly.evaluate();
         let zero = vec![[0.0; D]; assembly.len()];
@@ -69,10 +85,10 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         motion
     }
 
-    /// A packing laid out already, whose mobile disks have these velocities, in working order.
+    /// An assembled packing whose mobile disks have these velocities, in working order.
     ///
     /// # Panics
-    /// If there is not one velocity a mobile disk.
+    /// If the number of velocities is not that of the mobile disks.
     pub fn moving(assembly: Assembly<D, L>, velocities: &[Vector<D>], damping: &C) -> Self {
         let mut motion = Self::of(assembly, damping);
         motion.velocities[..motion.assembly.mobile_count()].copy_from_slice(velocities);
@@ -92,7 +108,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         std::mem::take(&mut self.peak)
     }
 
-    /// Remembers where everything is, for [`Motion::take_back`].
+    /// Stores the present state, for [`Motion::take_back`].
     pub(super) fn remember(&mut self) {
         self.assembly.set_checkpoint();
         self.before.velocities.clone_from(&self.velocities);
@@ -100,7 +116,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         (self.before.dissipated, self.before.dissipation) = (self.dissipated, self.dissipation);
     }
 
-    /// Goes back to what was last remembered.
+    /// Restores the stored state.
     pub(super) fn take_back(&mut self) -> Result<(), PackingError> {
         self.assembly.restore()?;
         self.set_damping_coefficients();
@@ -141,11 +157,11 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         Ok(())
     }
 
-    /// Net forces where the disks are, of damping by the predicted velocities; what is lost to it is returned.
+    /// Computes the net forces, with damping by the predicted velocities. Returns the power of damping.
     fn accelerate(&mut self) -> f64 {
         let Motion { assembly, damping, damping_coefficient, predicted, accelerations, .. } = self;
         if assembly.law().has_sites() {
-            // Contacts and sites, then damping.
+            // Contacts and sites first, then damping.
             assembly.evaluate();
             accelerations.copy_from_slice(&assembly.forces);
             return add_damping(
@@ -172,14 +188,14 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         0.5 * products(v, v).speed_squared
     }
 
-    /// The longest step the bound allows: `h λ_Γ + h² λ_K / 4 = 1`, both λ by Gershgorin's rows \[time\].
+    /// The longest step within the bound: `h λ_Γ + h² λ_K / 4 = 1`, both λ by Gershgorin's rows \[time\].
     pub fn stable_step(&mut self) -> f64 {
         let stiffness = self.assembly.stiffness_bound(&mut self.row);
         let (law, coefficient) = (&self.damping, &self.damping_coefficient);
         let damping =
             self.assembly.row_bound(&mut self.row, Some(&|pair, overlap, _| law.damping(coefficient[pair], overlap)));
         if stiffness == 0.0 {
-            // No contact: as if one were pressed by a thousandth of a radius.
+            // Without a contact, the stiffness of one with an overlap of a thousandth of a radius.
             let (law, radius) = (self.assembly.law(), self.assembly.radii()[0]);
             let overlap = 1e-3 * radius;
             let bound = 2.0 * law.stiffness(law.force(law.coefficient(radius, radius), overlap), overlap);
@@ -188,12 +204,12 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         longest_stable(stiffness, damping)
     }
 
-    /// The longest step the bound allows while contacts are pressed as far as they can be within this time, by velocities and forces as
-    /// they are \[time\].
+    /// The longest step within the bound for the largest overlaps that contacts can reach within this time, with the present velocities
+    /// and forces \[time\].
     pub(crate) fn stable_step_within(&mut self, time: f64) -> f64 {
         let Motion { assembly, velocities, accelerations, damping, damping_coefficient, row, .. } = self;
         let (law, mobile) = (assembly.law(), assembly.mobile_count());
-        // Stiffness, then damping, of each disk.
+        // Stiffness of each disk, then damping of each disk.
         row.clear();
         row.resize(2 * assembly.len(), 0.0);
         let (stiffness, resistance) = row.split_at_mut(assembly.len());
@@ -243,8 +259,8 @@ mod tests {
     use crate::law::pair_law::Hookean;
     use crate::packing::Domain;
 
-    /// Two disks pressed together, Hookean with damping: the overlap is a damped oscillator,
-    /// δ'' = −2 k δ − 2 γ δ', so δ(t) = δ₀ e^(−γt) (cos ωt + (γ/ω) sin ωt) with ω² = 2k − γ².
+    /// Two overlapping Hookean disks with damping. The overlap is a damped oscillator, δ'' = −2 k δ − 2 γ δ'. So
+    /// δ(t) = δ₀ e^(−γt) (cos ωt + (γ/ω) sin ωt) with ω² = 2k − γ².
     fn overlap_error(step_count: usize) -> f64 {
         let (stiffness, rate, first, time) = (2e5, 100.0, 0.01, 1e-3);
         let packing =
@@ -263,7 +279,7 @@ mod tests {
 
     #[test]
     fn a_hookean_pair_is_a_damped_oscillator_to_second_order() {
-        // Halving the step divides the error by 4; what is left over is of relative order h ω = 0.02 at 32 steps.
+        // Halving the step divides the error by 4. The remainder is of relative order h ω = 0.02 at 32 steps.
         let errors = [overlap_error(32), overlap_error(64), overlap_error(128)];
         for pair in errors.windows(2) {
             let order = (pair[0] / pair[1]).log2();

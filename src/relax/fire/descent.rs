@@ -1,4 +1,4 @@
-//! The descent by FIRE: checks, restarts and steps in turn.
+//! The descent by FIRE: checks, restarts and steps.
 
 use std::time::Instant;
 

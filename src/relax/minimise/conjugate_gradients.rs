@@ -1,12 +1,12 @@
-//! Nonlinear conjugate gradients: each direction is the force, bent by the last direction.
+//! Nonlinear conjugate gradients: each direction is the force plus a multiple of the last direction.
 //!
 //! ```text
 //! s ← F + β s        u ← u + a s,  a where F·s ≈ 0        β = max(0, F·(F − F_old) / F_old²)
 //! ```
 //!
-//! On a quadratic energy the directions are conjugate and n of them reach the minimum of n coordinates. The first length
-//! tried along a direction is the one at which the slope would vanish if the energy were as curved along it as along the last.
-//! Where a direction does not lead down, or the last one was not convex, β = 0.
+//! On a quadratic energy the directions are conjugate, and n of them reach the minimum of n coordinates. The first trial length
+//! assumes the curvature of the energy along the last direction, and aims at zero slope. If a direction does not lead down, or
+//! the last one was not convex, β = 0.
 //!
 //! # Source
 //! Polak, Ribière (1969), Rev. Fr. Inform. Rech. Opér. 16, 35; β ≥ 0: Gilbert, Nocedal (1992), SIAM J. Optim. 2, 21.
@@ -17,7 +17,7 @@ use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::relax::column_operations::{combine, dot_product};
 use crate::relax::force_limit::ForceLimit;
-use crate::relax::minimise::line_descent::{Descent, Directions, Step, Turn};
+use crate::relax::minimise::line_descent::{Descent, Direction, DirectionRule, Step};
 use crate::relax::outcome::Outcome;
 use crate::relax::relaxer::Relaxer;
 use crate::relax::trace::Trace;
@@ -30,9 +30,9 @@ pub struct NonlinearConjugateGradients {
     pub limit: ForceLimit,
     /// Steps allowed; each takes one to three evaluations of the forces.
     pub step_limit: usize,
-    /// Longest way of a disk in one step over its radius \[1\]. Changes results far from a minimum.
+    /// Longest displacement of a disk in one step over its radius \[1\]. Changes results far from a minimum.
     pub largest_step: f64,
-    /// Slope along a direction over that at its start below which a point counts as the lowest \[1\]. Changes speed: 0.03 to
+    /// Slope along a direction, over the initial slope, below which a point counts as the lowest \[1\]. Changes speed: 0.03 to
     /// 0.1 take the fewest evaluations.
     pub flatness: f64,
 }
@@ -55,8 +55,8 @@ impl Relaxer for NonlinearConjugateGradients {
         law: &L,
         trace: &mut impl Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
-        let NonlinearConjugateGradients { limit, step_limit, largest_step, flatness: flat } = *self;
-        let descent = Descent { limit, step_limit, largest_step, flat };
+        let NonlinearConjugateGradients { limit, step_limit, largest_step, flatness } = *self;
+        let descent = Descent { limit, step_limit, largest_step, flatness };
         descent.relax(Conjugate { last: None }, packing, law, trace)
     }
 
@@ -65,7 +65,7 @@ impl Relaxer for NonlinearConjugateGradients {
     }
 }
 
-/// What the next direction takes from the last step.
+/// What the next direction needs from the last step.
 #[derive(Debug, Clone, Copy)]
 struct Last {
     /// β.
@@ -78,21 +78,21 @@ struct Conjugate {
     last: Option<Last>,
 }
 
-impl Directions for Conjugate {
+impl DirectionRule for Conjugate {
     fn learn(&mut self, step: &Step<'_>) {
         let [old, new] = step.forces;
         let bend = (dot_product(new, new) - dot_product(old, new)) / dot_product(old, old);
         let curvature = (step.slopes[0] - step.slopes[1]) / (step.length * dot_product(step.direction, step.direction));
-        // Written so that NaN forgets.
+        // The comparisons fail for NaN, which resets the directions.
         self.last = (bend > 0.0 && curvature > 0.0).then_some(Last { bend, curvature });
     }
 
-    fn turn(&mut self, forces: &[f64], direction: &mut [f64]) -> Option<Turn> {
+    fn next(&mut self, forces: &[f64], direction: &mut [f64]) -> Option<Direction> {
         let last = self.last?;
         combine(last.bend, direction, 1.0, forces);
         let slope = dot_product(forces, direction);
         let size = dot_product(direction, direction);
-        (slope > 0.0).then_some(Turn { slope, first: slope / (last.curvature * size) })
+        (slope > 0.0).then_some(Direction { slope, first: slope / (last.curvature * size) })
     }
 
     fn forget(&mut self) {

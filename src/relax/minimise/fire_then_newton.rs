@@ -1,9 +1,8 @@
-//! [`Fire`] until Newton pays, then [`Newton`](super::Newton).
+//! [`Fire`] far from the minimum, then [`Newton`](crate::relax::Newton).
 //!
-//! FIRE finds the way through contacts that open and close at the price of one force evaluation a step; Newton squares the
-//! residual once contacts stand. FIRE hands over at a residual of `hand_over`. If Newton does not get nearer, FIRE has the
-//! packing back and hands over at a tenth of that. When the factorisations are used up, or the factors do not fit in
-//! memory, FIRE finishes alone.
+//! FIRE follows contacts that open and close, at the price of one force evaluation a step. Newton squares the residual once the
+//! contacts stay the same. FIRE hands over at a residual of `hand_over`. If Newton does not come nearer, FIRE continues and hands
+//! over at a tenth of that. When the factorisations are used up, or the factors do not fit in memory, FIRE finishes alone.
 
 use std::time::Instant;
 
@@ -15,7 +14,7 @@ use crate::packing::{Packing, PackingError};
 use crate::relax::convergence::Monitor;
 use crate::relax::fire::settings::{Fire, Precision};
 use crate::relax::force_limit::ForceLimit;
-use crate::relax::minimise::newton_descent::{Descent, End, Patience, WATCH};
+use crate::relax::minimise::newton_descent::{End, NEWTON_SCHEDULE, NewtonDescent, Patience};
 use crate::relax::outcome::{Cost, Criterion, Outcome, Stop};
 use crate::relax::relaxer::Relaxer;
 use crate::relax::trace::{Look, Trace};
@@ -30,9 +29,9 @@ pub struct Staged {
     pub hand_over: f64,
     /// Steps of FIRE allowed.
     pub step_limit: usize,
-    /// Factorisations allowed; beyond, FIRE finishes.
+    /// Factorisations allowed. After them FIRE finishes.
     pub factorisation_limit: usize,
-    /// Longest way of a disk in one step of Newton over its radius \[1\].
+    /// Longest displacement of a disk in one step of Newton over its radius \[1\].
     pub largest_step: f64,
     /// Precision of FIRE's steps. Changes results where minima lie close together.
     #[serde(skip_serializing_if = "Precision::is_double")]
@@ -52,7 +51,7 @@ impl Default for Staged {
     }
 }
 
-/// Factorisations without the residual falling to a tenth after which FIRE has the packing back.
+/// Factorisations without a fall of the residual to a tenth after which FIRE continues.
 const PATIENCE: usize = 12;
 
 impl Relaxer for Staged {
@@ -93,7 +92,7 @@ impl Staged {
             let fire = Fire { limit, step_limit, precision: self.precision, ..Fire::default() };
             let (stop, part) = fire.run(assembly, &mut monitor, &mut later(trace, cost.step_count))?;
             cost = cost.plus(Cost { energies: monitor.energies(), ..part });
-            // An absolute limit may ask for less than what counts as no force.
+            // An absolute limit may lie below the threshold of no force.
             if matches!(
                 (stop, self.limit, last),
                 (Stop::Converged(Criterion::Unjammed), ForceLimit::Absolute(_), false)
@@ -104,9 +103,9 @@ impl Staged {
             if last || stop != Stop::Converged(Criterion::RelativeForce) {
                 return Ok((stop, cost, Monitor::new(self.limit, assembly)));
             }
-            let mut monitor = Monitor::with(self.limit, WATCH, assembly);
+            let mut monitor = Monitor::with(self.limit, NEWTON_SCHEDULE, assembly);
             let left = self.factorisation_limit.saturating_sub(cost.factorisation_count);
-            let mut descent = Descent::new(self.largest_step, left, Patience::Factorisations(PATIENCE));
+            let mut descent = NewtonDescent::new(self.largest_step, left, Patience::Factorisations(PATIENCE));
             let end = descent.run(assembly, &mut monitor, &mut later(trace, cost.step_count))?;
             cost = cost.plus(Cost { energies: monitor.energies(), ..descent.cost });
             match end {
@@ -119,7 +118,7 @@ impl Staged {
     }
 }
 
-/// A trace whose steps are counted from `first`.
+/// A trace whose step counts begin at `first`.
 fn later<T: Trace>(trace: &mut T, first: usize) -> Later<'_, T> {
     Later { trace, first }
 }

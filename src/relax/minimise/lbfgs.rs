@@ -1,10 +1,10 @@
-//! L-BFGS: Newton's direction with an inverse stiffness matrix made from the last few steps.
+//! L-BFGS: Newton's direction, with an inverse stiffness matrix estimated from the last few steps.
 //!
 //! ```text
 //! s = H F        H_(k+1) = (1 − ρ d yᵀ) H_k (1 − ρ y dᵀ) + ρ d dᵀ        d = a s,  y = F_old − F,  ρ = 1/(y·d)
 //! ```
 //!
-//! H is never formed: m pairs (d, y) are kept, and the product with F takes 4 m n multiplications from the matrix
+//! H is never formed. The method keeps m pairs (d, y). Its product with F takes 4 m n multiplications, from the initial matrix
 //! (y·d / y·y) 1 of the last pair (two-loop recursion). The whole step, a = 1, is tried first. A pair without positive
 //! curvature y·d is left out, so H stays positive definite and s points downhill.
 //!
@@ -18,7 +18,7 @@ use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::relax::column_operations::{combine, dot_product};
 use crate::relax::force_limit::ForceLimit;
-use crate::relax::minimise::line_descent::{Descent, Directions, Step, Turn};
+use crate::relax::minimise::line_descent::{Descent, Direction, DirectionRule, Step};
 use crate::relax::outcome::Outcome;
 use crate::relax::relaxer::Relaxer;
 use crate::relax::trace::Trace;
@@ -31,12 +31,12 @@ pub struct QuasiNewton {
     pub limit: ForceLimit,
     /// Steps allowed; most take one evaluation of the forces.
     pub step_limit: usize,
-    /// Longest way of a disk in one step over its radius \[1\]. Changes results far from a minimum.
+    /// Longest displacement of a disk in one step over its radius \[1\]. Changes results far from a minimum.
     pub largest_step: f64,
-    /// Steps remembered, m. Changes speed: more of them save a few evaluations and cost 4 m n multiplications a step.
+    /// Number of stored steps, m. Changes speed: more steps save a few evaluations and cost 4 m n multiplications a step.
     pub memory: usize,
-    /// Slope along a direction over that at its start below which a point will do \[1\]. Changes speed: with 0.9 most
-    /// directions take one evaluation, with 0.3 two and there are hardly fewer of them.
+    /// Slope along a direction, over the initial slope, below which a point is accepted \[1\]. Changes speed: with 0.9 most
+    /// directions take one evaluation. With 0.3 they take two, and there are hardly fewer directions.
     pub flatness: f64,
 }
 
@@ -53,9 +53,9 @@ impl Relaxer for QuasiNewton {
         law: &L,
         trace: &mut impl Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
-        let QuasiNewton { limit, step_limit, largest_step, memory, flatness: flat } = *self;
-        let descent = Descent { limit, step_limit, largest_step, flat };
-        descent.relax(Memory::new(memory), packing, law, trace)
+        let QuasiNewton { limit, step_limit, largest_step, memory, flatness } = *self;
+        let descent = Descent { limit, step_limit, largest_step, flatness };
+        descent.relax(StepMemory::new(memory), packing, law, trace)
     }
 
     fn passing(&self, limit: f64) -> Option<Self> {
@@ -63,38 +63,38 @@ impl Relaxer for QuasiNewton {
     }
 }
 
-/// One step remembered.
+/// One stored step.
 struct Pair {
-    way: Vec<f64>,
+    displacement: Vec<f64>,
     change: Vec<f64>,
     /// y·d.
     curvature: f64,
-    /// A number of the two-loop recursion.
+    /// Coefficient of the two-loop recursion.
     weight: f64,
 }
 
-/// The last steps, the newest at `newest`, in buffers made once: one more with each of the first steps.
-struct Memory {
+/// The last steps, the newest at `newest`. The buffers grow by one with each of the first steps.
+struct StepMemory {
     limit: usize,
     pairs: Vec<Pair>,
     newest: usize,
     count: usize,
-    /// y·d / y·y of the newest.
+    /// y·d / y·y of the newest step.
     scale: f64,
 }
 
-impl Memory {
+impl StepMemory {
     fn new(limit: usize) -> Self {
-        Memory { limit, pairs: Vec::new(), newest: 0, count: 0, scale: 0.0 }
+        StepMemory { limit, pairs: Vec::new(), newest: 0, count: 0, scale: 0.0 }
     }
 
-    /// Index of the pair learnt `age` steps before the newest.
+    /// Index of the pair stored `age` steps before the newest.
     fn index(&self, age: usize) -> usize {
         (self.newest + self.pairs.len() - age) % self.pairs.len()
     }
 }
 
-impl Directions for Memory {
+impl DirectionRule for StepMemory {
     fn learn(&mut self, step: &Step<'_>) {
         let curvature = step.length * (step.slopes[0] - step.slopes[1]);
         if curvature.is_nan() || curvature <= 0.0 || self.limit == 0 {
@@ -102,22 +102,22 @@ impl Directions for Memory {
         }
         if self.count == self.pairs.len() && self.count < self.limit {
             let column = || vec![0.0; step.direction.len()];
-            // All are in use, the oldest comes after the newest: the new one in between.
+            // All buffers are in use and the oldest comes after the newest: insert the new one between them.
             self.newest = if self.count == 0 { 0 } else { self.newest + 1 };
-            self.pairs.insert(self.newest, Pair { way: column(), change: column(), curvature, weight: 0.0 });
+            self.pairs.insert(self.newest, Pair { displacement: column(), change: column(), curvature, weight: 0.0 });
         } else {
             self.newest = (self.newest + 1) % self.pairs.len();
         }
         self.count = (self.count + 1).min(self.pairs.len());
         let pair = &mut self.pairs[self.newest];
-        combine(0.0, &mut pair.way, step.length, step.direction);
+        combine(0.0, &mut pair.displacement, step.length, step.direction);
         pair.change.copy_from_slice(step.forces[0]);
         combine(1.0, &mut pair.change, -1.0, step.forces[1]);
         pair.curvature = curvature;
         self.scale = curvature / dot_product(&pair.change, &pair.change);
     }
 
-    fn turn(&mut self, forces: &[f64], direction: &mut [f64]) -> Option<Turn> {
+    fn next(&mut self, forces: &[f64], direction: &mut [f64]) -> Option<Direction> {
         if self.count == 0 {
             return None;
         }
@@ -125,17 +125,17 @@ impl Directions for Memory {
         for age in 0..self.count {
             let index = self.index(age);
             let pair = &mut self.pairs[index];
-            pair.weight = dot_product(&pair.way, direction) / pair.curvature;
+            pair.weight = dot_product(&pair.displacement, direction) / pair.curvature;
             combine(1.0, direction, -pair.weight, &pair.change);
         }
         direction.iter_mut().for_each(|d| *d *= self.scale);
         for age in (0..self.count).rev() {
             let pair = &self.pairs[self.index(age)];
             let back = dot_product(&pair.change, direction) / pair.curvature;
-            combine(1.0, direction, pair.weight - back, &pair.way);
+            combine(1.0, direction, pair.weight - back, &pair.displacement);
         }
         let slope = dot_product(forces, direction);
-        (slope > 0.0).then_some(Turn { slope, first: 1.0 })
+        (slope > 0.0).then_some(Direction { slope, first: 1.0 })
     }
 
     fn forget(&mut self) {

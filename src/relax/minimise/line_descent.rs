@@ -1,4 +1,4 @@
-//! Going downhill along one direction after another: what nonlinear conjugate gradients and L-BFGS have in common.
+//! Descent along one direction after another, by line searches: the common part of nonlinear conjugate gradients and L-BFGS.
 
 use std::time::Instant;
 
@@ -6,19 +6,19 @@ use crate::forces::assembly::Assembly;
 use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::relax::column_operations::dot_product;
-use crate::relax::convergence::{Monitor, Watch};
+use crate::relax::convergence::{CheckSchedule, Monitor};
 use crate::relax::force_limit::ForceLimit;
 use crate::relax::minimise::line_search::{Line, search};
 use crate::relax::outcome::{Cost, Outcome, Stop};
 use crate::relax::trace::{Look, Trace};
 
-/// Steps between two looks at the residual, of one or two evaluations each.
-const LOOK_EVERY: usize = 10;
+/// Steps between two checks of the residual. A step has one or two evaluations.
+const CHECK_INTERVAL: usize = 10;
 
-/// As patient as FIRE, whose looks are 20 evaluations apart.
-const WATCH: Watch = Watch { refresh_every: 10, patience: 150, waits_for_rattlers: false };
+/// The same patience as for FIRE, whose checks are 20 evaluations apart.
+const SCHEDULE: CheckSchedule = CheckSchedule { refresh_every: 10, patience: 150, waits_for_rattlers: false };
 
-/// A step made: `u ← u + length · direction`.
+/// A completed step: `u ← u + length · direction`.
 #[derive(Debug, Clone, Copy)]
 pub struct Step<'a> {
     /// s.
@@ -31,64 +31,63 @@ pub struct Step<'a> {
     pub forces: [&'a [f64]; 2],
 }
 
-/// A rule that turns forces into directions.
-pub trait Directions {
+/// A rule that computes directions from forces.
+pub trait DirectionRule {
     /// Learns from a step.
     fn learn(&mut self, step: &Step<'_>);
 
-    /// The direction to go in next, written over the last one; the length to try first along it. None: nothing is known but the
-    /// forces, or the direction would not lead down.
-    fn turn(&mut self, forces: &[f64], direction: &mut [f64]) -> Option<Turn>;
+    /// Writes the next direction over the last one. None if only the forces are known, or if the direction would not lead down.
+    fn next(&mut self, forces: &[f64], direction: &mut [f64]) -> Option<Direction>;
 
-    /// Forgets all steps.
+    /// Discards all steps.
     fn forget(&mut self);
 }
 
 /// A direction of descent.
 #[derive(Debug, Clone, Copy)]
-pub struct Turn {
+pub struct Direction {
     /// F·s > 0.
     pub slope: f64,
     /// Length to try first.
     pub first: f64,
 }
 
-/// The settings both have.
+/// The common settings.
 #[derive(Debug, Clone, Copy)]
 pub struct Descent {
     /// When the packing counts as at rest.
     pub limit: ForceLimit,
     /// Steps allowed.
     pub step_limit: usize,
-    /// Longest way of a disk in one step over its radius \[1\].
+    /// Longest displacement of a disk in one step over its radius \[1\].
     pub largest_step: f64,
-    /// Slope over that at the start below which a point along a direction counts as the lowest \[1\].
-    pub flat: f64,
+    /// Slope over the initial slope below which a point along a direction counts as the lowest \[1\].
+    pub flatness: f64,
 }
 
 impl Descent {
-    /// Brings a packing to rest along these directions.
+    /// Brings a packing to rest along directions of this rule.
     ///
     /// # Errors
-    /// Only what makes forces undefined.
+    /// Only conditions that make forces undefined.
     pub fn relax<const D: usize, L: PairLaw>(
         &self,
-        mut directions: impl Directions,
+        mut rule: impl DirectionRule,
         packing: Packing<D>,
         law: &L,
         trace: &mut impl Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();
         let mut assembly = Assembly::new(&packing, *law)?;
-        let mut monitor = Monitor::with(self.limit, WATCH, &assembly);
-        let ended = self.run(&mut directions, &mut assembly, &mut monitor, trace)?;
+        let mut monitor = Monitor::with(self.limit, SCHEDULE, &assembly);
+        let ended = self.run(&mut rule, &mut assembly, &mut monitor, trace)?;
         Ok(monitor.outcome(assembly, packing, ended, start))
     }
 
-    /// Steps until the monitor stops it or the steps are used up.
+    /// Takes steps until the monitor stops it or the steps are used up.
     fn run<const D: usize, L: PairLaw>(
         &self,
-        directions: &mut impl Directions,
+        rule: &mut impl DirectionRule,
         assembly: &mut Assembly<D, L>,
         monitor: &mut Monitor,
         trace: &mut impl Trace,
@@ -103,9 +102,9 @@ impl Descent {
         loop {
             let forces = assembly.forces[..mobile].as_flattened();
             let force_squared = dot_product(forces, forces);
-            // A step may end at the minimum to rounding, as in a system of few disks; no need to wait for the next look then.
+            // In a system of few disks a step may end at the minimum to rounding: check at once.
             let enough = self.limit_of(monitor.residual().mean_contact_force);
-            let due = cost.step_count.is_multiple_of(LOOK_EVERY) || lost;
+            let due = cost.step_count.is_multiple_of(CHECK_INTERVAL) || lost;
             if due || force_squared.is_nan() || force_squared <= enough * enough {
                 let look = Look {
                     step_count: cost.step_count,
@@ -132,33 +131,33 @@ impl Descent {
                 return Ok((Stop::StepLimit, cost));
             }
             let forces = assembly.forces[..mobile].as_flattened();
-            let turned = directions.turn(forces, &mut direction);
-            let turn = turned.unwrap_or_else(|| {
-                directions.forget();
+            let found = rule.next(forces, &mut direction);
+            let next = found.unwrap_or_else(|| {
+                rule.forget();
                 direction.copy_from_slice(forces);
-                Turn { slope: dot_product(forces, forces), first: 1.0 / assembly.stiffness_bound(&mut row) }
+                Direction { slope: dot_product(forces, forces), first: 1.0 / assembly.stiffness_bound(&mut row) }
             });
             before.copy_from_slice(forces);
             let line = Line {
                 direction: &direction,
-                slope: turn.slope,
-                first: turn.first,
-                flat: self.flat,
+                slope: next.slope,
+                first: next.first,
+                flatness: self.flatness,
                 largest_step: self.largest_step,
             };
             let evaluation_count = &mut cost.force_evaluation_count;
-            // Written so that NaN leads nowhere.
-            let found = if turn.slope > 0.0 && turn.first > 0.0 {
+            // The comparisons fail for NaN, and no step is taken.
+            let reached = if next.slope > 0.0 && next.first > 0.0 {
                 search(assembly, &line, &totals, evaluation_count)?
             } else {
                 assembly.set_checkpoint();
                 None
             };
-            if let Some(reached) = found {
+            if let Some(reached) = reached {
                 totals = reached.totals;
-                let slopes = [turn.slope, reached.slope];
+                let slopes = [next.slope, reached.slope];
                 let forces = [&before[..], assembly.forces[..mobile].as_flattened()];
-                directions.learn(&Step { direction: &direction, length: reached.length, slopes, forces });
+                rule.learn(&Step { direction: &direction, length: reached.length, slopes, forces });
                 cost.step_count += 1;
                 if assembly.law().has_sites() && monitor.ran_away(assembly) {
                     return Ok((Stop::NoMinimum, cost));
@@ -167,9 +166,9 @@ impl Descent {
                 assembly.restore()?;
                 totals = assembly.evaluate_totals();
                 cost.force_evaluation_count += 1;
-                directions.forget();
-                // The forces themselves lead nowhere either.
-                lost = turned.is_none();
+                rule.forget();
+                // The forces themselves do not lead down either.
+                lost = found.is_none();
             }
         }
     }

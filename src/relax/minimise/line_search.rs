@@ -1,16 +1,15 @@
-//! How far to go along a direction, found by the work of the forces.
+//! The line search: how far to go along a direction, from the work of the forces.
 //!
 //! ```text
 //! φ(a) = E(u + a s)        −φ'(a) = F(u + a s)·s        sought: −φ'(a) ≈ 0
 //! ```
 //!
-//! The zero of the slope is sought by secants in a bracket. A point counts as low enough if the energy has fallen by a share
-//! of what the slope at the start promises; where that is less than energies can tell apart, it must not rise beyond their
-//! rounding, and the slope at the end decides. So the search works down to the rounding of the forces, which lies far below
-//! that of the energy.
+//! Secants in a bracket locate the zero of the slope. A point is low enough if the energy has fallen by a share of what the
+//! initial slope predicts. If that is below the rounding of energies, the energy must not rise by more than rounding, and the
+//! final slope decides. So the search works down to the rounding of the forces, which lies far below that of the energy.
 //!
 //! # Source
-//! Hager, Zhang (2005), SIAM J. Optim. 16, 170, §4 (Wolfe's conditions by slopes alone where energies cannot tell).
+//! Hager, Zhang (2005), SIAM J. Optim. 16, 170, §4 (Wolfe's conditions by slopes alone where energies cannot decide).
 
 use crate::forces::assembly::Assembly;
 use crate::forces::totals::Totals;
@@ -20,14 +19,14 @@ use crate::relax::column_operations::{combine, dot_product};
 use crate::relax::rounding::ENERGY_ROUNDING;
 use crate::vector::{dot, larger};
 
-/// Share of the promised fall of the energy that a step must bring. Source: Nocedal, Wright (2006), §3.1.
+/// Share of the predicted fall of the energy that a step must reach. Source: Nocedal, Wright (2006), §3.1.
 const SUFFICIENT: f64 = 1e-4;
 
-/// Points tried along one direction: a first one 10⁷ times too long is still brought back.
+/// Points tried along one direction. They suffice for a first one that is 10⁷ times too far.
 const TRIAL_LIMIT: usize = 10;
 
-/// Most by which a length is extrapolated at once \[1\].
-const GROWTH: f64 = 10.0;
+/// Largest factor of one extrapolation of the length \[1\].
+const EXTRAPOLATION: f64 = 10.0;
 
 /// A direction of descent.
 #[derive(Debug, Clone, Copy)]
@@ -36,15 +35,15 @@ pub struct Line<'a> {
     pub direction: &'a [f64],
     /// F·s at the start, positive.
     pub slope: f64,
-    /// Length tried first.
+    /// First trial length.
     pub first: f64,
-    /// Slope over that at the start below which a point counts as the lowest \[1\].
-    pub flat: f64,
-    /// Longest way of a disk over its radius \[1\].
+    /// Slope over the initial slope below which a point counts as the lowest \[1\].
+    pub flatness: f64,
+    /// Longest displacement of a disk over its radius \[1\].
     pub largest_step: f64,
 }
 
-/// A point found.
+/// The point that a search found.
 #[derive(Debug, Clone, Copy)]
 pub struct Reached<const D: usize> {
     /// a.
@@ -58,8 +57,8 @@ pub struct Reached<const D: usize> {
 /// Length and slope of a point.
 type End = (f64, f64);
 
-/// Goes along the line from the present state, which becomes the checkpoint. None if no point tried is low enough; the disks
-/// are anywhere then. Every evaluation is counted.
+/// Searches along the line from the present state, which becomes the checkpoint. None if no point tried is low enough; the positions
+/// are then undefined. Every evaluation is counted.
 pub fn search<const D: usize, L: PairLaw>(
     assembly: &mut Assembly<D, L>,
     line: &Line<'_>,
@@ -67,20 +66,20 @@ pub fn search<const D: usize, L: PairLaw>(
     evaluation_count: &mut usize,
 ) -> Result<Option<Reached<D>>, PackingError> {
     assembly.set_checkpoint();
-    let (way, longest) = reach(assembly, line);
+    let (distance, longest) = reach(assembly, line);
     let mut go = |assembly: &mut Assembly<D, L>, length: f64, away: bool| -> Result<Reached<D>, PackingError> {
         if away {
             assembly.restore()?;
         }
         let mobile = assembly.mobile_count();
         combine(1.0, assembly.displacements[..mobile].as_flattened_mut(), length, line.direction);
-        assembly.keep_listed(length * way)?;
+        assembly.keep_listed(length * distance)?;
         *evaluation_count += 1;
         let totals = assembly.evaluate_totals();
         let slope = dot_product(assembly.forces[..mobile].as_flattened(), line.direction);
         Ok(Reached { length, slope, totals })
     };
-    // The farthest point accepted before the lowest one, and the nearest one beyond.
+    // The farthest accepted point before the lowest one, and the nearest one beyond.
     let (mut low, mut high): (End, Option<End>) = ((0.0, line.slope), None);
     let mut length = line.first.min(longest);
     for trial in 1..=TRIAL_LIMIT {
@@ -88,9 +87,9 @@ pub fn search<const D: usize, L: PairLaw>(
         let enough = low_enough(before, &reached, line.slope);
         let end = (length, reached.slope);
         if enough {
-            let flat = reached.slope.abs() <= line.flat * line.slope;
+            let is_flat = reached.slope.abs() <= line.flatness * line.slope;
             let at_the_end = length >= longest && reached.slope > 0.0;
-            if flat || at_the_end || trial == TRIAL_LIMIT {
+            if is_flat || at_the_end || trial == TRIAL_LIMIT {
                 return Ok(Some(reached));
             }
         }
@@ -110,7 +109,7 @@ pub fn search<const D: usize, L: PairLaw>(
     Ok(low_enough(before, &reached, line.slope).then_some(reached))
 }
 
-/// The zero of the slope between two points, kept off both of them; the middle where the slopes do not tell.
+/// The zero of the slope between two points, at a distance from both. The middle if the slopes do not bracket it.
 fn between(low: End, high: End) -> f64 {
     let width = high.0 - low.0;
     let secant = low.0 + width * low.1 / (low.1 - high.1);
@@ -123,32 +122,31 @@ fn between(low: End, high: End) -> f64 {
     }
 }
 
-/// The zero of the slope beyond the second point, not too far.
+/// The zero of the slope beyond the second point, within a factor [`EXTRAPOLATION`].
 fn beyond(first: End, second: End) -> f64 {
     let fall = first.1 - second.1;
     let secant = if fall > 0.0 { second.0 + (second.0 - first.0) * second.1 / fall } else { f64::INFINITY };
-    secant.clamp(1.1 * second.0, GROWTH * second.0)
+    secant.clamp(1.1 * second.0, EXTRAPOLATION * second.0)
 }
 
-/// The longest way of a disk for length 1, and the length at which one has gone as far as a step may.
+/// The longest displacement of a disk for length 1, and the length at which the largest step is reached.
 fn reach<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, line: &Line<'_>) -> (f64, f64) {
-    let (mut way, mut share) = (0.0, 0.0);
+    let (mut distance, mut share) = (0.0, 0.0);
     let disks = line.direction.as_chunks::<D>().0;
     for (&step, radius) in disks.iter().zip(assembly.radii()) {
         let squared = dot(step, step);
-        way = larger(squared, way);
+        distance = larger(squared, distance);
         share = larger(squared / (radius * radius), share);
     }
-    (way.sqrt(), line.largest_step / share.sqrt())
+    (distance.sqrt(), line.largest_step / share.sqrt())
 }
 
 fn low_enough<const D: usize>(before: &Totals<D>, reached: &Reached<D>, slope: f64) -> bool {
     acceptance([before, &reached.totals], reached.length * slope, [slope, reached.slope], SUFFICIENT).is_some()
 }
 
-/// Whether a point is low enough: its energy has fallen by a share of what was promised, or as far as energies tell not risen
-/// while the slopes at both ends say that it fell. Then the fall over the promised one, 1/2 where energies cannot tell. NaN
-/// fails.
+/// The fall of the energy over the predicted one, if a point is low enough. Where energies cannot resolve it, the energy must not
+/// rise by more than rounding, the slopes at both ends decide, and the result is 1/2. NaN fails.
 pub fn acceptance<const D: usize>(
     [before, after]: [&Totals<D>; 2],
     promised: f64,
@@ -170,8 +168,8 @@ mod tests {
     use crate::law::pair_law::Hookean;
     use crate::packing::{Domain, Packing};
 
-    /// A disk pressed to the right by one at −0.9, one at 1.5 in its way and one at 3.3 beyond: at 2.4 the slope is zero too,
-    /// but the energy twice that of the start. It must come to rest where nothing touches it, between 0.1 and 0.5.
+    /// One disk at −0.9 presses the disk to the right. Further disks lie at 1.5 and 3.3. At 2.4 the slope is also zero, but the
+    /// energy is twice that of the start. The disk must come to rest where nothing touches it, between 0.1 and 0.5.
     #[test]
     fn a_flat_place_beyond_a_hump_is_refused() {
         let law = Hookean { stiffness: 1.0 };
@@ -185,7 +183,7 @@ mod tests {
         // F·s = k δ = 0.1, to the rounding of 0.9.
         let slope = dot_product(assembly.forces[..1].as_flattened(), &direction);
         assert!((slope - 0.1).abs() < 1e-15);
-        let line = Line { direction: &direction, slope, first: 2.4, flat: 0.1, largest_step: 100.0 };
+        let line = Line { direction: &direction, slope, first: 2.4, flatness: 0.1, largest_step: 100.0 };
         let mut evaluation_count = 0;
         let found = search(&mut assembly, &line, &before, &mut evaluation_count).expect("no coincidence");
         let reached = found.expect("it goes down");

@@ -1,37 +1,38 @@
-//! Steps of Newton's method on an assembly: a direction from the shifted Hessian, a point along it that is low enough, and what
-//! that says of the shift.
+//! Steps of Newton's method on an assembly: a direction from the shifted Hessian, a point along it that is low enough, and the
+//! update of the shift.
 
 use crate::forces::assembly::Assembly;
 use crate::forces::totals::Totals;
 use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
-use crate::relax::convergence::{Monitor, Watch};
+use crate::relax::convergence::{CheckSchedule, Monitor};
 use crate::relax::minimise::line_search::acceptance;
-use crate::relax::minimise::shifted_hessian::{Shifted, Solved};
+use crate::relax::minimise::shifted_hessian::{ShiftedHessian, Solved};
 use crate::relax::outcome::{Cost, Stop};
 use crate::relax::trace::{Look, Trace};
 use crate::vector::{Vector, difference, dot, larger, norm, scaled, sum};
 
-/// Share of the promised fall of the energy that a step must bring; Newton's own brings half near a minimum. Energies tell
+/// Share of the predicted fall of the energy that a step must reach; Newton's own step reaches half near a minimum. Energies decide
 /// where half of this share is above their rounding.
 const SUFFICIENT: f64 = 0.1;
 
-/// Lengths tried along one direction: each costs an evaluation of the forces, far less than a factorisation.
+/// Lengths tried along one direction. Each costs an evaluation of the forces, far less than a factorisation.
 const TRIAL_LIMIT: usize = 8;
 
-/// Slope along a direction over that at its start below which a point counts as the lowest \[1\].
-const FLAT: f64 = 0.3;
+/// Slope over the initial slope below which a point along a direction counts as the lowest \[1\].
+const FLATNESS: f64 = 0.3;
 
-/// The shift θ tried first where K itself is not positive definite, and below which it is dropped.
+/// First shift θ tried if K itself is not positive definite; smaller shifts are set to 0.
 const FIRST_SHIFT: f64 = 1e-2;
 
-/// Shift beyond which no step is sought: s is the force over 10⁸ times what holds the disk.
+/// Largest shift tried: s is then the force over 10⁸ times the stiffness that holds the disk.
 const LARGEST_SHIFT: f64 = 1e8;
 
-/// Looks at the rounding floor without progress after which it counts as reached: each is a factorisation.
-pub(crate) const WATCH: Watch = Watch { refresh_every: 1, patience: 4, waits_for_rattlers: true };
+/// Each check is a factorisation, so few of them without progress mean the rounding floor.
+pub(crate) const NEWTON_SCHEDULE: CheckSchedule =
+    CheckSchedule { refresh_every: 1, patience: 4, waits_for_rattlers: true };
 
-/// How long a descent goes on without getting nearer.
+/// How long a descent continues without progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Patience {
     /// To the limit of factorisations.
@@ -43,38 +44,38 @@ pub(crate) enum Patience {
 /// How a descent ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum End {
-    /// For good.
+    /// Finally.
     Stop(Stop),
-    /// Its patience is at an end.
+    /// Its patience is exhausted.
     Stalled,
 }
 
 /// Newton's method on an assembly.
-pub(crate) struct Descent {
+pub(crate) struct NewtonDescent {
     largest_step: f64,
     direction_limit: usize,
-    /// Solutions tried: factorisations, and steps of disks that touch nothing and have no matrix.
+    /// Solutions tried: factorisations, and steps of disks without contacts, which have no matrix.
     direction_count: usize,
     patience: Patience,
     /// θ of the last step.
     shift: f64,
-    /// Work so far.
+    /// Cost so far.
     pub cost: Cost,
 }
 
 /// A point reached along a direction.
 struct Reached<const D: usize> {
     totals: Totals<D>,
-    /// Fall of the energy over what the model says, where energies tell.
+    /// Fall of the energy over the prediction of the model, where energies can resolve it.
     ratio: f64,
 }
 
-impl Descent {
+impl NewtonDescent {
     pub(crate) fn new(largest_step: f64, direction_limit: usize, patience: Patience) -> Self {
-        Descent { largest_step, direction_limit, direction_count: 0, patience, shift: 0.0, cost: Cost::default() }
+        NewtonDescent { largest_step, direction_limit, direction_count: 0, patience, shift: 0.0, cost: Cost::default() }
     }
 
-    /// Steps until the monitor stops it or its patience is at an end.
+    /// Takes steps until the monitor stops it or its patience is exhausted.
     pub(crate) fn run<const D: usize, L: PairLaw>(
         &mut self,
         assembly: &mut Assembly<D, L>,
@@ -83,7 +84,7 @@ impl Descent {
     ) -> Result<End, PackingError> {
         let mobile = assembly.mobile_count();
         let mut totals = self.evaluate(assembly);
-        let mut shifted = Shifted::new(assembly);
+        let mut shifted = ShiftedHessian::new(assembly);
         let (mut best, mut best_count) = (f64::INFINITY, self.direction_count);
         loop {
             let look = Look {
@@ -121,11 +122,11 @@ impl Descent {
         }
     }
 
-    /// One step: directions with ever larger shifts until one leads down.
+    /// One step: directions with ever larger shifts, until one leads down.
     fn step<const D: usize, L: PairLaw>(
         &mut self,
         assembly: &mut Assembly<D, L>,
-        shifted: &mut Shifted<D>,
+        shifted: &mut ShiftedHessian<D>,
         (backbone, mean): (&[bool], f64),
         totals: &Totals<D>,
     ) -> Result<Result<Reached<D>, Stop>, PackingError> {
@@ -164,7 +165,7 @@ impl Descent {
         }
     }
 
-    /// Clips the steps of disks off the backbone; the share of the step that the others may take.
+    /// Clips the steps of disks off the backbone. Returns the share of the step that the others may take.
     fn bound<const D: usize, L: PairLaw>(
         &self,
         assembly: &Assembly<D, L>,
@@ -173,17 +174,17 @@ impl Descent {
     ) -> f64 {
         let mut share = 1.0f64;
         for (disk, step) in step.iter_mut().enumerate() {
-            let (way, longest) = (norm(*step), self.largest_step * assembly.radii()[disk]);
-            if way > longest {
+            let (distance, longest) = (norm(*step), self.largest_step * assembly.radii()[disk]);
+            if distance > longest {
                 if backbone[disk] {
-                    share = share.min(longest / way);
+                    share = share.min(longest / distance);
                 } else {
-                    *step = scaled(longest / way, *step);
+                    *step = scaled(longest / distance, *step);
                 }
             }
         }
         if assembly.law().on_site_coupling() == 0.0 && assembly.mobile_count() == assembly.len() {
-            // Nothing holds the packing as a whole: its centre of mass stays.
+            // Nothing holds the packing as a whole: its centre of mass stays in place.
             let total = step.iter().fold([0.0; D], |total, &s| sum(total, s));
             let mean = scaled(1.0 / step.len() as f64, total);
             step.iter_mut().for_each(|s| *s = difference(*s, mean));
@@ -191,10 +192,10 @@ impl Descent {
         share
     }
 
-    /// Looks for the lowest point along a direction from the checkpoint, to within `FLAT`; none if none leads down.
+    /// Searches for the lowest point along a direction from the checkpoint, to within `FLATNESS`. None if no point leads down.
     ///
-    /// Not [`search`](crate::relax::line_search::search), with which it shares what counts as low enough: the model gives the
-    /// length, so nothing is sought beyond the whole step, and the next point lies between a tenth and half of the bracket.
+    /// It shares the acceptance test with [`search`](crate::relax::minimise::line_search::search), but not its lengths. The model
+    /// gives the length, so nothing is tried beyond the whole step. The next point lies between a tenth and half of the bracket.
     fn search<const D: usize, L: PairLaw>(
         &mut self,
         assembly: &mut Assembly<D, L>,
@@ -206,17 +207,17 @@ impl Descent {
         if slope.is_nan() || slope <= 0.0 {
             return Ok(None);
         }
-        // Length and slope of the farthest point accepted before the lowest one, and of the nearest one beyond.
+        // Length and slope of the farthest accepted point before the lowest one, and of the nearest one beyond.
         let (mut low, mut high) = ((0.0, slope), (f64::INFINITY, f64::NAN));
         let mut length = longest;
         for trial in 1..=TRIAL_LIMIT {
             let (reached, end_slope) = self.go(assembly, step, length)?;
             let ratio = acceptance([totals, &reached], length * slope, [slope, end_slope], SUFFICIENT);
             if let Some(ratio) = ratio {
-                // Model: the slope falls evenly, to nothing at length 1.
+                // Model: the slope falls linearly, to zero at length 1.
                 let found = Reached { totals: reached, ratio: ratio / (1.0 - 0.5 * length) };
-                let flat = end_slope.abs() <= FLAT * slope;
-                if flat || length >= longest || trial == TRIAL_LIMIT {
+                let is_flat = end_slope.abs() <= FLATNESS * slope;
+                if is_flat || length >= longest || trial == TRIAL_LIMIT {
                     return Ok(Some(found));
                 }
             }
@@ -245,12 +246,12 @@ impl Descent {
         length: f64,
     ) -> Result<(Totals<D>, f64), PackingError> {
         assembly.restore()?;
-        let mut way = 0.0;
+        let mut distance = 0.0;
         for (u, &s) in assembly.displacements.iter_mut().zip(step) {
             *u = sum(*u, scaled(length, s));
-            way = larger(dot(s, s), way);
+            distance = larger(dot(s, s), distance);
         }
-        assembly.keep_listed(length * way.sqrt())?;
+        assembly.keep_listed(length * distance.sqrt())?;
         let reached = self.evaluate(assembly);
         Ok((reached, along(&assembly.forces, step)))
     }

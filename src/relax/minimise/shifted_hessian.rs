@@ -1,19 +1,19 @@
-//! The Newton step of a packing: its Hessian with a shift that makes it positive definite, factorised and solved.
+//! The Newton step of a packing: the Hessian with a shift that makes it positive definite, its factors and the solution.
 //!
 //! ```text
 //! (K' + S) s = F        S_ii = θ p_i + ε k_i on the backbone,  θ p_i + (η + θ) k_i off it
 //! p_i = Σ_j 2 F/r (+ Γ if positive)        k_i = Σ_j 2 F'        a contact with a held disk counts once
 //! ```
 //!
-//! K' is the Hessian, but for contacts of disks off the backbone. At rest those carry no force. Their forces grow as
-//! δ^(α−1), so Newton's own step would leave (1 − 1/(α−1)) of such an overlap for ever, a third for Hertzian contacts; with
-//! the secant stiffness F/δ for F', and no prestress, it is gone at once.
+//! K' is the Hessian, except for contacts of disks off the backbone. At rest these carry no force. Their forces grow as
+//! δ^(α−1), so Newton's own step would leave (1 − 1/(α−1)) of such an overlap, a third for Hertzian contacts. With the secant
+//! stiffness F/δ for F', and without prestress, one step removes it.
 //!
-//! The only negative parts of K' are the prestress −F/r across contacts and −Γ of sites, and p_i are Gershgorin's rows of
-//! them: with θ = 1 the matrix is positive definite whatever the packing (to the change of r since the anchors). So θ, from
-//! 0 upwards, is the whole of the globalisation, and it has no unit. ε k_i holds what nothing else holds, such as the
-//! translations of a periodic box; (η + θ) k_i a rattler along directions in which none of its contacts does, so that it does
-//! not run into its neighbours. No entry of S is below 10⁻¹² of the largest k_i.
+//! The only negative parts of K' are the prestress −F/r across contacts and −Γ of sites. The p_i are Gershgorin's rows of
+//! them. With θ = 1 the matrix is positive definite for every packing (to the change of r since the anchors). So θ ≥ 0 alone
+//! globalises the method, and it has no unit. ε k_i fixes motions without stiffness, such as the translations of a periodic box.
+//! (η + θ) k_i holds a rattler along directions without contact stiffness, so that it does not run into its neighbours. No entry
+//! of S is below 10⁻¹² of the largest k_i.
 
 use crate::forces::assembly::Assembly;
 use crate::forces::stiffness_bound::stiffness_rows;
@@ -27,26 +27,26 @@ use crate::vector::{Vector, larger, norm, scaled};
 const GROUND: f64 = 1e-10;
 
 /// Largest η: about what remains of the overlap of a rattler after a step. η is the net force of the rattler over the mean
-/// contact force, at most this: a rattler that is almost free has little way to go, however steep the wedge it leaves.
+/// contact force, but at most this. An almost free rattler needs only a short displacement, even in a steep wedge.
 const OFF_BACKBONE: f64 = 1e-4;
 
-/// Least diagonal added over the largest k_i: a rattler may have so little stiffness left that its pivots count as those of a
-/// singular matrix (10⁻¹⁴). A hundred times above that, and below it a rattler's force is below 10⁻²⁴ of the others.
+/// Smallest diagonal added, over the largest k_i. The pivots of a rattler with little stiffness may count as those of a singular
+/// matrix (10⁻¹⁴). This is a hundred times above that. Below it, the force of a rattler is below 10⁻²⁴ of the others.
 const LEAST: f64 = 1e-12;
 
-/// What became of a factorisation.
+/// The result of a factorisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Solved {
     /// There is a step.
     Step,
-    /// The matrix is not positive definite, or not to rounding.
+    /// The matrix is not positive definite to rounding.
     Indefinite,
     /// Its factors do not fit in memory.
     OutOfMemory,
 }
 
-/// The shifted Hessian; its buffers and, while entries stand where they stood, its analysis are kept.
-pub struct Shifted<const D: usize> {
+/// The shifted Hessian. Its buffers are kept, and its analysis as long as the pattern of entries stays the same.
+pub struct ShiftedHessian<const D: usize> {
     hessian: Hessian<D>,
     matrix: SymmetricMatrix,
     analysis: Option<Analysis>,
@@ -60,10 +60,10 @@ pub struct Shifted<const D: usize> {
     pub step: Vec<Vector<D>>,
 }
 
-impl<const D: usize> Shifted<D> {
-    /// Buffers for an assembly; [`Shifted::update`] fills them.
+impl<const D: usize> ShiftedHessian<D> {
+    /// Buffers for an assembly; [`ShiftedHessian::update`] fills them.
     pub fn new<L: PairLaw>(assembly: &Assembly<D, L>) -> Self {
-        Shifted {
+        ShiftedHessian {
             hessian: Hessian::of(assembly, Members::InContact, Prestress::Included),
             matrix: SymmetricMatrix::default(),
             analysis: None,
@@ -76,7 +76,7 @@ impl<const D: usize> Shifted<D> {
         }
     }
 
-    /// Takes the Hessian at the present displacements.
+    /// Updates the Hessian at the present displacements.
     pub fn update<L: PairLaw>(&mut self, assembly: &Assembly<D, L>, backbone: &[bool]) {
         let power = assembly.law().exponent() - 1.0;
         let weights = |contact: &StiffContact| {

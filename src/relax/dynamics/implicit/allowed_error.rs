@@ -1,26 +1,26 @@
-//! [`AllowedError`]: what error a step of a motion may have.
+//! [`AllowedError`]: the error that a step of a motion may have.
 
 use crate::law::damping::DampingLaw;
 use crate::law::pair_law::PairLaw;
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
 use crate::vector::larger;
 
-/// Error allowed off the backbone over that on it. Rattlers fly and hit; where they hit matters little to the backbone, but an
-/// error there is an overlap, and so energy.
+/// Allowed error off the backbone over that on it. Where rattlers hit matters little to the backbone. But an error there is an
+/// overlap, and so energy.
 const OFF_BACKBONE: f64 = 3.0;
 
-/// What error a step may have.
-pub(crate) struct Allowed<'a> {
+/// The error that a step may have.
+pub(crate) struct AllowedError<'a> {
     /// Mean overlap \[length\].
     pub(crate) overlap: f64,
-    /// Error allowed over that.
+    /// Allowed error over the mean overlap.
     pub(crate) tolerance: f64,
-    /// See [`Monitor::backbone`].
+    /// The disks of the backbone, in working order.
     pub(crate) backbone: &'a [bool],
 }
 
-impl Allowed<'_> {
-    /// Largest error of a disk in the last step over what is allowed \[1\]; NaN if one is.
+impl AllowedError<'_> {
+    /// Largest error of a disk in the last step over the allowed one \[1\]; NaN if an error is NaN.
     pub(crate) fn share<const D: usize, L: PairLaw, C: DampingLaw>(
         &self,
         motion: &ImplicitMotion<D, L, C>,
@@ -30,7 +30,7 @@ impl Allowed<'_> {
         (0..motion.assembly.mobile_count()).map(of_disk).fold(0.0, |most, error| larger(error, most))
     }
 
-    /// What an error of a disk \[length\] is over the one allowed is this times it.
+    /// The ratio of an error to the allowed one is this times the error \[1 / length\].
     pub(crate) fn weight(&self, disk: usize) -> f64 {
         (if self.backbone[disk] { 1.0 } else { 1.0 / OFF_BACKBONE }) / (self.tolerance * self.overlap)
     }

@@ -1,4 +1,4 @@
-//! Stretches of explicit steps, by velocity Verlet.
+//! Phases of explicit steps, by velocity Verlet.
 
 use crate::forces::totals::Totals;
 use crate::law::damping::DampingLaw;
@@ -7,14 +7,14 @@ use crate::packing::PackingError;
 use crate::relax::dynamics::energy_balance::Energies;
 use crate::relax::dynamics::energy_balance::EnergyBalance;
 use crate::relax::dynamics::explicit_step::ExplicitStep;
-use crate::relax::dynamics::implicit::method_selection::Pace;
+use crate::relax::dynamics::implicit::method_selection::MethodSelection;
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
 use crate::relax::dynamics::verlet::Motion;
 use crate::relax::outcome::{Cost, Stop};
 use crate::vector::scaled;
 
-/// A stretch of explicit steps that has been tried: nothing of the motion it began from has changed.
-pub(crate) struct Stretch<const D: usize, L, C> {
+/// A trial phase of explicit steps. The motion it began from is unchanged.
+pub(crate) struct ExplicitPhase<const D: usize, L, C> {
     motion: Motion<D, L, C>,
     totals: Totals<D>,
     time: f64,
@@ -22,7 +22,7 @@ pub(crate) struct Stretch<const D: usize, L, C> {
     peak: f64,
 }
 
-impl<const D: usize, L: PairLaw, C: DampingLaw> Stretch<D, L, C> {
+impl<const D: usize, L: PairLaw, C: DampingLaw> ExplicitPhase<D, L, C> {
     /// Energies at its end.
     pub(crate) fn energies(&self) -> Energies {
         Energies::new(&self.totals, self.motion.kinetic_energy(), self.dissipated).with_peak(self.peak)
@@ -30,15 +30,15 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Stretch<D, L, C> {
 }
 
 impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
-    /// So many explicit steps of damped dynamics from here.
+    /// Tries this many explicit steps of damped dynamics.
     ///
     /// # Errors
     /// Two disks with the same centre.
-    pub(crate) fn try_explicitly(
+    pub(crate) fn try_explicit_phase(
         &mut self,
         count: usize,
         step: &mut ExplicitStep,
-    ) -> Result<Stretch<D, L, C>, PackingError> {
+    ) -> Result<ExplicitPhase<D, L, C>, PackingError> {
         let mut motion = Motion::moving(self.assembly.clone(), &self.velocities, &self.damping);
         let mut time = self.time;
         for _ in 0..count {
@@ -49,13 +49,12 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         self.work.evaluation_count += count + 1;
         let totals = motion.assembly.evaluate_totals();
         let (dissipated, peak) = (self.dissipated + motion.dissipated, motion.take_peak());
-        Ok(Stretch { totals, time, dissipated, peak, motion })
+        Ok(ExplicitPhase { totals, time, dissipated, peak, motion })
     }
 
-    /// The motion goes on from the end of a stretch. `ahead` is the length of the step that is to follow, which looks out for contacts
-    /// that far \[time\].
-    pub(crate) fn accept(&mut self, stretch: Stretch<D, L, C>, ahead: f64) -> Totals<D> {
-        let Stretch { motion, time, dissipated, .. } = stretch;
+    /// Continues from the end of a phase. `ahead` is the length of the next step, over which contacts may close \[time\].
+    pub(crate) fn accept_phase(&mut self, phase: ExplicitPhase<D, L, C>, ahead: f64) -> Totals<D> {
+        let ExplicitPhase { motion, time, dissipated, .. } = phase;
         (self.time, self.dissipated) = (time, dissipated);
         self.velocities.copy_from_slice(&motion.velocities[..self.assembly.mobile_count()]);
         self.assembly = motion.assembly;
@@ -67,33 +66,33 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         self.evaluate()
     }
 
-    /// The longest stable explicit step, as [`Motion::stable_step`].
+    /// The longest stable explicit step, see [`Motion::stable_step`].
     pub(crate) fn stable_step(&mut self) -> f64 {
         self.work.evaluation_count += 1;
         Motion::of(self.assembly.clone(), &self.damping).stable_step()
     }
 }
 
-/// Verlet's steps, as many as [`Pace`] says; `time_step` is that of the implicit one to try after it.
-pub(crate) fn explicit<const D: usize, L: PairLaw, C: DampingLaw>(
+/// Takes the explicit steps that [`MethodSelection`] asks for. `time_step` becomes that of the implicit step to try next.
+pub(crate) fn explicit_phase<const D: usize, L: PairLaw, C: DampingLaw>(
     motion: &mut ImplicitMotion<D, L, C>,
-    pace: &mut Pace,
+    selection: &mut MethodSelection,
     time_step: &mut f64,
     (cost, balance): (&mut Cost, &mut EnergyBalance),
 ) -> Result<Result<Totals<D>, Stop>, PackingError> {
     loop {
-        let count = pace.next_stretch();
-        let mut control = pace.control.clone();
-        let stretch = motion.try_explicitly(count, &mut control)?;
+        let count = selection.next_phase();
+        let mut control = selection.control.clone();
+        let phase = motion.try_explicit_phase(count, &mut control)?;
         cost.explicit_count += count;
-        if balance.accept(stretch.energies()) {
-            pace.control = control;
-            pace.kept();
-            *time_step = pace.tried();
-            return Ok(Ok(motion.accept(stretch, *time_step)));
+        if balance.accept(phase.energies()) {
+            selection.control = control;
+            selection.after_balanced_phase();
+            *time_step = selection.trial_step();
+            return Ok(Ok(motion.accept_phase(phase, *time_step)));
         }
         cost.rejected_count += 1;
-        if !pace.shorten() {
+        if !selection.shorten() {
             return Ok(Err(Stop::Unstable));
         }
     }

@@ -1,9 +1,9 @@
-//! [`Finishing`]: when the end of a motion is left to Newton's method.
+//! [`Finishing`]: when Newton's method finishes a motion.
 //!
-//! Newton's method finds a minimum from almost anywhere; the question is whether it is the one the motion leads to. It is tried once the
-//! residual and the kinetic energy of the backbone are small. Its minimum is taken at once if every disk of the backbone is nearer to
-//! it than a tenth of an overlap. Otherwise the motion goes on until its kinetic energy has fallen to a quarter, and the minimum is
-//! taken if Newton's method leads to it again. Rattlers fly on for ever; their energy does not count.
+//! Newton's method finds a minimum from almost anywhere; it need not be the one that the motion leads to. It is tried once the
+//! residual and the kinetic energy of the backbone are small. Its minimum is accepted at once if every disk of the backbone is
+//! nearer to it than a tenth of an overlap. Otherwise the motion continues until its kinetic energy has fallen to a quarter. The
+//! minimum is accepted if Newton's method finds it again. Rattlers fly for ever; their energy does not count.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::convergence::Monitor;
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
-use crate::relax::minimise::newton_descent::{Descent, End, Patience};
+use crate::relax::minimise::newton_descent::{End, NewtonDescent, Patience};
 use crate::relax::outcome::{Cost, Stop};
 use crate::relax::trace::{Look, Trace};
 use crate::vector::{Vector, difference, larger, norm};
@@ -23,42 +23,42 @@ use crate::vector::{Vector, difference, larger, norm};
 pub enum Finish {
     /// By its own steps.
     Motion,
-    /// By [`Newton`](crate::relax::Newton) from this relative residual r on \[1\], once the backbone's kinetic energy is r² of the elastic one.
-    /// Its minimum is taken if it is nearer than a tenth of an overlap, or if it is found again after the kinetic energy has fallen to
-    /// a quarter; until then the motion goes on from where it was.
+    /// By [`Newton`](crate::relax::Newton) from this relative residual r on \[1\], once the backbone's kinetic energy is r² of the
+    /// elastic one. Its minimum is accepted if it is nearer than a tenth of an overlap. It is also accepted if it is found again after
+    /// the kinetic energy has fallen to a quarter. Until then the motion continues.
     Newton(f64),
 }
 
 impl Default for Finish {
-    /// From 10⁻² on. Nine viscoelastic motions of 5548 disks (p = 0.05 to 1) end in the same minimum, each, when Newton's method is tried from
-    /// 3·10⁻², 10⁻² or 10⁻³ on; the last takes two to four times the evaluations.
+    /// From 10⁻² on. Nine viscoelastic motions of 5548 disks (p = 0.05 to 1) were finished by Newton's method from 3·10⁻², 10⁻² or
+    /// 10⁻³ on. Each ends in the same minimum; the last takes two to four times the evaluations.
     fn default() -> Self {
         Finish::Newton(1e-2)
     }
 }
 
-/// Way of a disk of the backbone to the minimum over an overlap, up to which there is no doubt \[1\].
+/// Distance of a backbone disk from the minimum, over an overlap, up to which the minimum is certain \[1\].
 const NEAR: f64 = 0.1;
 
-/// Distance of two minima over an overlap, up to which they are one \[1\]. Newton's method leaves 10⁻⁸ of an overlap in a stiff
-/// direction; the softest are some 10⁴ times softer.
+/// Distance of two minima over an overlap up to which they are the same \[1\]. Newton's method leaves 10⁻⁸ of an overlap in a
+/// stiff direction; the softest are some 10⁴ times softer.
 const SAME: f64 = 1e-3;
 
-/// Kinetic energy over that at the last trial from which on the next is made; for gradient flow the residual.
+/// Ratio of the kinetic energy to that at the last trial at which the next trial is made; for gradient flow, of the residual.
 const NEXT_KINETIC: f64 = 0.25;
 const NEXT_RESIDUAL: f64 = 0.1;
 
-/// Factorisations in which Newton must bring the residual down to a tenth.
+/// Factorisations in which Newton must reduce the residual to a tenth.
 const PATIENCE: usize = 12;
 
-/// Longest way of a disk in one of Newton's steps over its radius \[1\], as is [`Newton`](crate::relax::Newton)'s default, but never more than
-/// an overlap.
+/// Longest displacement of a disk in one of Newton's steps over its radius \[1\]: the default of [`Newton`](crate::relax::Newton), but
+/// at most an overlap.
 const LONGEST_STEP: f64 = 0.1;
 
-/// Newton's factorisations at most.
+/// Largest number of Newton's factorisations.
 const FACTORISATION_LIMIT: usize = 100;
 
-/// Shows nothing of a trial, which may come to nothing, but its last check to who asks.
+/// A trace that hides a trial, which may be rejected, and keeps its last check.
 struct Unseen<'a, T> {
     trace: &'a mut T,
     last: Option<Look>,
@@ -76,31 +76,31 @@ impl<T: Trace> Trace for Unseen<'_, T> {
     }
 }
 
-/// Where a motion stands.
+/// The present state of a motion.
 pub(crate) struct Standing {
     /// Relative residual \[1\].
     pub(crate) residual: f64,
     /// Kinetic energy of the backbone \[energy\].
     pub(crate) kinetic: f64,
-    /// What energies are compared with \[energy\].
+    /// The scale of energies \[energy\].
     pub(crate) scale: f64,
     /// A typical overlap \[length\].
     pub(crate) overlap: f64,
 }
 
-/// Watches for the moment at which Newton's method can finish.
+/// Decides when Newton's method can finish.
 pub(crate) struct Finishing<const D: usize> {
-    /// Residual and kinetic energy from which on it is tried; the latter infinite before the first trial.
+    /// Residual and kinetic energy below which it is tried; the latter is infinite before the first trial.
     residual: f64,
     kinetic: f64,
-    /// (K/E)^(1/2) from which on it is tried.
+    /// (K/E)^(1/2) below which it is tried.
     hand_over: f64,
-    /// The minimum of the last trial, where each disk is.
+    /// The minimum of the last trial: the positions of the disks.
     minimum: Option<Vec<Vector<D>>>,
 }
 
 impl<const D: usize> Finishing<D> {
-    /// From this relative residual on, and K ≤ `hand_over`² E; never from 0.
+    /// Below this relative residual and K ≤ `hand_over`² E; never if 0.
     pub(crate) fn from(hand_over: f64) -> Self {
         Finishing { residual: hand_over, kinetic: f64::INFINITY, hand_over, minimum: None }
     }
@@ -111,7 +111,7 @@ impl<const D: usize> Finishing<D> {
         at.residual <= self.residual && at.kinetic <= slow.min(self.kinetic)
     }
 
-    /// Tries Newton's method. None if it is not sure yet where the motion leads: everything is as before then.
+    /// Tries Newton's method. None, and nothing changes, if the minimum of the motion is not certain yet.
     ///
     /// # Errors
     /// Two disks with the same centre.
@@ -126,7 +126,7 @@ impl<const D: usize> Finishing<D> {
         let before = motion.assembly.clone();
         let smallest = before.radii().iter().copied().fold(f64::INFINITY, f64::min);
         let longest = LONGEST_STEP.min(at.overlap / smallest);
-        let mut descent = Descent::new(longest, FACTORISATION_LIMIT, Patience::Factorisations(PATIENCE));
+        let mut descent = NewtonDescent::new(longest, FACTORISATION_LIMIT, Patience::Factorisations(PATIENCE));
         let mut unseen = Unseen { trace, last: None };
         let end = descent.run(&mut motion.assembly, monitor, &mut unseen)?;
         let last = unseen.last;

@@ -1,8 +1,8 @@
-//! [`Inertia`]: what resists a motion; [`Stepped`] and [`Work`]: what its steps come to and cost.
+//! [`Inertia`]: what resists a motion; [`Stepped`] and [`Work`]: the results and the cost of its steps.
 
 use crate::forces::totals::Totals;
 
-/// What resists motion beside the contacts.
+/// What resists motion, beside the contacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Inertia {
     /// Masses 1, no friction: damped dynamics.
@@ -21,21 +21,20 @@ impl Inertia {
     }
 }
 
-/// What a step came to.
+/// The result of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stepped<const D: usize> {
-    /// The disks are where the step ends.
+    /// The disks are at the end of the step.
     Moved(Totals<D>),
-    /// The factors of its matrix do not fit in memory; nothing has moved.
+    /// The factors of its matrix do not fit in memory. Nothing has moved.
     OutOfMemory,
-    /// The matrix is not positive definite: the step is so long that it would pass over a motion that grows, away from a
-    /// saddle; nothing has moved.
+    /// The matrix is not positive definite: so long a step would miss a growing motion away from a saddle. Nothing has moved.
     Indefinite,
-    /// A disk would go farther than the smallest radius: to be taken back.
+    /// A disk would move farther than the smallest radius. The step must be taken back.
     TooFar,
 }
 
-/// Work of a motion so far.
+/// Cost of a motion so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Work {
     /// Evaluations of forces and damping.
@@ -44,6 +43,6 @@ pub struct Work {
     pub factorisation_count: usize,
     /// Iterations of conjugate gradients.
     pub iteration_count: usize,
-    /// Steps over whose start the set of contacts had changed since the start of the step before.
+    /// Steps at whose start the set of contacts differs from that at the start of the step before.
     pub contact_change_count: usize,
 }

@@ -1,4 +1,4 @@
-//! [`Integration`]: a motion from its start to rest, step by step, each as long as its error allows.
+//! [`Integration`]: a motion from its start to rest, in steps as long as their errors allow.
 
 use std::time::Instant;
 
@@ -11,22 +11,22 @@ use crate::packing::{Packing, PackingError};
 use crate::relax::convergence::Monitor;
 use crate::relax::dynamics::damped::NetForce;
 use crate::relax::dynamics::energy_balance::{Energies, EnergyBalance};
-use crate::relax::dynamics::implicit::allowed_error::Allowed;
-use crate::relax::dynamics::implicit::explicit_phase;
+use crate::relax::dynamics::implicit::allowed_error::AllowedError;
+use crate::relax::dynamics::implicit::explicit_phase::explicit_phase;
 use crate::relax::dynamics::implicit::finish::{Finish, Finishing, Standing};
 use crate::relax::dynamics::implicit::inertia::{Inertia, Stepped};
-use crate::relax::dynamics::implicit::method_selection::{Kind, Pace};
+use crate::relax::dynamics::implicit::method_selection::{Method, MethodSelection};
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
-use crate::relax::dynamics::implicit::rkc::phase;
-use crate::relax::dynamics::implicit::stagnation::Restless;
-use crate::relax::dynamics::implicit::step_control::{LARGEST_GROWTH, SMALLEST_GROWTH, growth};
+use crate::relax::dynamics::implicit::rkc::phase::rkc_phase;
+use crate::relax::dynamics::implicit::stagnation::Stagnation;
+use crate::relax::dynamics::implicit::step_control::{LARGEST_RATIO, SMALLEST_RATIO, step_ratio};
 use crate::relax::force_limit::ForceLimit;
-use crate::relax::minimise::newton_descent::WATCH;
+use crate::relax::minimise::newton_descent::NEWTON_SCHEDULE;
 use crate::relax::outcome::{Cost, Outcome, Stop};
 use crate::relax::trace::{Look, Trace};
 use crate::vector::{Vector, larger, norm};
 
-/// Settings of either.
+/// Settings of damped dynamics or of gradient flow.
 pub(crate) struct Integration {
     pub(crate) limit: ForceLimit,
     pub(crate) net_force: NetForce,
@@ -36,16 +36,16 @@ pub(crate) struct Integration {
 }
 
 /// Ratio after a step whose matrix was not positive definite.
-const INDEFINITE_GROWTH: f64 = 0.5;
+const INDEFINITE_RATIO: f64 = 0.5;
 
 /// Ratio after a step that broke the balance of energies.
-const UNBALANCED_GROWTH: f64 = 0.5;
+const UNBALANCED_RATIO: f64 = 0.5;
 
-/// Overlap over a radius that stands in for the mean one where nothing is pressed \[1\].
+/// Overlap over a radius that replaces the mean overlap where no disks overlap \[1\].
 const SMALLEST_OVERLAP: f64 = 1e-6;
 
-/// (hγ)² λ, or hγ λ/ζ, of the stiffest contacts beyond which a step grows no more: disks that touch nothing are held by the
-/// mass term alone, and the pivots of the matrix must stay well apart from rounding.
+/// (hγ)² λ, or hγ λ/ζ, of the stiffest contacts at which a step stops growing. Only the mass term holds disks without contacts,
+/// and the pivots of the matrix must stay well above rounding.
 const LONGEST_STEP: f64 = 1e12;
 
 impl Integration {
@@ -59,13 +59,13 @@ impl Integration {
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();
         let mut motion = ImplicitMotion::new(&packing, law, damping, inertia)?;
-        let mut monitor = Monitor::with(self.limit, WATCH, &motion.assembly);
+        let mut monitor = Monitor::with(self.limit, NEWTON_SCHEDULE, &motion.assembly);
         let mut cost = Cost::default();
         let totals = motion.evaluate();
         let mut balance = EnergyBalance::new(Energies::new(&totals, 0.0, 0.0));
         let stop = self.run(totals, &mut motion, &mut monitor, (&mut cost, &mut balance), trace)?;
         let assembly = &motion.assembly;
-        let net_forces = self.judged(&motion);
+        let net_forces = self.net_forces(&motion);
         cost.energies = monitor.energies().map(|energies| balance.account(energies.after));
         let (residual, rounding_floor) = monitor.finish(assembly, net_forces);
         cost.force_evaluation_count += motion.work.evaluation_count;
@@ -91,8 +91,8 @@ impl Integration {
         };
         let mut time_step = 0.0;
         let mut overlaps = Vec::new();
-        let mut restless = Restless::default();
-        let mut pace = Pace::new(motion);
+        let mut stagnation = Stagnation::default();
+        let mut selection = MethodSelection::new(motion);
         loop {
             let kinetic_energy = motion.kinetic_energy();
             let look = Look {
@@ -103,11 +103,11 @@ impl Integration {
                 time_step,
                 restart: false,
             };
-            if let Some(stop) = monitor.check(&motion.assembly, self.judged(motion), &totals, look, trace) {
+            if let Some(stop) = monitor.check(&motion.assembly, self.net_forces(motion), &totals, look, trace) {
                 return Ok(stop);
             }
             let residual = monitor.residual().relative();
-            if restless.after(cost.step_count, (kinetic_energy, motion.dissipated), residual) {
+            if stagnation.is_reached(cost.step_count, (kinetic_energy, motion.dissipated), residual) {
                 return Ok(Stop::Restless);
             }
             if monitor.takes_new_anchors() {
@@ -126,37 +126,37 @@ impl Integration {
             if time_step == 0.0 {
                 time_step = first_step(motion, self.tolerance * overlap);
             }
-            // Explicit steps follow contacts that come and go; where there is no backbone, nothing bounds them.
+            // Explicit steps resolve contacts that open and close. Without a backbone, nothing bounds their number.
             let pressed = monitor.backbone()[..motion.assembly.mobile_count()].iter().any(|&member| member);
-            let kind = if pressed { pace.kind(time_step) } else { Kind::Implicit };
-            if kind != Kind::Implicit {
+            let method = if pressed { selection.method(time_step) } else { Method::Implicit };
+            if method != Method::Implicit {
                 if cost.step_count >= self.step_limit {
                     return Ok(Stop::StepLimit);
                 }
                 cost.step_count += 1;
             }
-            let allowed = Allowed { overlap, tolerance: self.tolerance, backbone: monitor.backbone() };
-            match kind {
-                Kind::Explicit => {
-                    match explicit_phase::explicit(motion, &mut pace, &mut time_step, (cost, &mut *balance))? {
+            let allowed = AllowedError { overlap, tolerance: self.tolerance, backbone: monitor.backbone() };
+            match method {
+                Method::Explicit => {
+                    match explicit_phase(motion, &mut selection, &mut time_step, (cost, &mut *balance))? {
                         Ok(reached) => totals = reached,
                         Err(stop) => return Ok(stop),
                     }
                 }
-                Kind::Stabilised { .. } => {
+                Method::Rkc { .. } => {
                     let account = (&mut *cost, &mut *balance);
-                    if let Some(reached) = phase::stabilised(motion, &mut pace, &mut time_step, account, &allowed)? {
+                    if let Some(reached) = rkc_phase(motion, &mut selection, &mut time_step, account, &allowed)? {
                         totals = reached;
                     }
                 }
-                Kind::Implicit => {
+                Method::Implicit => {
                     let account = (&mut *cost, &mut *balance);
-                    match self.advance(motion, account, &mut time_step, (&allowed, pressed.then_some(&pace)))? {
+                    match self.advance(motion, account, &mut time_step, (&allowed, pressed.then_some(&selection)))? {
                         Ok(Some(reached)) => {
                             totals = reached;
-                            pace.stepped();
+                            selection.after_implicit_step();
                         }
-                        // Back at the start of the step.
+                        // The motion is at the start of the step again.
                         Ok(None) => {}
                         Err(stop) => return Ok(stop),
                     }
@@ -165,14 +165,14 @@ impl Integration {
         }
     }
 
-    /// One implicit step, repeated with shorter ones until its error is small enough; `time_step` is that of the next
-    /// afterwards. None if it would have to be so short that other steps pay.
+    /// One implicit step, repeated with shorter ones until its error is small enough. `time_step` becomes that of the next step. None
+    /// if another method is cheaper than so short a step.
     fn advance<const D: usize, L: PairLaw, C: DampingLaw>(
         &self,
         motion: &mut ImplicitMotion<D, L, C>,
         (cost, balance): (&mut Cost, &mut EnergyBalance),
         time_step: &mut f64,
-        (allowed, pace): (&Allowed<'_>, Option<&Pace>),
+        (allowed, selection): (&AllowedError<'_>, Option<&MethodSelection>),
     ) -> Result<Result<Option<Totals<D>>, Stop>, PackingError> {
         motion.prestressed.copy_from_slice(allowed.backbone);
         motion.margin = allowed.overlap;
@@ -183,37 +183,37 @@ impl Integration {
                 return Ok(Err(Stop::StepLimit));
             }
             cost.step_count += 1;
-            let growth = match motion.step(*time_step)? {
+            let ratio = match motion.step(*time_step)? {
                 Stepped::OutOfMemory => return Ok(Err(Stop::OutOfMemory)),
-                Stepped::Indefinite => INDEFINITE_GROWTH,
-                Stepped::TooFar => SMALLEST_GROWTH,
+                Stepped::Indefinite => INDEFINITE_RATIO,
+                Stepped::TooFar => SMALLEST_RATIO,
                 Stepped::Moved(reached) => {
                     let error = allowed.share(motion, |motion, disk| motion.error(*time_step, disk));
-                    let growth = growth(error, LARGEST_GROWTH);
+                    let ratio = step_ratio(error, LARGEST_RATIO);
                     let energies = || Energies::new(&reached, motion.kinetic_energy(), motion.dissipated);
                     let balanced = |balance: &mut EnergyBalance| match motion.has_masses() {
                         true => balance.accept(energies()),
                         false => balance.accept_descent(energies()),
                     };
                     if error <= 1.0 && balanced(balance) {
-                        *time_step *= if rejected { growth.min(1.0) } else { growth };
+                        *time_step *= if rejected { ratio.min(1.0) } else { ratio };
                         return Ok(Ok(Some(reached)));
                     }
-                    if error <= 1.0 { UNBALANCED_GROWTH } else { growth }
+                    if error <= 1.0 { UNBALANCED_RATIO } else { ratio }
                 }
             };
             cost.rejected_count += 1;
             rejected = true;
             motion.take_back()?;
-            *time_step *= growth;
-            if pace.is_some_and(|pace| pace.kind(*time_step) != Kind::Implicit) {
+            *time_step *= ratio;
+            if selection.is_some_and(|selection| selection.method(*time_step) != Method::Implicit) {
                 return Ok(Ok(None));
             }
         }
     }
 
     /// The net forces the limit is on.
-    fn judged<'a, const D: usize, L: PairLaw, C: DampingLaw>(
+    fn net_forces<'a, const D: usize, L: PairLaw, C: DampingLaw>(
         &self,
         motion: &'a ImplicitMotion<D, L, C>,
     ) -> &'a [Vector<D>] {
@@ -224,7 +224,7 @@ impl Integration {
     }
 }
 
-/// The median overlap of all contacts: not moved by the few that an inflation presses a thousand times as far \[length\].
+/// The median overlap of all contacts: independent of the few that an inflation presses a thousand times as far \[length\].
 fn typical_overlap<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, overlaps: &mut Vec<f64>) -> f64 {
     let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
     overlaps.clear();
@@ -238,10 +238,10 @@ fn typical_overlap<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, overla
     larger(median, SMALLEST_OVERLAP * radius)
 }
 
-/// The step in which the largest force moves a disk by as much as an error may be.
+/// The step in which the largest force moves a disk by the allowed error.
 fn first_step<const D: usize, L: PairLaw, C: DampingLaw>(motion: &ImplicitMotion<D, L, C>, allowed: f64) -> f64 {
     let largest = motion.net_forces().iter().fold(0.0, |most, &force| larger(norm(force), most));
-    let step = motion.time_of_way(allowed, largest);
-    // Nothing pushes: any step is as good, and the look that follows finds it at rest.
+    let step = motion.time_to_move(allowed, largest);
+    // Without forces any step will do, and the next check finds the motion at rest.
     if step.is_finite() && step > 0.0 { step } else { 1.0 }
 }

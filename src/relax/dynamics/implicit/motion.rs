@@ -5,10 +5,10 @@
 //! (m/(hγ)² + (ζ + C)/(hγ) + K) U_i = r_v + (m/(hγ) + ζ + C) r_u        r_u, r_v the right sides of the stage
 //! ```
 //!
-//! C is the matrix of the contact damping, K the [`Hessian`](crate::linear::hessian::Hessian); m = 1, ζ = 0 for damped dynamics, m = 0, C = 0 for gradient
-//! flow, which then has no velocities. The matrix is symmetric, and one factorisation serves all stages. What it leaves out
-//! (how C turns and grows with u) and what it holds beside (contacts that may close during the step) costs no order: see
-//! [`super::tableau`]. It is positive definite but for the prestress in K, which is left out where it would not be.
+//! C is the matrix of the contact damping, K the [`Hessian`](crate::linear::hessian::Hessian). Damped dynamics has m = 1, ζ = 0.
+//! Gradient flow has m = 0, C = 0, and no velocities. The matrix is symmetric, and one factorisation serves all stages. It leaves
+//! out how C rotates and grows with u, and contains contacts that may close during the step. Neither changes the order, see
+//! [`super::tableau`]. The matrix is positive definite except for the prestress in K, which is left out where necessary.
 
 use crate::forces::assembly::Assembly;
 use crate::forces::damped::add_damping;
@@ -18,8 +18,8 @@ use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::relax::column_operations::products;
 use crate::relax::dynamics::implicit::inertia::{Inertia, Work};
-use crate::relax::dynamics::implicit::multirate::shells::Refinement;
-use crate::relax::dynamics::implicit::rkc::stages::Chain;
+use crate::relax::dynamics::implicit::multirate::shells::Shells;
+use crate::relax::dynamics::implicit::rkc::stages::Stages;
 use crate::relax::dynamics::implicit::step_matrix::StepMatrix;
 use crate::relax::dynamics::implicit::tableau::{ROS34PW2, STAGE_COUNT};
 use crate::vector::{Vector, dot};
@@ -27,14 +27,14 @@ use crate::vector::{Vector, dot};
 /// One stage: U of positions, of velocities and of the work of damping.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Stage<const D: usize> {
-    pub(super) way: Vec<Vector<D>>,
+    pub(super) moved: Vec<Vector<D>>,
     pub(super) kick: Vec<Vector<D>>,
     pub(super) work: f64,
 }
 
 /// A packing in motion under elastic and damping forces.
 pub struct ImplicitMotion<const D: usize, L, C> {
-    /// Where the disks are, and the elastic forces.
+    /// Positions and elastic forces.
     pub assembly: Assembly<D, L>,
     /// Velocities of the mobile disks in working order; 0 for gradient flow \[length / time\].
     pub velocities: Vec<Vector<D>>,
@@ -42,12 +42,12 @@ pub struct ImplicitMotion<const D: usize, L, C> {
     pub dissipated: f64,
     /// Time since the start \[time\].
     pub time: f64,
-    /// Work so far.
+    /// Cost so far.
     pub work: Work,
-    /// How much nearer disks are taken to be in the matrix of a step than they are at its start \[length\]: contacts that
-    /// close on the way are in it then, and no step is unstable for want of them.
+    /// How much nearer disks are assumed in the matrix of a step than at its start \[length\]. The matrix then contains contacts
+    /// that close during the step; without them a step may be unstable.
     pub margin: f64,
-    /// Whether the prestress of contacts between two such disks is in the matrix, one a disk in working order; all at first.
+    /// Disks in working order: the matrix contains the prestress of contacts between two marked ones. At first all are marked.
     pub prestressed: Vec<bool>,
     pub(super) inertia: Inertia,
     pub(super) damping: C,
@@ -55,16 +55,16 @@ pub struct ImplicitMotion<const D: usize, L, C> {
     /// Elastic and damping forces at the present positions and velocities.
     pub(super) net_forces: Vec<Vector<D>>,
     pub(super) dissipation: f64,
-    /// From the first step on.
+    /// Set by the first step.
     pub(super) matrix: Option<StepMatrix<D>>,
-    /// Where the disks are, less where they were at the start of the step.
+    /// Displacements since the start of the step.
     pub(super) moved: Vec<Vector<D>>,
     pub(super) taken_back: bool,
     pub(super) stages: [Stage<D>; STAGE_COUNT],
-    pub(super) chain: Chain<D>,
-    pub(super) refinement: Refinement<D>,
+    pub(super) rkc_stages: Stages<D>,
+    pub(super) shells: Shells<D>,
     pub(super) before: Before<D>,
-    /// Velocities of all disks, and all forces with damping.
+    /// Velocities of all disks, and all forces including damping.
     pub(super) all_velocities: Vec<Vector<D>>,
     pub(super) all_forces: Vec<Vector<D>>,
     pub(super) carried: Vec<Vector<D>>,
@@ -74,7 +74,7 @@ pub struct ImplicitMotion<const D: usize, L, C> {
     pub(super) smallest_radius: f64,
 }
 
-/// A motion at the start of a stretch of steps.
+/// A motion at the start of a phase.
 pub(crate) struct Snapshot<const D: usize, L> {
     assembly: Assembly<D, L>,
     velocities: Vec<Vector<D>>,
@@ -82,7 +82,7 @@ pub(crate) struct Snapshot<const D: usize, L> {
     time: f64,
 }
 
-/// What a step that is taken back has to put back.
+/// What a rejected step has to restore.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Before<const D: usize> {
     pub(super) velocities: Vec<Vector<D>>,
@@ -117,9 +117,9 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             matrix: None,
             moved: vec![[f64::INFINITY; D]; mobile],
             taken_back: false,
-            stages: std::array::from_fn(|_| Stage { way: zero.clone(), kick: zero.clone(), work: 0.0 }),
-            chain: Chain::default(),
-            refinement: Refinement::default(),
+            stages: std::array::from_fn(|_| Stage { moved: zero.clone(), kick: zero.clone(), work: 0.0 }),
+            rkc_stages: Stages::default(),
+            shells: Shells::default(),
             before: Before::default(),
             all_velocities: vec![[0.0; D]; assembly.len()],
             all_forces: Vec::new(),
@@ -135,18 +135,18 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         Ok(motion)
     }
 
-    /// Forces of the present positions and velocities, and what is lost to damping.
+    /// Evaluates the forces and the power of damping at the present positions and velocities.
     pub fn evaluate(&mut self) -> Totals<D> {
         let totals = self.assembly.evaluate_totals();
         self.add_damping_forces();
         totals
     }
 
-    /// The time in which this force moves a disk at rest by this way \[time\].
-    pub(crate) fn time_of_way(&self, way: f64, force: f64) -> f64 {
+    /// The time in which this force moves a disk at rest by this distance \[time\].
+    pub(crate) fn time_to_move(&self, distance: f64, force: f64) -> f64 {
         match self.inertia {
-            Inertia::Massive => (2.0 * way / force).sqrt(),
-            Inertia::Friction(friction) => way * friction / force,
+            Inertia::Massive => (2.0 * distance / force).sqrt(),
+            Inertia::Friction(friction) => distance * friction / force,
         }
     }
 
@@ -155,7 +155,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         self.inertia == Inertia::Massive
     }
 
-    /// Puts everything back to where the last step began.
+    /// Restores the state at the start of the last step.
     ///
     /// # Errors
     /// Two disks with the same centre.
@@ -171,7 +171,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         Ok(())
     }
 
-    /// Forces with damping on the mobile disks \[force\].
+    /// Forces on the mobile disks, damping included \[force\].
     pub fn net_forces(&self) -> &[Vector<D>] {
         &self.net_forces
     }
@@ -188,7 +188,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         0.5 * of_members.map(|(&v, _)| dot(v, v)).sum::<f64>()
     }
 
-    /// Anchors take over the displacements.
+    /// Moves the anchors to the present positions.
     ///
     /// # Errors
     /// Two disks with the same centre.
@@ -199,7 +199,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         Ok(())
     }
 
-    /// The step at which (hγ)² λ or hγ λ/ζ is `limit`, λ a bound on the stiffness of contacts; infinite without one \[time\].
+    /// The step at which (hγ)² λ or hγ λ/ζ is `limit`; λ bounds the stiffness of contacts. Infinite without contacts \[time\].
     pub fn longest_step(&mut self, limit: f64) -> f64 {
         let stiffness = self.assembly.stiffness_bound(&mut self.row);
         let ratio = limit / stiffness;
@@ -209,7 +209,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         }
     }
 
-    /// Forces anew after the assembly was replaced by one of the same packing.
+    /// Evaluates the forces after the assembly was replaced by another one of the same packing.
     ///
     /// # Errors
     /// Two disks with the same centre.
@@ -219,7 +219,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         Ok(())
     }
 
-    /// Everything a stretch of steps changes.
+    /// A copy of everything that a phase changes.
     pub(crate) fn snapshot(&self) -> Snapshot<D, L> {
         Snapshot {
             assembly: self.assembly.clone(),
@@ -229,7 +229,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         }
     }
 
-    /// Back to where a snapshot was taken.
+    /// Restores a snapshot.
     ///
     /// # Errors
     /// Two disks with the same centre.
@@ -240,7 +240,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         self.put_back()
     }
 
-    /// Remembers the present state, for [`ImplicitMotion::take_back`].
+    /// Stores the present state, for [`ImplicitMotion::take_back`].
     pub(super) fn remember(&mut self) {
         self.assembly.set_checkpoint();
         self.before.velocities.clone_from(&self.velocities);

@@ -1,4 +1,4 @@
-//! [`ImplicitDynamics`] and [`GradientFlow`]: their settings.
+//! [`ImplicitDynamics`] and [`GradientFlow`]: the relaxers with implicit steps, and their settings.
 
 use serde::{Deserialize, Serialize};
 
@@ -26,13 +26,13 @@ pub struct ImplicitDynamics {
     pub net_force: NetForce,
     /// Error allowed in one step, over the mean overlap \[1\]. Changes results where minima lie close together.
     pub tolerance: f64,
-    /// What the last part of the way is left to.
+    /// How the motion ends.
     pub finish: Finish,
-    /// Steps allowed, rejected ones included; a stretch of explicit or stabilised steps counts as one.
+    /// Steps allowed, rejected ones included. A phase of explicit or stabilised steps counts as one.
     pub step_limit: usize,
 }
 
-/// Gradient flow, the path of steepest descent, by implicit steps: it ends in the minimum to whose basin the start belongs.
+/// Gradient flow, the path of steepest descent, by implicit steps. It ends in the minimum whose basin contains the start.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct GradientFlow {
@@ -40,16 +40,16 @@ pub struct GradientFlow {
     pub limit: ForceLimit,
     /// Error allowed in one step, over the mean overlap \[1\]. Changes results where minima lie close together.
     pub tolerance: f64,
-    /// What the last part of the way is left to.
+    /// How the flow ends.
     pub finish: Finish,
     /// Steps allowed, rejected ones included.
     pub step_limit: usize,
 }
 
-/// Default of the tolerance: see the book.
+/// Default tolerance, see the book.
 const TOLERANCE: f64 = 0.01;
 
-/// Steps allowed by default.
+/// Default limit of steps.
 const STEP_LIMIT: usize = 100_000;
 
 impl Default for ImplicitDynamics {
@@ -112,7 +112,7 @@ impl Relaxer for GradientFlow {
             finish: self.finish,
             step_limit: self.step_limit,
         };
-        // The unit of time is that of the friction: 1 is as good as any.
+        // The friction sets the unit of time: its value is arbitrary.
         run.relax(packing, law, &ContactDamping::Constant(ConstantDamping { rate: 0.0 }), Inertia::Friction(1.0), trace)
     }
 

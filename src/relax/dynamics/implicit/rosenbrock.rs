@@ -1,4 +1,4 @@
-//! One step of the Rosenbrock method of [`super::super::tableau`]: matrix, four stages, error.
+//! One step of the Rosenbrock method of [`super::tableau`]: matrix, four stages, error.
 
 use crate::forces::totals::Totals;
 use crate::law::damping::DampingLaw;
@@ -19,7 +19,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     pub fn step(&mut self, time_step: f64) -> Result<Stepped<D>, PackingError> {
         let mut matrix = self.matrix.take().unwrap_or_else(|| StepMatrix::of(&self.assembly));
         if !self.taken_back {
-            matrix.set_ways(&self.moved);
+            matrix.set_last_distances(&self.moved);
         }
         self.taken_back = false;
         self.remember();
@@ -40,22 +40,21 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         stepped
     }
 
-    /// Estimated error of the last step over what is allowed, for each mobile disk: that of the position, and that of the
-    /// velocity times h γ.
+    /// Estimated error of the last step for a mobile disk: that of its position, and that of its velocity times hγ \[length\].
     pub fn error(&self, time_step: f64, disk: usize) -> f64 {
         let scale = time_step * ROS34PW2.diagonal;
-        let (mut way, mut kick) = ([0.0; D], [0.0; D]);
+        let (mut moved, mut kick) = ([0.0; D], [0.0; D]);
         for (stage, weight) in self.stages.iter().zip(ROS34PW2.error) {
-            way = sum(way, scaled(weight, stage.way[disk]));
+            moved = sum(moved, scaled(weight, stage.moved[disk]));
             kick = sum(kick, scaled(weight, stage.kick[disk]));
         }
         match self.inertia {
-            Inertia::Massive => (dot(way, way) + scale * scale * dot(kick, kick)).sqrt(),
-            Inertia::Friction(_) => dot(way, way).sqrt(),
+            Inertia::Massive => (dot(moved, moved) + scale * scale * dot(kick, kick)).sqrt(),
+            Inertia::Friction(_) => dot(moved, moved).sqrt(),
         }
     }
 
-    /// All stages; the disks are where the step ends afterwards.
+    /// Computes all stages. Afterwards the disks are at the end of the step.
     fn stages(&mut self, time_step: f64, ready: &mut Ready<'_, D>) -> Result<Stepped<D>, PackingError> {
         let scale = time_step * ROS34PW2.diagonal;
         let (mass, friction) = self.inertia.resistance();
@@ -70,15 +69,15 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             let (done, rest) = self.stages.split_at_mut(index);
             let stage = &mut rest[0];
             let carried = ROS34PW2.carried[index];
-            // r_u, kept in `carried`; r_v + (m/(hγ) + ζ) r_u, gathered in the stage.
+            // r_u is stored in `carried`; r_v + (m/(hγ) + ζ) r_u is summed in the stage.
             for disk in 0..mobile {
-                let (mut way, mut kick) = (self.velocities[disk], self.net_forces[disk]);
+                let (mut moved, mut kick) = (self.velocities[disk], self.net_forces[disk]);
                 for (past, factor) in done.iter().zip(carried) {
-                    way = sum(way, scaled(factor / time_step, past.way[disk]));
+                    moved = sum(moved, scaled(factor / time_step, past.moved[disk]));
                     kick = sum(kick, scaled(factor / time_step, past.kick[disk]));
                 }
-                self.carried[disk] = way;
-                stage.way[disk] = sum(kick, scaled(mass / scale + friction, way));
+                self.carried[disk] = moved;
+                stage.moved[disk] = sum(kick, scaled(mass / scale + friction, moved));
             }
             let kept: f64 = done.iter().zip(carried).map(|(past, factor)| factor * past.work).sum();
             stage.work = scale * (self.dissipation + kept / time_step);
@@ -86,30 +85,30 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
                 let (i, j) = (link.ends.0 as usize, link.ends.1 as usize);
                 let along = dot(difference(self.carried[i], self.carried[j]), link.normal);
                 let force = scaled(link.damping * along, link.normal);
-                stage.way[i] = sum(stage.way[i], force);
+                stage.moved[i] = sum(stage.moved[i], force);
                 if j < mobile {
-                    stage.way[j] = difference(stage.way[j], force);
+                    stage.moved[j] = difference(stage.moved[j], force);
                 }
             }
             let alone = 1.0 / (mass / (scale * scale) + friction / scale);
             for disk in 0..mobile {
                 match ready.hessian.row_of(disk as u32) {
-                    Some(row) => self.right_side[row..row + D].copy_from_slice(&stage.way[disk]),
-                    // A disk that touches nothing: the matrix is its diagonal.
-                    None => stage.way[disk] = scaled(alone, stage.way[disk]),
+                    Some(row) => self.right_side[row..row + D].copy_from_slice(&stage.moved[disk]),
+                    // For a disk without contacts the matrix is diagonal.
+                    None => stage.moved[disk] = scaled(alone, stage.moved[disk]),
                 }
             }
             self.work.iteration_count += ready.solve(&self.right_side, &mut self.unknowns);
             for disk in 0..mobile {
                 if let Some(row) = ready.hessian.row_of(disk as u32) {
-                    stage.way[disk] = std::array::from_fn(|d| self.unknowns[row + d]);
+                    stage.moved[disk] = std::array::from_fn(|d| self.unknowns[row + d]);
                 }
                 if mass > 0.0 {
-                    stage.kick[disk] = difference(scaled(1.0 / scale, stage.way[disk]), self.carried[disk]);
+                    stage.kick[disk] = difference(scaled(1.0 / scale, stage.moved[disk]), self.carried[disk]);
                 }
             }
         }
-        // Stiffly accurate: the end is the argument of the last stage and its U.
+        // Stiffly accurate: the end is the argument of the last stage plus its U.
         let mut weights = ROS34PW2.argument[STAGE_COUNT - 1];
         weights[STAGE_COUNT - 1] = 1.0;
         let Some(totals) = self.go(&weights)? else { return Ok(Stepped::TooFar) };
@@ -119,13 +118,13 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         Ok(Stepped::Moved(totals))
     }
 
-    /// Disks and velocities at the start of the step plus this sum of stages, and the forces there. None if a disk would go
-    /// farther than the smallest radius, or nowhere that is a place.
+    /// Sets disks and velocities to the start of the step plus this sum of stages, and evaluates the forces. None if a disk would move
+    /// farther than the smallest radius, or if its displacement is NaN.
     fn go(&mut self, weights: &[f64]) -> Result<Option<Totals<D>>, PackingError> {
         let mut longest = 0.0;
         for (disk, moved) in self.moved.iter_mut().enumerate() {
             let summed = self.stages.iter().zip(weights);
-            *moved = summed.fold([0.0; D], |way, (stage, &weight)| sum(way, scaled(weight, stage.way[disk])));
+            *moved = summed.fold([0.0; D], |moved, (stage, &weight)| sum(moved, scaled(weight, stage.moved[disk])));
             longest = larger(dot(*moved, *moved), longest);
         }
         let longest = longest.sqrt();
@@ -140,7 +139,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             });
             self.assembly.displacements[disk] = sum(self.assembly.displacements[disk], moved);
         }
-        // A restored assembly may have a new list as well.
+        // A restored assembly may have another list as well.
         let _ = self.assembly.keep_listed(longest)?;
         self.set_damping_coefficients();
         Ok(Some(self.evaluate()))

@@ -1,33 +1,38 @@
-//! [`Restless`]: when a motion counts as one that does not come to rest.
+//! [`Stagnation`]: when a motion counts as one that does not come to rest.
 
-/// Steps in which the residual has not fallen by a tenth and damping has taken less than half of the kinetic energy there was,
-/// after which the motion counts as one that does not come to rest.
-const RESTLESS_AFTER: usize = 3000;
+/// Steps after which a motion stagnates, if its residual has not fallen by 10 % and damping has taken less than half of its
+/// initial kinetic energy.
+const STAGNATION_STEPS: usize = 3000;
 
-/// Share of the kinetic energy meant there.
-const RESTLESS_LOSS: f64 = 0.5;
+/// The half in [`STAGNATION_STEPS`].
+const STAGNATION_LOSS: f64 = 0.5;
 
-/// Watches for a motion that does not come to rest.
-pub(crate) struct Restless {
+/// Detects a motion that does not come to rest.
+pub(crate) struct Stagnation {
     /// The lowest residual so far.
     residual: f64,
-    /// Steps, kinetic energy and work of damping when the watch last began anew.
+    /// Steps, kinetic energy and work of damping when the count began.
     since: (usize, f64, f64),
 }
 
-impl Default for Restless {
+impl Default for Stagnation {
     fn default() -> Self {
-        Restless { residual: f64::INFINITY, since: (0, 0.0, 0.0) }
+        Stagnation { residual: f64::INFINITY, since: (0, 0.0, 0.0) }
     }
 }
 
-impl Restless {
-    /// Whether for too long neither the residual has fallen nor damping has taken much of what moves.
-    pub(crate) fn after(&mut self, step_count: usize, (kinetic_energy, dissipated): (f64, f64), residual: f64) -> bool {
+impl Stagnation {
+    /// Whether, for too long, the residual has not fallen and damping has taken little of the kinetic energy.
+    pub(crate) fn is_reached(
+        &mut self,
+        step_count: usize,
+        (kinetic_energy, dissipated): (f64, f64),
+        residual: f64,
+    ) -> bool {
         let (first_step, first_energy, first_work) = self.since;
         let nearer = residual < 0.9 * self.residual;
-        let over = step_count - first_step >= RESTLESS_AFTER;
-        if over && !nearer && dissipated - first_work < RESTLESS_LOSS * first_energy {
+        let over = step_count - first_step >= STAGNATION_STEPS;
+        if over && !nearer && dissipated - first_work < STAGNATION_LOSS * first_energy {
             return true;
         }
         if nearer {

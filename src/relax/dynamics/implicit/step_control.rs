@@ -1,19 +1,19 @@
-//! How long the next step is, by the error of this one over the error allowed.
+//! Step control: the length of the next step, from the ratio of the error of this one to the allowed error.
 //!
-//! Errors are those of second order, of either method, and in a step grow as the third power of h.
+//! The error of a step grows as the third power of h, for either method.
 
-/// Largest ratio of a step to the one before; 1 after a rejected one, since the contact that made it fail is mostly still near.
-pub(crate) const LARGEST_GROWTH: f64 = 2.0;
+/// Largest ratio of a step to the one before. After a rejected step it is 1, since the contact that caused it is mostly still near.
+pub(crate) const LARGEST_RATIO: f64 = 2.0;
 
-/// Smallest one.
-pub(crate) const SMALLEST_GROWTH: f64 = 0.1;
+/// Smallest ratio of a step to the one before.
+pub(crate) const SMALLEST_RATIO: f64 = 0.1;
 
-/// Aim of the next step's error over what is allowed. Contacts come and go, so errors vary from step to step by much, and a
+/// Aimed error of the next step over the allowed one. Contacts open and close, so errors vary strongly from step to step, and a
 /// repeated step costs as much as a short one.
 const SAFETY: f64 = 0.5;
 
-/// Length of the next step over that of one with this share of the error allowed.
-pub(crate) fn growth(share: f64, largest: f64) -> f64 {
-    let growth = libm::cbrt(SAFETY / share).clamp(SMALLEST_GROWTH, largest);
-    if growth.is_nan() { SMALLEST_GROWTH } else { growth }
+/// Ratio of the next step to one whose error is this share of the allowed error.
+pub(crate) fn step_ratio(share: f64, largest: f64) -> f64 {
+    let ratio = libm::cbrt(SAFETY / share).clamp(SMALLEST_RATIO, largest);
+    if ratio.is_nan() { SMALLEST_RATIO } else { ratio }
 }

@@ -1,12 +1,12 @@
-//! [`StepMatrix`]: the matrix of an implicit step, and how its systems are solved.
+//! [`StepMatrix`]: the matrix of an implicit step, and the solution of its systems.
 //!
 //! ```text
 //! (m/(hγ)² + (ζ + C)/(hγ) + K) U = r
 //! ```
 //!
-//! In it are the contacts there are and those that may close on the way: each disk is taken to come nearer by up to ten
-//! times its way in the last step that was not taken back. Where the mass term dominates, the diagonal and an incomplete factor are
-//! enough, and conjugate gradients need a few products; elsewhere a Cholesky factor serves all stages.
+//! It contains the present contacts and those that may close during the step. Each disk may come nearer by up to ten times its
+//! displacement in the last accepted step. Where the mass term dominates, conjugate gradients with an incomplete factor need a few
+//! products. Elsewhere a Cholesky factor serves all stages.
 
 use crate::forces::assembly::Assembly;
 use crate::law::damping::DampingLaw;
@@ -19,14 +19,14 @@ use crate::relax::dynamics::implicit::inertia::{Inertia, Work};
 use crate::sparse::SymmetricMatrix;
 use crate::vector::{Vector, larger, norm, scaled};
 
-/// Condition of the matrix, by its rows, up to which conjugate gradients are used: there they need some ten products a stage,
-/// and take less time than a factorisation of any size (5548 disks).
+/// Condition of the matrix, by its rows, up to which conjugate gradients are used. They need some ten products a stage there, and
+/// less time than a factorisation of any size (5548 disks).
 const ITERATE_BELOW: f64 = 6.0;
 
-/// Backward error of their solutions \[1\]: a stage is known to this share of its way, far below any tolerance of a step.
+/// Backward error of their solutions \[1\]. The relative error of a stage is then far below any tolerance of a step.
 const ITERATE_TO: f64 = 1e-8;
 
-/// Share of a disk's last way by which it may come nearer in the next step.
+/// Factor on a disk's last displacement by which it may come nearer in the next step.
 const OUTLOOK: f64 = 10.0;
 
 /// A pair in the matrix of a step.
@@ -38,13 +38,13 @@ pub(crate) struct Link<const D: usize> {
     pub(crate) damping: f64,
 }
 
-/// What a step has to say about its matrix.
+/// The terms that a step adds to its matrix.
 pub(crate) struct StepTerms<'a, C> {
     /// hγ.
     pub(crate) scale: f64,
     pub(crate) inertia: Inertia,
     pub(crate) damping: &'a C,
-    /// One a pair.
+    /// One per pair.
     pub(crate) damping_coefficient: &'a [f64],
     /// See [`ImplicitMotion::margin`](super::ImplicitMotion::margin).
     pub(crate) margin: f64,
@@ -52,28 +52,28 @@ pub(crate) struct StepTerms<'a, C> {
     pub(crate) prestressed: &'a [bool],
 }
 
-/// The matrix of a step; its buffers and analysis are kept from one step to the next.
+/// The matrix of a step. Its buffers and its analysis are kept from one step to the next.
 #[derive(Debug)]
 pub(crate) struct StepMatrix<const D: usize> {
     hessian: Hessian<D>,
     matrix: SymmetricMatrix,
     analysis: Option<Analysis>,
-    /// How far each mobile disk went in the last step that was not taken back; infinite before the first.
-    ways: Vec<f64>,
+    /// Displacement of each mobile disk in the last accepted step; infinite before the first.
+    last_distances: Vec<f64>,
     margins: Vec<f64>,
     /// Stiffness of each pair in the matrix, with its damping over hγ.
     along: Vec<f64>,
     links: Vec<Link<D>>,
 }
 
-/// A matrix ready to be solved with.
+/// A matrix ready for solutions.
 pub(crate) struct Ready<'a, const D: usize> {
     pub(crate) hessian: &'a Hessian<D>,
     pub(crate) links: &'a [Link<D>],
     solver: Solver<'a>,
 }
 
-/// How the stages of one step are solved.
+/// The solver of the stages of one step.
 enum Solver<'a> {
     Factor(Factorisation<'a>),
     Iterate(IncompleteFactor, &'a SymmetricMatrix),
@@ -85,16 +85,16 @@ impl<const D: usize> StepMatrix<D> {
             hessian: Hessian::of(assembly, Members::Mobile, Prestress::Included),
             matrix: SymmetricMatrix::default(),
             analysis: None,
-            ways: vec![f64::INFINITY; assembly.mobile_count()],
+            last_distances: vec![f64::INFINITY; assembly.mobile_count()],
             margins: Vec::new(),
             along: Vec::new(),
             links: Vec::new(),
         }
     }
 
-    /// The ways of the last step, from which follows how much nearer disks may come in the next.
-    pub(crate) fn set_ways(&mut self, moved: &[Vector<D>]) {
-        self.ways.iter_mut().zip(moved).for_each(|(way, &moved)| *way = norm(moved));
+    /// Sets the displacements of the last step. They bound how much nearer disks may come in the next.
+    pub(crate) fn set_last_distances(&mut self, moved: &[Vector<D>]) {
+        self.last_distances.iter_mut().zip(moved).for_each(|(distance, &moved)| *distance = norm(moved));
     }
 
     /// The matrix of a step that begins here, factorised or ready for conjugate gradients.
@@ -141,17 +141,17 @@ impl<const D: usize> StepMatrix<D> {
         Ok(Ready { hessian: &self.hessian, links: &self.links, solver })
     }
 
-    /// The pairs in the matrix: those that touch, and those that may come to on the way.
+    /// The pairs in the matrix: those in contact, and those that may touch during the step.
     fn set_links<L: PairLaw, C: DampingLaw>(&mut self, assembly: &Assembly<D, L>, terms: &StepTerms<'_, C>) {
         let (pairs, law) = (assembly.pairs(), assembly.law());
-        let way = |disk: u32| self.ways.get(disk as usize).copied().unwrap_or(0.0);
+        let last = |disk: u32| self.last_distances.get(disk as usize).copied().unwrap_or(0.0);
         self.links.clear();
         for column in [&mut self.margins, &mut self.along] {
             column.clear();
             column.resize(pairs.place_count(), 0.0);
         }
         walk(pairs, &assembly.displacements, &mut |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
-            let margin = (OUTLOOK * larger(way(ends.0), way(ends.1))).min(terms.margin);
+            let margin = (OUTLOOK * larger(last(ends.0), last(ends.1))).min(terms.margin);
             self.margins[pair] = margin;
             if overlap <= -margin {
                 return;
@@ -169,7 +169,7 @@ impl<const D: usize> StepMatrix<D> {
 }
 
 impl<const D: usize> Ready<'_, D> {
-    /// Solves for one stage; the iterations it took.
+    /// Solves for one stage. Returns the number of iterations.
     pub(crate) fn solve(&mut self, right_side: &[f64], unknowns: &mut [f64]) -> usize {
         match &mut self.solver {
             Solver::Factor(factorisation) => {
@@ -181,7 +181,7 @@ impl<const D: usize> Ready<'_, D> {
                 let limits = IterationLimits { backward_error: ITERATE_TO, iteration_count: 200 };
                 match conjugate_gradients(matrix, factor, right_side, unknowns, &limits) {
                     Ok(solution) => solution.iteration_count,
-                    // The best so far; the error of the step tells if it is not good enough.
+                    // The best solution so far. If it is not good enough, the error of the step shows it.
                     Err(_) => limits.iteration_count,
                 }
             }

@@ -1,12 +1,11 @@
-//! The coefficients of a Rosenbrock method, in the form that needs no product with the matrix.
+//! The coefficients of a Rosenbrock method, in the form without products with the matrix.
 //!
 //! ```text
 //! (1/(hγ) − J̃) U_i = f(y + Σ_{j<i} a_ij U_j) + Σ_{j<i} (c_ij/h) U_j        y' = y + Σ m_j U_j
 //! ```
 //!
-//! [`ROS34PW2`] has four stages, order 3, is L-stable and stiffly accurate, and keeps its order whatever J̃ is (a
-//! *W-method*): J̃ may leave out what is not symmetric, lag behind, or be made definite. Its embedded solution
-//! `y + Σ m̂_j U_j` has order 2.
+//! [`ROS34PW2`] has four stages and order 3; it is L-stable and stiffly accurate. It keeps its order for every J̃ (a *W-method*):
+//! J̃ may leave out unsymmetric parts, be outdated, or be made definite. Its embedded solution `y + Σ m̂_j U_j` has order 2.
 //!
 //! # Source
 //! Rang, Angermann (2005), BIT Numer. Math. 45, 761, ROS34PW2. The form: Hairer, Wanner (1996), Solving Ordinary Differential
@@ -15,7 +14,7 @@
 /// Stages of the method.
 pub const STAGE_COUNT: usize = 4;
 
-/// Coefficients of a method in the form above; what lies on or above the diagonal is 0.
+/// Coefficients of a method in the form above; on and above the diagonal they are 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tableau {
     /// γ, on the diagonal of every stage.
@@ -128,7 +127,7 @@ mod tests {
         a.iter().zip(b).map(|(a, b)| a * b).sum()
     }
 
-    /// b_j of the method: its last stage ends where the step does.
+    /// b_j of the method, which is stiffly accurate.
     fn weights() -> Row {
         std::array::from_fn(|j| PUBLISHED_ARGUMENT[3][j] + PUBLISHED_IMPLICIT[3][j])
     }
@@ -152,7 +151,7 @@ mod tests {
         close(product(b, times(a, gamma)), 0.0);
         close(product(b, times(g, alpha)), 0.0);
         close(product(b, times(g, gamma)), 0.0);
-        // The embedded one is of order 2 only, or the difference would estimate nothing.
+        // The embedded solution is of order 2 only; else the difference would estimate nothing.
         assert!((product(PUBLISHED_EMBEDDED, squares) - 1.0 / 3.0).abs() > 0.01);
     }
 

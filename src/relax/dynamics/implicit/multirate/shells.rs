@@ -1,4 +1,4 @@
-//! [`Shells`]: the surroundings of disks whose errors are too large, shell by shell of contacts.
+//! [`Shells`]: the surroundings of disks whose errors are too large, in shells of contacts.
 
 use crate::forces::assembly::Assembly;
 use crate::forces::elastic::geometry;
@@ -7,35 +7,35 @@ use crate::neighbours::pair_list::PairList;
 use crate::relax::dynamics::implicit::multirate::patch::Patch;
 use crate::vector::{Vector, larger, norm};
 
-/// Way of a disk of a patch over the longest of the long step there, at most. The list of pairs must hold for such ways.
-pub(crate) const LONGEST_WAY: f64 = 4.0;
+/// Largest displacement in a patch over the longest one of the long step there. The pair list must hold for such displacements.
+pub(crate) const LONGEST_MOVE: f64 = 4.0;
 
-/// Not in a patch.
+/// The disk is in no patch.
 const OUT: u32 = u32::MAX;
 
-/// In a patch that is done.
+/// The disk is in a finished patch.
 pub(crate) const DONE: u32 = u32::MAX - 1;
 
-/// Buffers of patches.
+/// Buffers of all patches.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Refinement<const D: usize> {
-    /// Pairs of each disk, and which list they are of.
+pub(crate) struct Shells<const D: usize> {
+    /// Pairs of each disk, and the number of their list.
     starts: Vec<u32>,
     pairs: Vec<u32>,
     list: usize,
-    /// Shell of each disk around those whose errors are too large; `OUT`, `DONE`.
-    pub(crate) shells: Vec<u32>,
+    /// Shell of each disk around those whose errors are too large; or `OUT`, or `DONE`.
+    pub(crate) shell_of: Vec<u32>,
     /// Disks of all patches, shell by shell.
     inside: Vec<u32>,
     pub(crate) patch: Patch<D>,
-    /// Pairs evaluated in patches that are not in the count of evaluations yet.
+    /// Pairs evaluated in patches that the count of evaluations does not include yet.
     pub(crate) pair_count: usize,
 }
 
-impl<const D: usize> Refinement<D> {
-    /// Pairs of each disk, if the list is a new one.
+impl<const D: usize> Shells<D> {
+    /// Updates the pairs of each disk if the list is another one.
     pub(crate) fn set_list(&mut self, pairs: &PairList<D>, disk_count: usize, list: usize) {
-        if self.list == list && self.shells.len() == disk_count {
+        if self.list == list && self.shell_of.len() == disk_count {
             return;
         }
         self.list = list;
@@ -56,11 +56,11 @@ impl<const D: usize> Refinement<D> {
                 self.starts[disk as usize] += 1;
             }
         }
-        // Each start has run to that of the next disk.
+        // Each start now is that of the next disk.
         self.starts.rotate_right(1);
         self.starts[0] = 0;
-        self.shells.clear();
-        self.shells.resize(disk_count, OUT);
+        self.shell_of.clear();
+        self.shell_of.resize(disk_count, OUT);
         self.patch.set_disk_count(disk_count);
     }
 
@@ -73,8 +73,8 @@ impl<const D: usize> Refinement<D> {
         })
     }
 
-    /// Takes shells of contacts around some disks, of those that can move; gaps up to `margin` are contacts. Whether there are no
-    /// more than `most` of them.
+    /// Finds the shells of mobile disks around some disks; gaps up to `margin` count as contacts. Returns whether there are no more
+    /// than `most` of them.
     pub(crate) fn set_shells<L: PairLaw>(
         &mut self,
         assembly: &Assembly<D, L>,
@@ -85,9 +85,9 @@ impl<const D: usize> Refinement<D> {
         self.inside.clear();
         self.inside.extend_from_slice(disks);
         for &disk in disks {
-            self.shells[disk as usize] = 0;
+            self.shell_of[disk as usize] = 0;
         }
-        let mut shells = std::mem::take(&mut self.shells);
+        let mut shells = std::mem::take(&mut self.shell_of);
         let mut inside = std::mem::take(&mut self.inside);
         let mut next = 0;
         while next < inside.len() && inside.len() <= most {
@@ -105,12 +105,12 @@ impl<const D: usize> Refinement<D> {
                 }
             }
         }
-        (self.shells, self.inside) = (shells, inside);
+        (self.shell_of, self.inside) = (shells, inside);
         self.inside.len() <= most
     }
 
-    /// The patch of a disk: all disks inside that hang together with it by pairs of the list, and those around them; how far a
-    /// disk of it may go \[length\]. Pairs too far apart to touch then are left out.
+    /// Sets the patch of a disk: all inner disks connected with it by pairs of the list, and those around them. Returns how far a disk
+    /// of it may move \[length\]. Pairs that cannot touch then are left out.
     pub(crate) fn set_patch(
         &mut self,
         (pairs, displacements): (&PairList<D>, &[Vector<D>]),
@@ -123,21 +123,21 @@ impl<const D: usize> Refinement<D> {
         let mut next = 0;
         while next < patch.disks.len() {
             for (_, other) in self.pairs_of(pairs, patch.disks[next]) {
-                if self.shells[other as usize] < DONE && !patch.has(other) {
+                if self.shell_of[other as usize] < DONE && !patch.has(other) {
                     patch.add(other);
                 }
             }
             next += 1;
         }
-        patch.close_inside(|disk| self.shells[disk as usize] == last);
-        let way = |disk: u32| moved.get(disk as usize).map_or(0.0, |&way| norm(way));
+        patch.close_inside(|disk| self.shell_of[disk as usize] == last);
+        let distance = |disk: u32| moved.get(disk as usize).map_or(0.0, |&moved| norm(moved));
         let around =
             patch.disks.iter().flat_map(|&disk| self.pairs_of(pairs, disk).map(|(_, other)| other).chain([disk]));
-        let longest = LONGEST_WAY * around.map(way).fold(0.0, |most, way| larger(way, most));
+        let longest = LONGEST_MOVE * around.map(distance).fold(0.0, |most, distance| larger(distance, most));
         for inside in 0..patch.inside_count() {
             let disk = patch.disks[inside];
             for (pair, other) in self.pairs_of(pairs, disk) {
-                // Each pair is met from both its disks if both are inside.
+                // A pair of two inner disks is found from both of them.
                 let met = patch.place(other).is_some_and(|place| place < inside);
                 // Both disks may come nearer.
                 if !met && geometry(pairs, pair, displacements).2 > -2.0 * longest {
@@ -153,7 +153,7 @@ impl<const D: usize> Refinement<D> {
 
     pub(crate) fn leave(&mut self) {
         for &disk in &self.inside {
-            self.shells[disk as usize] = OUT;
+            self.shell_of[disk as usize] = OUT;
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Coefficients of the stabilised explicit method: second order, with as many stages as the stiffness of a step asks for.
+//! Coefficients of the Runge–Kutta–Chebyshev method: explicit, of second order, with as many stages as the stiffness needs.
 //!
 //! ```text
 //! Y_1 = y + h μ̃_1 f(y)
@@ -7,27 +7,27 @@
 //! ```
 //!
 //! T_s is Chebyshev's polynomial of degree s; w_0 = 1 + ε/s², w_1 = T_s'(w_0)/T_s''(w_0), b_j = T_j''(w_0)/T_j'(w_0)²,
-//! a_j = 1 − b_j T_j(w_0). |P| ≤ 1 from 0 to −β with β = (w_0 + 1)/w_1, which grows as s²: s evaluations of f cover a step for
-//! which an explicit one would need of the order of s². Decays the method does not resolve it multiplies by 1/3 ± less than
-//! 2/3, the less the larger ε; from ε = 2/13 to 8 motions of 1000 disks need more evaluations.
+//! a_j = 1 − b_j T_j(w_0). |P| ≤ 1 from 0 to −β with β = (w_0 + 1)/w_1, which grows as s². So s evaluations of f replace of the
+//! order of s² evaluations of a plain explicit method. Unresolved decays are multiplied by 1/3 ± less than 2/3; the spread falls
+//! with ε. From ε = 2/13 to 8, motions of 1000 disks need more evaluations.
 //!
 //! # Source
 //! Sommeijer, Shampine, Verwer (1997), J. Comput. Appl. Math. 88, 315, eqs. (2.1) to (2.8), ε = 2/13 there.
 
-/// ε, the damping of what a step does not resolve.
+/// ε, the damping of unresolved decays.
 const DAMPING: f64 = 2.0 / 13.0;
 
-/// β over s² − 1, at least.
+/// Lower bound of β over s² − 1.
 const EXTENT: f64 = 0.653;
 
-/// R: an oscillation whose stiffness over damping is ρ has λ on the circle of radius ρ through 0 with its centre at −ρ. The disk
-/// of hλ inside a circle of radius R (1 − 2.8/s²) has |P| ≤ 1, for every s.
+/// R. An oscillation with the ratio ρ of stiffness to damping has λ on the circle of radius ρ through 0 with its centre at −ρ. If
+/// hλ lies inside a circle of radius R (1 − 2.8/s²), then |P| ≤ 1, for every s.
 const CIRCLE: f64 = 2.5;
 
 /// The 2.8 there.
 const CIRCLE_LOSS: f64 = 2.8;
 
-/// Longest step over R/ρ: beyond, the number of stages would be set by the circle.
+/// Longest step over R/ρ. Beyond, the circle would set the number of stages.
 const LONGEST: f64 = 0.9;
 
 /// Coefficients of one stage.
@@ -43,11 +43,11 @@ pub(crate) struct StageTerms {
     pub(crate) slope: f64,
     /// Of h f at the start, γ̃.
     pub(crate) start_slope: f64,
-    /// When the stage is, over h.
+    /// Time of the stage over h.
     pub(crate) time: f64,
 }
 
-/// T_j, T_j' and T_j'' at one argument, from j = 0 on.
+/// T_j, T_j' and T_j'' at one argument, from j = 0.
 struct Polynomials {
     argument: f64,
     earlier: [f64; 3],
@@ -74,14 +74,14 @@ impl Polynomials {
 /// The method of s stages.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Chebyshev {
-    /// One a stage.
+    /// One entry per stage.
     pub(crate) stages: Vec<StageTerms>,
     /// β.
     pub(crate) extent: f64,
 }
 
 impl Chebyshev {
-    /// The method of so many stages, 2 at least.
+    /// The method with this number of stages, at least 2.
     pub(crate) fn new(stage_count: usize) -> Self {
         let count = stage_count.max(2);
         let w0 = 1.0 + DAMPING / (count as f64).powi(2);
@@ -114,7 +114,7 @@ impl Chebyshev {
     }
 }
 
-/// What a step must not blow up: decays of rates up to λ, and oscillations of stiffness over damping up to ρ.
+/// What a step must not amplify: decays of rates up to λ, and oscillations with stiffness over damping up to ρ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stiffness {
     /// λ \[1 / time\].
@@ -124,17 +124,17 @@ pub(crate) struct Stiffness {
 }
 
 impl Stiffness {
-    /// The longest step any number of stages is stable for \[time\].
+    /// The longest step that is stable for any number of stages \[time\].
     pub(crate) fn longest_step(&self) -> f64 {
         LONGEST * CIRCLE / self.ratio
     }
 
-    /// Stages for a step of this length, no longer than the longest.
+    /// Number of stages for a step of this length, up to the longest.
     pub(crate) fn stage_count(&self, time_step: f64) -> usize {
         let decays = 1.0 + time_step * self.decay / EXTENT;
         let circle = CIRCLE_LOSS / (1.0 - (time_step * self.ratio / CIRCLE).min(LONGEST));
         let count = decays.max(circle).sqrt().ceil();
-        // NaN and what nobody would make: as many as can be counted without harm.
+        // NaN and absurd counts: the bound avoids an overflow.
         if count < MOST_STAGES as f64 { (count as usize).max(2) } else { MOST_STAGES }
     }
 }
@@ -147,12 +147,12 @@ mod tests {
     use super::*;
     use num_complex::Complex64;
 
-    /// Counts of stages the claims are tested at.
+    /// Numbers of stages in the tests.
     fn counts() -> impl Iterator<Item = usize> {
         (2..=30).chain([40, 60, 100, 200])
     }
 
-    /// What the stages make of y = 1 for ẏ = λy, z = hλ.
+    /// The result of the stages for y = 1, ẏ = λy, z = hλ.
     fn by_stages(method: &Chebyshev, z: Complex64) -> Complex64 {
         let (mut earlier, mut last) = (Complex64::ONE, Complex64::ONE);
         for terms in &method.stages {

@@ -1,4 +1,4 @@
-//! The stabilised explicit method of Runge, Kutta and Chebyshev.
+//! The Runge–Kutta–Chebyshev method: stabilised explicit steps.
 
 pub(super) mod coefficients;
 pub(super) mod phase;

@@ -1,4 +1,4 @@
-//! One step of the stabilised explicit method of [`super::super::chebyshev`]: stages, error, and the bounds that set how many.
+//! One step of the method of [`super::coefficients`]: stages, error, and the bounds that set the number of stages.
 
 use crate::forces::damped::damped_forces;
 use crate::law::damping::DampingLaw;
@@ -8,19 +8,19 @@ use crate::packing::PackingError;
 use crate::relax::dynamics::implicit::inertia::Inertia;
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
 use crate::relax::dynamics::implicit::rkc::coefficients::{Chebyshev, Stiffness};
-use crate::relax::dynamics::implicit::rkc::stages::{Chain, estimated_error};
+use crate::relax::dynamics::implicit::rkc::stages::{Stages, estimated_error};
 use crate::vector::{Vector, larger};
 
 impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
-    /// Bounds for stabilised steps while no contact closes that is farther away than [`ImplicitMotion::margin`]. None without
-    /// masses, and where something is stiff that no damping goes with: a contact without damping, or sites.
+    /// Bounds for stabilised steps while no contact closes whose gap exceeds [`ImplicitMotion::margin`]. None without masses, and where
+    /// something is stiff without damping: an undamped contact, or sites.
     ///
     /// ```text
-    /// λ ≤ 2 max_i μ_i        μ_i the largest eigenvalue of Σ_j c_ij n n, a contact with a held disk by half
+    /// λ ≤ 2 max_i μ_i        μ_i the largest eigenvalue of Σ_j c_ij n n, half for a contact with a held disk
     /// ρ = max F'(δ_ij)/c_ij
     /// ```
     ///
-    /// Since (x_i − x_j)² ≤ 2 x_i² + 2 x_j². In disks of six contacts about half of Gershgorin's rows, which add the c_ij
+    /// Since (x_i − x_j)² ≤ 2 x_i² + 2 x_j². With six contacts a disk, this is about half of Gershgorin's rows, which add the c_ij
     /// as if all n were parallel.
     pub(crate) fn stiffness(&mut self) -> Option<Stiffness> {
         if self.assembly.law().has_sites() || self.inertia != Inertia::Massive {
@@ -28,7 +28,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         }
         let assembly = &self.assembly;
         let (pairs, law, mobile) = (assembly.pairs(), assembly.law(), assembly.mobile_count());
-        let blocks = &mut self.chain.blocks;
+        let blocks = &mut self.rkc_stages.blocks;
         blocks.clear();
         blocks.resize(assembly.len(), [[0.0; D]; D]);
         let mut ratio = 0.0;
@@ -55,36 +55,36 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         (ratio.is_finite() && decay.is_finite()).then_some(Stiffness { decay, ratio })
     }
 
-    /// One explicit step of length h \[time\] in this many stages; [`ImplicitMotion::take_back`] undoes it. False if a disk
-    /// would go farther than the smallest radius: to be taken back.
+    /// One explicit step of length h \[time\] with this number of stages; [`ImplicitMotion::take_back`] undoes it. False if a disk
+    /// would move farther than the smallest radius: the step must then be taken back.
     ///
-    /// Net forces are those at the end afterwards, elastic ones in [`ImplicitMotion::assembly`] are not:
-    /// [`ImplicitMotion::evaluate`] makes them. Not for gradient flow, nor for laws with sites.
+    /// Afterwards the net forces are those at the end, but the elastic ones in [`ImplicitMotion::assembly`] are not:
+    /// [`ImplicitMotion::evaluate`] computes them. Not for gradient flow, nor for laws with sites.
     ///
     /// # Errors
     /// Two disks with the same centre.
     pub fn stabilised_step(&mut self, time_step: f64, stage_count: usize) -> Result<bool, PackingError> {
-        let mut chain = std::mem::take(&mut self.chain);
+        let mut stages = std::mem::take(&mut self.rkc_stages);
         self.taken_back = false;
         self.remember();
-        let method = match chain.method.take() {
+        let method = match stages.method.take() {
             Some(method) if method.stages.len() == stage_count.max(2) => method,
             _ => Chebyshev::new(stage_count),
         };
-        let moved = self.chain_of_stages(time_step, &method, &mut chain);
-        chain.method = Some(method);
-        self.chain = chain;
+        let moved = self.apply_stages(time_step, &method, &mut stages);
+        stages.method = Some(method);
+        self.rkc_stages = stages;
         moved
     }
 
-    fn chain_of_stages(
+    fn apply_stages(
         &mut self,
         time_step: f64,
         method: &Chebyshev,
-        chain: &mut Chain<D>,
+        stages: &mut Stages<D>,
     ) -> Result<bool, PackingError> {
         let mobile = self.assembly.mobile_count();
-        chain.begin(&self.velocities, self.assembly.len());
+        stages.begin(&self.velocities, self.assembly.len());
         let start_dissipation = self.dissipation;
         let (mut work, mut earlier_work) = (0.0, 0.0);
         self.all_forces[..mobile].copy_from_slice(&self.before.net_forces);
@@ -93,13 +93,13 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             let start = (self.velocities.as_flattened(), self.before.net_forces.as_flattened());
             let forces = self.all_forces.as_flattened();
             let displacements = self.assembly.displacements[..mobile].as_flattened_mut();
-            let (change, farthest) = chain.go(terms, slopes, start, forces, displacements);
+            let (change, farthest) = stages.advance(terms, slopes, start, forces, displacements);
             let next_work = terms.last * work
                 + terms.earlier * earlier_work
                 + slopes[0] * self.dissipation
                 + slopes[1] * start_dissipation;
             (earlier_work, work) = (work, next_work);
-            // Of each coordinate.
+            // The bounds are per coordinate.
             let longest = (D as f64).sqrt();
             if farthest * longest > self.smallest_radius {
                 return Ok(false);
@@ -113,13 +113,13 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
                 self.assembly.pairs(),
                 &self.damping_coefficient,
                 &self.assembly.displacements,
-                &chain.velocity,
+                &stages.velocity,
                 &mut self.all_forces,
             );
         }
         self.net_forces.copy_from_slice(&self.all_forces[..mobile]);
-        self.velocities.copy_from_slice(&chain.velocity[..mobile]);
-        self.moved.copy_from_slice(&chain.way);
+        self.velocities.copy_from_slice(&stages.velocity[..mobile]);
+        self.moved.copy_from_slice(&stages.moved);
         self.dissipated += work;
         self.time += time_step;
         Ok(true)
@@ -141,7 +141,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     }
 }
 
-/// Largest eigenvalue of a symmetric matrix, of D > 2 rows a bound on it from above.
+/// Largest eigenvalue of a symmetric matrix; for D > 2 rows an upper bound.
 ///
 /// # Source
 /// Wolkowicz, Styan (1980), Linear Algebra Appl. 29, 471, theorem 2.1: m + s √(D − 1), m and s mean and deviation of the
@@ -178,7 +178,7 @@ mod tests {
     fn the_bound_on_decays_holds_and_is_half_of_gershgorins() {
         let mut motion = stored();
         let bound = motion.stiffness().expect("every contact is damped").decay;
-        // The largest eigenvalue from below, by the power method from a velocity that is no mode.
+        // The largest eigenvalue from below, by the power method from a velocity that is not a mode.
         let count = motion.assembly.len();
         let mut x: Vec<Vector<2>> = (0..count).map(|i| [(7.0 * i as f64).sin(), (11.0 * i as f64).cos()]).collect();
         let mut value = 0.0;
