@@ -63,7 +63,7 @@ pub struct Monitor {
     best: f64,
     best_check: usize,
     floor: f64,
-    anchors_felt: bool,
+    needs_anchors: bool,
     last: Residual,
     /// Elastic energies at the first and at the last check, and the scale of the rounding of the first.
     energies: Option<(f64, f64)>,
@@ -105,7 +105,7 @@ impl Monitor {
             best: f64::INFINITY,
             best_check: 0,
             floor: 0.0,
-            anchors_felt: false,
+            needs_anchors: false,
             last: Residual { largest_net_force: f64::INFINITY, mean_contact_force: 1.0 },
             energies: None,
             first_scale: 0.0,
@@ -161,11 +161,11 @@ impl Monitor {
     /// large force for long.
     pub fn is_due(&self, step: usize, largest_force: f64) -> bool {
         let Residual { mean_contact_force: mean, .. } = self.last;
-        let awaited = match self.limit {
+        let limit_force = match self.limit {
             ForceLimit::Relative(limit) => limit * mean,
             ForceLimit::Absolute(limit) => limit,
         };
-        let far = largest_force > FAR * larger(awaited, self.floor * mean);
+        let far = largest_force > FAR * larger(limit_force, self.floor * mean);
         step.is_multiple_of(if far { FAR_CHECKS * CHECK_INTERVAL } else { CHECK_INTERVAL })
     }
 
@@ -196,7 +196,7 @@ impl Monitor {
         self.floor = floor_of(assembly, members, mean, assembly.longest_displacement(), row);
         self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
         // Rounding counts if it is within a factor 20 of the residual and new anchors would lower it by more than a factor 4.
-        self.anchors_felt =
+        self.needs_anchors =
             self.floor > 0.05 * self.last.relative() && self.floor > 4.0 * floor_of(assembly, members, mean, 0.0, row);
         let stop = match self.limit {
             ForceLimit::Relative(limit) => (mean > 0.0 && inner <= limit * mean && outer <= limit.sqrt() * mean)
@@ -258,7 +258,7 @@ impl Monitor {
 
     /// Whether the caller should re-anchor, because the rounding of displacements is relevant. Asked once per check.
     pub fn takes_new_anchors(&mut self) -> bool {
-        std::mem::take(&mut self.anchors_felt)
+        std::mem::take(&mut self.needs_anchors)
     }
 
     /// Elastic energies at the first and at the last check.

@@ -10,7 +10,7 @@
 //! gain in every step is detected as well as a large one in a single step. Both are compared with the energy in motion M. It is
 //! exchanged between K and E, and only damping removes it. Half of ΔW is subtracted, so that a motion with errors below half of
 //! the tolerance leaves the limit. E_0 would be too coarse: the initial energy of an inflation is 10⁴ times that of a packing near
-//! jamming, and a small relative error can still destroy the packing. The floor η E lies below the energy at which Newton's
+//! jamming. A small relative error could then destroy the packing. The floor η E lies below the energy at which Newton's
 //! method may finish: a long step may remove the rest.
 //!
 //! # Source

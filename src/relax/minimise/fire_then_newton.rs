@@ -80,24 +80,24 @@ impl Staged {
     ) -> Result<(Stop, Cost, Monitor), PackingError> {
         let mut hand_over = self.hand_over;
         let mut cost = Cost::default();
-        let mut alone = false;
+        let mut fire_only = false;
         loop {
             let (limit, last) = match self.limit {
-                limit if alone => (limit, true),
+                limit if fire_only => (limit, true),
                 ForceLimit::Relative(limit) if limit >= hand_over => (self.limit, true),
                 _ => (ForceLimit::Relative(hand_over), false),
             };
             let mut monitor = Monitor::new(limit, assembly);
             let step_limit = self.step_limit.saturating_sub(cost.step_count);
             let fire = Fire { limit, step_limit, precision: self.precision, ..Fire::default() };
-            let (stop, part) = fire.run(assembly, &mut monitor, &mut later(trace, cost.step_count))?;
+            let (stop, part) = fire.run(assembly, &mut monitor, &mut offset_trace(trace, cost.step_count))?;
             cost = cost.plus(Cost { energies: monitor.energies(), ..part });
             // An absolute limit may lie below the threshold of no force.
             if matches!(
                 (stop, self.limit, last),
                 (Stop::Converged(Criterion::Unjammed), ForceLimit::Absolute(_), false)
             ) {
-                alone = true;
+                fire_only = true;
                 continue;
             }
             if last || stop != Stop::Converged(Criterion::RelativeForce) {
@@ -106,11 +106,11 @@ impl Staged {
             let mut monitor = Monitor::with(self.limit, NEWTON_SCHEDULE, assembly);
             let left = self.factorisation_limit.saturating_sub(cost.factorisation_count);
             let mut descent = NewtonDescent::new(self.largest_step, left, Patience::Factorisations(PATIENCE));
-            let end = descent.run(assembly, &mut monitor, &mut later(trace, cost.step_count))?;
+            let end = descent.run(assembly, &mut monitor, &mut offset_trace(trace, cost.step_count))?;
             cost = cost.plus(Cost { energies: monitor.energies(), ..descent.cost });
             match end {
                 End::Stalled | End::Stop(Stop::NoDescent) => {}
-                End::Stop(Stop::StepLimit | Stop::OutOfMemory) => alone = true,
+                End::Stop(Stop::StepLimit | Stop::OutOfMemory) => fire_only = true,
                 End::Stop(stop) => return Ok((stop, cost, monitor)),
             }
             hand_over = 0.1 * hand_over.min(monitor.residual().relative());
@@ -119,16 +119,16 @@ impl Staged {
 }
 
 /// A trace whose step counts begin at `first`.
-fn later<T: Trace>(trace: &mut T, first: usize) -> Later<'_, T> {
-    Later { trace, first }
+fn offset_trace<T: Trace>(trace: &mut T, first: usize) -> OffsetTrace<'_, T> {
+    OffsetTrace { trace, first }
 }
 
-struct Later<'a, T> {
+struct OffsetTrace<'a, T> {
     trace: &'a mut T,
     first: usize,
 }
 
-impl<T: Trace> Trace for Later<'_, T> {
+impl<T: Trace> Trace for OffsetTrace<'_, T> {
     const ACTIVE: bool = T::ACTIVE;
 
     fn look(&mut self, look: &Look) {

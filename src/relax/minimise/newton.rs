@@ -58,7 +58,7 @@ impl Relaxer for Newton {
         let start = Instant::now();
         let mut assembly = Assembly::new(&packing, *law)?;
         let mut monitor = Monitor::with(self.limit, NEWTON_SCHEDULE, &assembly);
-        let mut descent = NewtonDescent::new(self.largest_step, self.step_limit, Patience::Endless);
+        let mut descent = NewtonDescent::new(self.largest_step, self.step_limit, Patience::Unlimited);
         let stop = match descent.run(&mut assembly, &mut monitor, trace)? {
             End::Stop(stop) => stop,
             End::Stalled => Stop::StepLimit,

@@ -36,7 +36,7 @@ pub(crate) const NEWTON_SCHEDULE: CheckSchedule =
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Patience {
     /// To the limit of factorisations.
-    Endless,
+    Unlimited,
     /// This many factorisations without the residual falling to a tenth.
     Factorisations(usize),
 }

@@ -24,7 +24,7 @@ use crate::sparse::SymmetricMatrix;
 use crate::vector::{Vector, larger, norm, scaled};
 
 /// ε: far below the softest mode over the stiffest (10⁻⁷ near jamming), far above the rounding of a pivot (10⁻¹⁴).
-const GROUND: f64 = 1e-10;
+const SMALLEST_SHIFT: f64 = 1e-10;
 
 /// Largest η: about what remains of the overlap of a rattler after a step. η is the net force of the rattler over the mean
 /// contact force, but at most this. An almost free rattler needs only a short displacement, even in a steep wedge.
@@ -32,7 +32,7 @@ const OFF_BACKBONE: f64 = 1e-4;
 
 /// Smallest diagonal added, over the largest k_i. The pivots of a rattler with little stiffness may count as those of a singular
 /// matrix (10⁻¹⁴). This is a hundred times above that. Below it, the force of a rattler is below 10⁻²⁴ of the others.
-const LEAST: f64 = 1e-12;
+const SMALLEST_DIAGONAL: f64 = 1e-12;
 
 /// The result of a factorisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -118,16 +118,17 @@ impl<const D: usize> ShiftedHessian<D> {
         self.matrix.clone_from(self.hessian.matrix());
         self.right_side.clear();
         self.right_side.resize(self.matrix.dimension(), 0.0);
-        let least = LEAST * self.stiffness[..assembly.mobile_count()].iter().fold(0.0, |most, &k| larger(k, most));
+        let least =
+            SMALLEST_DIAGONAL * self.stiffness[..assembly.mobile_count()].iter().fold(0.0, |most, &k| larger(k, most));
         for disk in 0..assembly.mobile_count() {
             let Some(row) = self.hessian.row_of(disk as u32) else { continue };
-            let ground = if backbone[disk] {
-                GROUND
+            let base = if backbone[disk] {
+                SMALLEST_SHIFT
             } else {
                 let force = norm(assembly.forces[disk]) / mean;
-                shift + if force < OFF_BACKBONE { force.max(GROUND) } else { OFF_BACKBONE }
+                shift + if force < OFF_BACKBONE { force.max(SMALLEST_SHIFT) } else { OFF_BACKBONE }
             };
-            let value = larger(shift * self.prestress[disk] + ground * self.stiffness[disk], least);
+            let value = larger(shift * self.prestress[disk] + base * self.stiffness[disk], least);
             for d in 0..D {
                 // The first entry of a column is the one on the diagonal.
                 self.matrix.values[self.matrix.starts[row + d]] += value;

@@ -1,4 +1,4 @@
-//! [`Finishing`]: when Newton's method finishes a motion.
+//! [`NewtonFinish`]: when Newton's method finishes a motion.
 //!
 //! Newton's method finds a minimum from almost anywhere; it need not be the one that the motion leads to. It is tried once the
 //! residual and the kinetic energy of the backbone are small. Its minimum is accepted at once if every disk of the backbone is
@@ -59,12 +59,12 @@ const LONGEST_STEP: f64 = 0.1;
 const FACTORISATION_LIMIT: usize = 100;
 
 /// A trace that hides a trial, which may be rejected, and keeps its last check.
-struct Unseen<'a, T> {
+struct HiddenTrace<'a, T> {
     trace: &'a mut T,
     last: Option<Look>,
 }
 
-impl<T: Trace> Trace for Unseen<'_, T> {
+impl<T: Trace> Trace for HiddenTrace<'_, T> {
     const ACTIVE: bool = T::ACTIVE;
 
     fn look(&mut self, look: &Look) {
@@ -77,7 +77,7 @@ impl<T: Trace> Trace for Unseen<'_, T> {
 }
 
 /// The present state of a motion.
-pub(crate) struct Standing {
+pub(crate) struct FinishState {
     /// Relative residual \[1\].
     pub(crate) residual: f64,
     /// Kinetic energy of the backbone \[energy\].
@@ -89,7 +89,7 @@ pub(crate) struct Standing {
 }
 
 /// Decides when Newton's method can finish.
-pub(crate) struct Finishing<const D: usize> {
+pub(crate) struct NewtonFinish<const D: usize> {
     /// Residual and kinetic energy below which it is tried; the latter is infinite before the first trial.
     residual: f64,
     kinetic: f64,
@@ -99,14 +99,14 @@ pub(crate) struct Finishing<const D: usize> {
     minimum: Option<Vec<Vector<D>>>,
 }
 
-impl<const D: usize> Finishing<D> {
+impl<const D: usize> NewtonFinish<D> {
     /// Below this relative residual and K ≤ `hand_over`² E; never if 0.
     pub(crate) fn from(hand_over: f64) -> Self {
-        Finishing { residual: hand_over, kinetic: f64::INFINITY, hand_over, minimum: None }
+        NewtonFinish { residual: hand_over, kinetic: f64::INFINITY, hand_over, minimum: None }
     }
 
     /// Whether Newton's method is to be tried here.
-    pub(crate) fn is_due(&self, at: &Standing) -> bool {
+    pub(crate) fn is_due(&self, at: &FinishState) -> bool {
         let slow = self.hand_over * self.hand_over * at.scale;
         at.residual <= self.residual && at.kinetic <= slow.min(self.kinetic)
     }
@@ -120,16 +120,16 @@ impl<const D: usize> Finishing<D> {
         motion: &mut ImplicitMotion<D, L, C>,
         monitor: &mut Monitor,
         cost: &mut Cost,
-        at: &Standing,
+        at: &FinishState,
         trace: &mut impl Trace,
     ) -> Result<Option<Stop>, PackingError> {
         let before = motion.assembly.clone();
         let smallest = before.radii().iter().copied().fold(f64::INFINITY, f64::min);
         let longest = LONGEST_STEP.min(at.overlap / smallest);
         let mut descent = NewtonDescent::new(longest, FACTORISATION_LIMIT, Patience::Factorisations(PATIENCE));
-        let mut unseen = Unseen { trace, last: None };
-        let end = descent.run(&mut motion.assembly, monitor, &mut unseen)?;
-        let last = unseen.last;
+        let mut hidden = HiddenTrace { trace, last: None };
+        let end = descent.run(&mut motion.assembly, monitor, &mut hidden)?;
+        let last = hidden.last;
         *cost = cost.plus(descent.cost);
         if let End::Stop(stop @ (Stop::Converged(_) | Stop::RoundingFloor)) = end {
             let places: Vec<_> = (0..before.mobile_count()).map(|disk| motion.assembly.place(disk)).collect();

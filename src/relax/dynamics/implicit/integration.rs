@@ -13,7 +13,7 @@ use crate::relax::dynamics::damped::NetForce;
 use crate::relax::dynamics::energy_balance::{Energies, EnergyBalance};
 use crate::relax::dynamics::implicit::allowed_error::AllowedError;
 use crate::relax::dynamics::implicit::explicit_phase::explicit_phase;
-use crate::relax::dynamics::implicit::finish::{Finish, Finishing, Standing};
+use crate::relax::dynamics::implicit::finish::{Finish, FinishState, NewtonFinish};
 use crate::relax::dynamics::implicit::inertia::{Inertia, Stepped};
 use crate::relax::dynamics::implicit::method_selection::{Method, MethodSelection};
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
@@ -85,9 +85,9 @@ impl Integration {
         (cost, balance): (&mut Cost, &mut EnergyBalance),
         trace: &mut impl Trace,
     ) -> Result<Stop, PackingError> {
-        let mut finishing = match self.finish {
+        let mut newton_finish = match self.finish {
             Finish::Motion => None,
-            Finish::Newton(residual) => Some(Finishing::from(residual)),
+            Finish::Newton(residual) => Some(NewtonFinish::from(residual)),
         };
         let mut time_step = 0.0;
         let mut overlaps = Vec::new();
@@ -114,11 +114,11 @@ impl Integration {
                 motion.reanchor()?;
             }
             let overlap = typical_overlap(&motion.assembly, &mut overlaps);
-            if let Some(finishing) = &mut finishing {
+            if let Some(newton_finish) = &mut newton_finish {
                 let kinetic = motion.kinetic_energy_of(monitor.backbone());
-                let standing = Standing { residual, kinetic, scale: totals.energy_scale(), overlap };
-                if finishing.is_due(&standing)
-                    && let Some(stop) = finishing.attempt(motion, monitor, cost, &standing, trace)?
+                let state = FinishState { residual, kinetic, scale: totals.energy_scale(), overlap };
+                if newton_finish.is_due(&state)
+                    && let Some(stop) = newton_finish.attempt(motion, monitor, cost, &state, trace)?
                 {
                     return Ok(stop);
                 }

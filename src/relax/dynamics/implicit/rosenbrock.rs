@@ -7,7 +7,7 @@ use crate::linear::LinearError;
 use crate::packing::PackingError;
 use crate::relax::dynamics::implicit::inertia::{Inertia, Stepped};
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
-use crate::relax::dynamics::implicit::step_matrix::{Ready, StepMatrix, StepTerms};
+use crate::relax::dynamics::implicit::step_matrix::{PreparedMatrix, StepMatrix, StepTerms};
 use crate::relax::dynamics::implicit::tableau::{ROS34PW2, STAGE_COUNT};
 use crate::vector::{difference, dot, larger, scaled, sum};
 
@@ -32,7 +32,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             prestressed: &self.prestressed,
         };
         let stepped = match matrix.set(&self.assembly, &terms, &mut self.work) {
-            Ok(mut ready) => self.stages(time_step, &mut ready),
+            Ok(mut prepared) => self.stages(time_step, &mut prepared),
             Err(LinearError::OutOfMemory { .. }) => Ok(Stepped::OutOfMemory),
             Err(_) => Ok(Stepped::Indefinite),
         };
@@ -55,11 +55,11 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     }
 
     /// Computes all stages. Afterwards the disks are at the end of the step.
-    fn stages(&mut self, time_step: f64, ready: &mut Ready<'_, D>) -> Result<Stepped<D>, PackingError> {
+    fn stages(&mut self, time_step: f64, prepared: &mut PreparedMatrix<'_, D>) -> Result<Stepped<D>, PackingError> {
         let scale = time_step * ROS34PW2.diagonal;
         let (mass, friction) = self.inertia.resistance();
         let mobile = self.assembly.mobile_count();
-        let dimension = ready.hessian.matrix().dimension();
+        let dimension = prepared.hessian.matrix().dimension();
         self.right_side.resize(dimension, 0.0);
         self.unknowns.resize(dimension, 0.0);
         for index in 0..STAGE_COUNT {
@@ -81,7 +81,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             }
             let kept: f64 = done.iter().zip(carried).map(|(past, factor)| factor * past.work).sum();
             stage.work = scale * (self.dissipation + kept / time_step);
-            for link in ready.links {
+            for link in prepared.links {
                 let (i, j) = (link.ends.0 as usize, link.ends.1 as usize);
                 let along = dot(difference(self.carried[i], self.carried[j]), link.normal);
                 let force = scaled(link.damping * along, link.normal);
@@ -92,15 +92,15 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             }
             let alone = 1.0 / (mass / (scale * scale) + friction / scale);
             for disk in 0..mobile {
-                match ready.hessian.row_of(disk as u32) {
+                match prepared.hessian.row_of(disk as u32) {
                     Some(row) => self.right_side[row..row + D].copy_from_slice(&stage.moved[disk]),
                     // For a disk without contacts the matrix is diagonal.
                     None => stage.moved[disk] = scaled(alone, stage.moved[disk]),
                 }
             }
-            self.work.iteration_count += ready.solve(&self.right_side, &mut self.unknowns);
+            self.work.iteration_count += prepared.solve(&self.right_side, &mut self.unknowns);
             for disk in 0..mobile {
-                if let Some(row) = ready.hessian.row_of(disk as u32) {
+                if let Some(row) = prepared.hessian.row_of(disk as u32) {
                     stage.moved[disk] = std::array::from_fn(|d| self.unknowns[row + d]);
                 }
                 if mass > 0.0 {

@@ -21,13 +21,13 @@ use crate::vector::{Vector, larger, norm, scaled};
 
 /// Condition of the matrix, by its rows, up to which conjugate gradients are used. They need some ten products a stage there, and
 /// less time than a factorisation of any size (5548 disks).
-const ITERATE_BELOW: f64 = 6.0;
+const ITERATION_CONDITION: f64 = 6.0;
 
 /// Backward error of their solutions \[1\]. The relative error of a stage is then far below any tolerance of a step.
-const ITERATE_TO: f64 = 1e-8;
+const ITERATION_ERROR: f64 = 1e-8;
 
 /// Factor on a disk's last displacement by which it may come nearer in the next step.
-const OUTLOOK: f64 = 10.0;
+const APPROACH_FACTOR: f64 = 10.0;
 
 /// A pair in the matrix of a step.
 #[derive(Debug, Clone, Copy)]
@@ -67,7 +67,7 @@ pub(crate) struct StepMatrix<const D: usize> {
 }
 
 /// A matrix ready for solutions.
-pub(crate) struct Ready<'a, const D: usize> {
+pub(crate) struct PreparedMatrix<'a, const D: usize> {
     pub(crate) hessian: &'a Hessian<D>,
     pub(crate) links: &'a [Link<D>],
     solver: Solver<'a>,
@@ -103,7 +103,7 @@ impl<const D: usize> StepMatrix<D> {
         assembly: &Assembly<D, L>,
         terms: &StepTerms<'_, C>,
         work: &mut Work,
-    ) -> Result<Ready<'_, D>, LinearError> {
+    ) -> Result<PreparedMatrix<'_, D>, LinearError> {
         self.set_links(assembly, terms);
         let (mass, friction) = terms.inertia.resistance();
         let diagonal = mass / (terms.scale * terms.scale) + friction / terms.scale;
@@ -127,7 +127,7 @@ impl<const D: usize> StepMatrix<D> {
             // The first entry of a column is the one on the diagonal.
             matrix.values[matrix.starts[column]] += diagonal;
         }
-        let iterate = mass > 0.0 && matrix.norm() <= ITERATE_BELOW * diagonal;
+        let iterate = mass > 0.0 && matrix.norm() <= ITERATION_CONDITION * diagonal;
         let solver = if iterate {
             Solver::Iterate(IncompleteFactor::new(matrix)?, matrix)
         } else {
@@ -138,7 +138,7 @@ impl<const D: usize> StepMatrix<D> {
             work.factorisation_count += 1;
             Solver::Factor(self.analysis.insert(analysis).cholesky(matrix)?)
         };
-        Ok(Ready { hessian: &self.hessian, links: &self.links, solver })
+        Ok(PreparedMatrix { hessian: &self.hessian, links: &self.links, solver })
     }
 
     /// The pairs in the matrix: those in contact, and those that may touch during the step.
@@ -151,7 +151,7 @@ impl<const D: usize> StepMatrix<D> {
             column.resize(pairs.place_count(), 0.0);
         }
         walk(pairs, &assembly.displacements, &mut |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
-            let margin = (OUTLOOK * larger(last(ends.0), last(ends.1))).min(terms.margin);
+            let margin = (APPROACH_FACTOR * larger(last(ends.0), last(ends.1))).min(terms.margin);
             self.margins[pair] = margin;
             if overlap <= -margin {
                 return;
@@ -168,7 +168,7 @@ impl<const D: usize> StepMatrix<D> {
     }
 }
 
-impl<const D: usize> Ready<'_, D> {
+impl<const D: usize> PreparedMatrix<'_, D> {
     /// Solves for one stage. Returns the number of iterations.
     pub(crate) fn solve(&mut self, right_side: &[f64], unknowns: &mut [f64]) -> usize {
         match &mut self.solver {
@@ -178,7 +178,7 @@ impl<const D: usize> Ready<'_, D> {
             }
             Solver::Iterate(factor, matrix) => {
                 unknowns.fill(0.0);
-                let limits = IterationLimits { backward_error: ITERATE_TO, iteration_count: 200 };
+                let limits = IterationLimits { backward_error: ITERATION_ERROR, iteration_count: 200 };
                 match conjugate_gradients(matrix, factor, right_side, unknowns, &limits) {
                     Ok(solution) => solution.iteration_count,
                     // The best solution so far. If it is not good enough, the error of the step shows it.

@@ -3,7 +3,7 @@
 //! Where a contact opens or closes, the error of a step is thousands of times that of the rest of the packing. Each such disk and
 //! some shells of contacts around it form a [`Patch`]. The patch is integrated again from the start of the step to its end, in
 //! steps as long as its own errors allow. The disks around it follow the long step. So every disk has the allowed error, and the
-//! work of an event is that of its surroundings. The effect of the patch on the disks around it is neglected: its last shell must
+//! work of an event is that of its surroundings. The effect of the patch on the disks around it is neglected. So its last shell must
 //! agree with the long step, to a share of the allowed error. If nothing holds the packing, the neglected momentum is distributed
 //! evenly over all disks. Otherwise the packing would drift, and no contact damps a drift.
 //!
@@ -22,20 +22,20 @@ use crate::relax::dynamics::implicit::rkc::stages::measure;
 use crate::vector::{Vector, difference, larger, norm, scaled, sum};
 
 /// Largest change of the last shell of a patch over the allowed error. The disks around, which are kept, would change by less.
-const OUTSIDE: f64 = 0.5;
+const LAST_SHELL_CHANGE: f64 = 0.5;
 
-/// Shells of a patch beyond those that its disks affect in one step, which are [`PUSHED`] √(hλ).
-const LEAST_SHELLS: u32 = 1;
+/// Shells of a patch beyond those that its disks affect in one step, which are [`AFFECTED_SHELLS`] √(hλ).
+const EXTRA_SHELLS: u32 = 1;
 
-/// See [`LEAST_SHELLS`]. Of 3000 to 4000 steps of 16 508 disks at p = 10, patches fail in 3 at 1, in 34 at 1/2 and in 461 at 0.3.
+/// See [`EXTRA_SHELLS`]. Of 3000 to 4000 steps of 16 508 disks at p = 10, patches fail in 3 at 1, in 34 at 1/2 and in 461 at 0.3.
 /// The whole motion takes a third longer at 1 than at 1/2, and as long at 0.3.
-const PUSHED: f64 = 0.5;
+const AFFECTED_SHELLS: f64 = 0.5;
 
 /// Largest share of the mobile disks in patches. With more of them a shorter step of all disks costs less.
-const MOST_DISKS: f64 = 0.25;
+const LARGEST_SHARE: f64 = 0.25;
 
 /// Displacement for which the list must hold, over the width of the skin. At most half of the skin is possible.
-const LISTED: f64 = 0.25;
+const LISTED_SKIN: f64 = 0.25;
 
 impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     /// Repeats the last stabilised step around some disks. False if that is impossible: the step must then be taken back.
@@ -47,15 +47,15 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         fast: &FastDisks<'_, impl Fn(usize, f64) -> f64>,
     ) -> Result<bool, PackingError> {
         let longest = LONGEST_MOVE * self.moved.iter().fold(0.0, |most, &change| larger(norm(change), most));
-        if self.assembly.listed_way() < longest.min(LISTED * self.assembly.skin()) {
+        if self.assembly.listed_way() < longest.min(LISTED_SKIN * self.assembly.skin()) {
             self.assembly.reanchor()?;
             self.set_damping_coefficients();
         }
         let mut shells = std::mem::take(&mut self.shells);
         let assembly = &self.assembly;
         shells.set_list(assembly.pairs(), assembly.len(), assembly.rebuild_count());
-        let shell_count = LEAST_SHELLS + (PUSHED * (fast.time_step * fast.stiffness.decay).sqrt()) as u32;
-        let most = (MOST_DISKS * assembly.mobile_count() as f64) as usize;
+        let shell_count = EXTRA_SHELLS + (AFFECTED_SHELLS * (fast.time_step * fast.stiffness.decay).sqrt()) as u32;
+        let most = (LARGEST_SHARE * assembly.mobile_count() as f64) as usize;
         let momentum = total(&self.velocities);
         let change = if shells.set_shells(assembly, (fast.disks, shell_count), (self.margin, most)) {
             self.correct_patches(shell_count, fast, &mut shells)
@@ -70,7 +70,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         self.shells = shells;
         let Some(change) = change else { return Ok(false) };
         if self.is_free() {
-            self.lose(difference(total(&self.velocities), momentum));
+            self.remove_momentum(difference(total(&self.velocities), momentum));
         }
         if self.assembly.keep_listed(change)? {
             self.set_damping_coefficients();
@@ -84,7 +84,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     }
 
     /// Removes this momentum evenly from all disks, which changes no relative velocity and so no force.
-    fn lose(&mut self, momentum: Vector<D>) {
+    fn remove_momentum(&mut self, momentum: Vector<D>) {
         let kick = scaled(-1.0 / self.velocities.len() as f64, momentum);
         for velocity in &mut self.velocities {
             *velocity = sum(*velocity, kick);
@@ -143,7 +143,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             let change = difference(patch.displacements[place], self.assembly.displacements[disk]);
             let kick = difference(patch.velocities()[place], self.velocities[disk]);
             longest_change = larger(norm(change), longest_change);
-            if patch.last_shell[place] && (fast.share)(disk, measure(time_step, change, kick)) > OUTSIDE {
+            if patch.last_shell[place] && (fast.share)(disk, measure(time_step, change, kick)) > LAST_SHELL_CHANGE {
                 return None;
             }
         }

@@ -19,7 +19,7 @@ const TOLERANCE_SHARE: f64 = 0.1;
 
 /// Share of the mobile disks whose errors do not count for the length of a step. If their errors are too large, the step is
 /// repeated around them. A motion of 16 508 disks at p = 10 takes the same time from 1/300 to 1/30, and 10 % more at 1/10.
-const SET_APART: f64 = 0.01;
+const EXCLUDED_SHARE: f64 = 0.01;
 
 /// Ratio of the next step if the multirate correction fails.
 const UNCORRECTED_RATIO: f64 = 0.5;
@@ -89,15 +89,15 @@ struct Errors {
 }
 
 impl Errors {
-    /// The largest error, except for a share [`SET_APART`] of the disks. NaN counts as the largest.
+    /// The largest error, except for a share [`EXCLUDED_SHARE`] of the disks. NaN counts as the largest.
     fn set(&mut self, disk_count: usize, error: impl Fn(usize) -> f64) -> f64 {
         self.of_disks.clear();
         self.of_disks.extend((0..disk_count).map(error));
         self.too_large.clear();
         self.too_large.extend((0..disk_count as u32).filter(|&disk| self.of_disks[disk as usize] > 1.0));
         self.sorted.clone_from(&self.of_disks);
-        let apart = (SET_APART * disk_count as f64) as usize;
-        let (_, &mut most, _) = self.sorted.select_nth_unstable_by(apart, |a, b| b.total_cmp(a));
+        let excluded_count = (EXCLUDED_SHARE * disk_count as f64) as usize;
+        let (_, &mut most, _) = self.sorted.select_nth_unstable_by(excluded_count, |a, b| b.total_cmp(a));
         if self.of_disks.iter().any(|error| error.is_nan()) { f64::NAN } else { most }
     }
 }
