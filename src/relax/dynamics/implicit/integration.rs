@@ -1,0 +1,247 @@
+//! [`Integration`]: a motion from its start to rest, in steps as long as their errors allow.
+
+use std::time::Instant;
+
+use crate::forces::assembly::Assembly;
+use crate::forces::totals::Totals;
+use crate::law::damping::DampingLaw;
+use crate::law::pair_law::PairLaw;
+use crate::neighbours::for_each_pair::walk;
+use crate::packing::{Packing, PackingError};
+use crate::relax::convergence::Monitor;
+use crate::relax::dynamics::damped::NetForce;
+use crate::relax::dynamics::energy_balance::{Energies, EnergyBalance};
+use crate::relax::dynamics::implicit::allowed_error::AllowedError;
+use crate::relax::dynamics::implicit::explicit_phase::explicit_phase;
+use crate::relax::dynamics::implicit::finish::{Finish, FinishState, NewtonFinish};
+use crate::relax::dynamics::implicit::inertia::{Inertia, Stepped};
+use crate::relax::dynamics::implicit::method_selection::{Method, MethodSelection};
+use crate::relax::dynamics::implicit::motion::ImplicitMotion;
+use crate::relax::dynamics::implicit::rkc::phase::rkc_phase;
+use crate::relax::dynamics::implicit::stagnation::Stagnation;
+use crate::relax::dynamics::implicit::step_control::{LARGEST_RATIO, SMALLEST_RATIO, step_ratio};
+use crate::relax::force_limit::ForceLimit;
+use crate::relax::minimise::newton_descent::NEWTON_SCHEDULE;
+use crate::relax::outcome::{Cost, Outcome, Stop};
+use crate::relax::trace::{Look, Trace};
+use crate::vector::{Vector, larger, norm};
+
+/// Settings of damped dynamics or of gradient flow.
+pub(crate) struct Integration {
+    pub(crate) limit: ForceLimit,
+    pub(crate) net_force: NetForce,
+    pub(crate) tolerance: f64,
+    pub(crate) finish: Finish,
+    pub(crate) step_limit: usize,
+}
+
+/// Ratio after a step whose matrix was not positive definite.
+const INDEFINITE_RATIO: f64 = 0.5;
+
+/// Ratio after a step that broke the balance of energies.
+const UNBALANCED_RATIO: f64 = 0.5;
+
+/// Overlap over a radius that replaces the mean overlap where no disks overlap \[1\].
+const SMALLEST_OVERLAP: f64 = 1e-6;
+
+/// (hγ)² λ, or hγ λ/ζ, of the stiffest contacts at which a step stops growing. Only the mass term holds disks without contacts,
+/// and the pivots of the matrix must stay well above rounding.
+const LONGEST_STEP: f64 = 1e12;
+
+impl Integration {
+    pub(crate) fn relax<const D: usize, L: PairLaw, C: DampingLaw>(
+        &self,
+        packing: Packing<D>,
+        law: &L,
+        damping: &C,
+        inertia: Inertia,
+        trace: &mut impl Trace,
+    ) -> Result<Outcome<Packing<D>>, PackingError> {
+        let start = Instant::now();
+        let mut motion = ImplicitMotion::new(&packing, law, damping, inertia)?;
+        let mut monitor = Monitor::with(self.limit, NEWTON_SCHEDULE, &motion.assembly);
+        let mut cost = Cost::default();
+        let totals = motion.evaluate();
+        let mut balance = EnergyBalance::new(Energies::new(&totals, 0.0, 0.0));
+        let stop = self.run(totals, &mut motion, &mut monitor, (&mut cost, &mut balance), trace)?;
+        let assembly = &motion.assembly;
+        let net_forces = self.net_forces(&motion);
+        cost.energies = monitor.energies().map(|energies| balance.account(energies.after));
+        let (residual, rounding_floor) = monitor.finish(assembly, net_forces);
+        cost.force_evaluation_count += motion.work.evaluation_count;
+        cost.factorisation_count += motion.work.factorisation_count;
+        cost.iteration_count += motion.work.iteration_count;
+        cost.simulated_time = motion.time;
+        cost.rebuild_count = assembly.rebuild_count();
+        cost.seconds = start.elapsed().as_secs_f64();
+        Ok(Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost })
+    }
+
+    fn run<const D: usize, L: PairLaw, C: DampingLaw>(
+        &self,
+        mut totals: Totals<D>,
+        motion: &mut ImplicitMotion<D, L, C>,
+        monitor: &mut Monitor,
+        (cost, balance): (&mut Cost, &mut EnergyBalance),
+        trace: &mut impl Trace,
+    ) -> Result<Stop, PackingError> {
+        let mut newton_finish = match self.finish {
+            Finish::Motion => None,
+            Finish::Newton(residual) => Some(NewtonFinish::from(residual)),
+        };
+        let mut time_step = 0.0;
+        let mut overlaps = Vec::new();
+        let mut stagnation = Stagnation::default();
+        let mut selection = MethodSelection::new(motion);
+        loop {
+            let kinetic_energy = motion.kinetic_energy();
+            let look = Look {
+                step_count: cost.step_count,
+                energy: totals.energy,
+                kinetic_energy,
+                residual: 0.0,
+                time_step,
+                restart: false,
+            };
+            if let Some(stop) = monitor.check(&motion.assembly, self.net_forces(motion), &totals, look, trace) {
+                return Ok(stop);
+            }
+            let residual = monitor.residual().relative();
+            if stagnation.is_reached(cost.step_count, (kinetic_energy, motion.dissipated), residual) {
+                return Ok(Stop::Restless);
+            }
+            if monitor.takes_new_anchors() {
+                motion.reanchor()?;
+            }
+            let overlap = typical_overlap(&motion.assembly, &mut overlaps);
+            if let Some(newton_finish) = &mut newton_finish {
+                let kinetic = motion.kinetic_energy_of(monitor.backbone());
+                let state = FinishState { residual, kinetic, scale: totals.energy_scale(), overlap };
+                if newton_finish.is_due(&state)
+                    && let Some(stop) = newton_finish.attempt(motion, monitor, cost, &state, trace)?
+                {
+                    return Ok(stop);
+                }
+            }
+            if time_step == 0.0 {
+                time_step = first_step(motion, self.tolerance * overlap);
+            }
+            // Explicit steps resolve contacts that open and close. Without a backbone, nothing bounds their number.
+            let pressed = monitor.backbone()[..motion.assembly.mobile_count()].iter().any(|&member| member);
+            let method = if pressed { selection.method(time_step) } else { Method::Implicit };
+            if method != Method::Implicit {
+                if cost.step_count >= self.step_limit {
+                    return Ok(Stop::StepLimit);
+                }
+                cost.step_count += 1;
+            }
+            let allowed = AllowedError { overlap, tolerance: self.tolerance, backbone: monitor.backbone() };
+            match method {
+                Method::Explicit => {
+                    match explicit_phase(motion, &mut selection, &mut time_step, (cost, &mut *balance))? {
+                        Ok(reached) => totals = reached,
+                        Err(stop) => return Ok(stop),
+                    }
+                }
+                Method::Rkc { .. } => {
+                    let account = (&mut *cost, &mut *balance);
+                    if let Some(reached) = rkc_phase(motion, &mut selection, &mut time_step, account, &allowed)? {
+                        totals = reached;
+                    }
+                }
+                Method::Implicit => {
+                    let account = (&mut *cost, &mut *balance);
+                    match self.advance(motion, account, &mut time_step, (&allowed, pressed.then_some(&selection)))? {
+                        Ok(Some(reached)) => {
+                            totals = reached;
+                            selection.after_implicit_step();
+                        }
+                        // The motion is at the start of the step again.
+                        Ok(None) => {}
+                        Err(stop) => return Ok(stop),
+                    }
+                }
+            }
+        }
+    }
+
+    /// One implicit step, repeated with shorter ones until its error is small enough. `time_step` becomes that of the next step. None
+    /// if another method is cheaper than so short a step.
+    fn advance<const D: usize, L: PairLaw, C: DampingLaw>(
+        &self,
+        motion: &mut ImplicitMotion<D, L, C>,
+        (cost, balance): (&mut Cost, &mut EnergyBalance),
+        time_step: &mut f64,
+        (allowed, selection): (&AllowedError<'_>, Option<&MethodSelection>),
+    ) -> Result<Result<Option<Totals<D>>, Stop>, PackingError> {
+        motion.prestressed.copy_from_slice(allowed.backbone);
+        motion.margin = allowed.overlap;
+        *time_step = time_step.min(motion.longest_step(LONGEST_STEP));
+        let mut rejected = false;
+        loop {
+            if cost.step_count >= self.step_limit {
+                return Ok(Err(Stop::StepLimit));
+            }
+            cost.step_count += 1;
+            let ratio = match motion.step(*time_step)? {
+                Stepped::OutOfMemory => return Ok(Err(Stop::OutOfMemory)),
+                Stepped::Indefinite => INDEFINITE_RATIO,
+                Stepped::TooFar => SMALLEST_RATIO,
+                Stepped::Moved(reached) => {
+                    let error = allowed.share(motion, |motion, disk| motion.error(*time_step, disk));
+                    let ratio = step_ratio(error, LARGEST_RATIO);
+                    let energies = || Energies::new(&reached, motion.kinetic_energy(), motion.dissipated);
+                    let balanced = |balance: &mut EnergyBalance| match motion.has_masses() {
+                        true => balance.accept(energies()),
+                        false => balance.accept_descent(energies()),
+                    };
+                    if error <= 1.0 && balanced(balance) {
+                        *time_step *= if rejected { ratio.min(1.0) } else { ratio };
+                        return Ok(Ok(Some(reached)));
+                    }
+                    if error <= 1.0 { UNBALANCED_RATIO } else { ratio }
+                }
+            };
+            cost.rejected_count += 1;
+            rejected = true;
+            motion.take_back()?;
+            *time_step *= ratio;
+            if selection.is_some_and(|selection| selection.method(*time_step) != Method::Implicit) {
+                return Ok(Ok(None));
+            }
+        }
+    }
+
+    /// The net forces the limit is on.
+    fn net_forces<'a, const D: usize, L: PairLaw, C: DampingLaw>(
+        &self,
+        motion: &'a ImplicitMotion<D, L, C>,
+    ) -> &'a [Vector<D>] {
+        match self.net_force {
+            NetForce::Elastic => &motion.assembly.forces[..motion.assembly.mobile_count()],
+            NetForce::Total => motion.net_forces(),
+        }
+    }
+}
+
+/// The median overlap of all contacts: independent of the few that an inflation presses a thousand times as far \[length\].
+fn typical_overlap<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, overlaps: &mut Vec<f64>) -> f64 {
+    let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
+    overlaps.clear();
+    walk(assembly.pairs(), &assembly.displacements, &mut |pair| {
+        if pair.overlap > 0.0 {
+            overlaps.push(pair.overlap);
+        }
+    });
+    let middle = overlaps.len() / 2;
+    let median = if overlaps.is_empty() { 0.0 } else { *overlaps.select_nth_unstable_by(middle, f64::total_cmp).1 };
+    larger(median, SMALLEST_OVERLAP * radius)
+}
+
+/// The step in which the largest force moves a disk by the allowed error.
+fn first_step<const D: usize, L: PairLaw, C: DampingLaw>(motion: &ImplicitMotion<D, L, C>, allowed: f64) -> f64 {
+    let largest = motion.net_forces().iter().fold(0.0, |most, &force| larger(norm(force), most));
+    let step = motion.time_to_move(allowed, largest);
+    // Without forces any step will do, and the next check finds the motion at rest.
+    if step.is_finite() && step > 0.0 { step } else { 1.0 }
+}

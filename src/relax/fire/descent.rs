@@ -1,0 +1,102 @@
+//! The descent by FIRE: checks, restarts and steps.
+
+use std::time::Instant;
+
+use crate::forces::assembly::Assembly;
+use crate::law::pair_law::PairLaw;
+use crate::packing::{Packing, PackingError};
+use crate::relax::convergence::Monitor;
+use crate::relax::fire::run::Run;
+use crate::relax::fire::settings::{Fire, Precision};
+use crate::relax::fire::state::State;
+use crate::relax::outcome::{Cost, Outcome, Stop};
+use crate::relax::relaxer::Relaxer;
+use crate::relax::trace::Trace;
+
+impl Relaxer for Fire {
+    fn relax<const D: usize, L: PairLaw>(
+        &self,
+        packing: Packing<D>,
+        law: &L,
+        trace: &mut impl Trace,
+    ) -> Result<Outcome<Packing<D>>, PackingError> {
+        let start = Instant::now();
+        let mut assembly = Assembly::with_amended_lists(&packing, *law)?;
+        let mut monitor = Monitor::new(self.limit, &assembly);
+        let (stop, cost) = self.run(&mut assembly, &mut monitor, trace)?;
+        Ok(monitor.outcome(assembly, packing, (stop, cost), start))
+    }
+
+    fn passing(&self, limit: f64) -> Option<Self> {
+        self.limit.loosened(limit).map(|limit| Fire { limit, ..*self })
+    }
+}
+
+impl Fire {
+    /// Moves an assembly until the monitor stops it or the steps are used up.
+    pub(crate) fn run<const D: usize, L: PairLaw>(
+        &self,
+        assembly: &mut Assembly<D, L>,
+        monitor: &mut Monitor,
+        trace: &mut impl Trace,
+    ) -> Result<(Stop, Cost), PackingError> {
+        assembly.prune_lists(true);
+        let ended = self.run_from_rest(assembly, monitor, trace);
+        assembly.prune_lists(false);
+        ended
+    }
+
+    fn run_from_rest<const D: usize, L: PairLaw>(
+        &self,
+        assembly: &mut Assembly<D, L>,
+        monitor: &mut Monitor,
+        trace: &mut impl Trace,
+    ) -> Result<(Stop, Cost), PackingError> {
+        let mut state = State::new(assembly, self.precision == Precision::Mixed);
+        let mut run = Run::new(self, assembly);
+        let stop = run.descend(assembly, &mut state, monitor, trace)?;
+        if state.is_single() {
+            // The assembly is left with its disks where they are, and with forces in double precision.
+            state.settle(assembly);
+            assembly.evaluate();
+            run.evaluation_count += 1;
+        }
+        Ok((stop, run.cost()))
+    }
+}
+
+impl Run<'_> {
+    fn descend<const D: usize, L: PairLaw>(
+        &mut self,
+        assembly: &mut Assembly<D, L>,
+        state: &mut State<D>,
+        monitor: &mut Monitor,
+        trace: &mut impl Trace,
+    ) -> Result<Stop, PackingError> {
+        loop {
+            let (totals, mut sums) = self.evaluate(assembly, state);
+            let climbed = sums.power <= 0.0 && self.step_count > 0;
+            if let Some(totals) = &totals
+                && let Some(stop) = self.check(assembly, state, monitor, (totals, &sums), trace)?
+            {
+                return Ok(stop);
+            }
+            if self.step_count >= self.settings.step_limit {
+                return Ok(Stop::StepLimit);
+            }
+            self.check_bound(assembly, state);
+            if climbed {
+                match self.restart(assembly, state, monitor, (totals, &sums), trace)? {
+                    Ok(rested) => sums = rested,
+                    Err(stop) => return Ok(stop),
+                }
+            } else {
+                self.lengthen();
+            }
+            let rebuilt = self.advance(assembly, state, monitor, &sums)?;
+            if rebuilt && monitor.ran_away(assembly) {
+                return Ok(Stop::NoMinimum);
+            }
+        }
+    }
+}

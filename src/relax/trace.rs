@@ -1,0 +1,43 @@
+//! [`Trace`]: what a relaxer reports while it works.
+
+/// A listener to a relaxer; `()` ignores everything and costs nothing.
+pub trait Trace {
+    /// Whether it listens. The caller then leaves out work that only a listener needs.
+    const ACTIVE: bool = true;
+
+    /// Called at every check of the residual.
+    fn look(&mut self, look: &Look);
+
+    /// Asked after every check: whether the relaxer is to end here, with [`Stop::Interrupted`](crate::relax::Stop::Interrupted).
+    fn interrupted(&mut self) -> bool {
+        false
+    }
+}
+
+/// The state of a relaxation at one check.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Look {
+    /// Steps taken so far.
+    pub step_count: usize,
+    /// Elastic energy, with that of the sites where the law has them; it may then be negative \[energy\].
+    pub energy: f64,
+    /// Kinetic energy \[energy\].
+    pub kinetic_energy: f64,
+    /// Relative residual, with the backbone of the last refresh \[1\].
+    pub residual: f64,
+    /// Time step \[time\].
+    pub time_step: f64,
+    /// Whether the relaxer restarts from rest here. The energies at restarts never increase.
+    pub restart: bool,
+}
+
+impl Trace for () {
+    const ACTIVE: bool = false;
+    fn look(&mut self, _look: &Look) {}
+}
+
+impl<F: FnMut(&Look)> Trace for F {
+    fn look(&mut self, look: &Look) {
+        self(look);
+    }
+}
