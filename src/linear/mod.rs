@@ -1,4 +1,4 @@
-//! Linear algebra of packings at rest: sparse factorisations of the [`Hessian`](crate::linear::hessian::Hessian), the answer
+//! Linear algebra of packings at rest: sparse factorisations of the [`Hessian`], the answer
 //! to an infinitesimal inflation or strain, and vibrational modes.
 //!
 //! Start from [`LinearResponse`], [`ElasticModuli`] or [`VibrationalModes`], or from [`Analysis`] for a matrix of one's own.
