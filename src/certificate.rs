@@ -25,7 +25,9 @@ use crate::law::pair_law::PairLaw;
 #[cfg(feature = "linear")]
 use crate::linear::hessian::{Hessian, Members, Prestress};
 #[cfg(feature = "linear")]
-use crate::linear::{Analysis, LinearError, pinned};
+use crate::linear::pinned::pinned;
+#[cfg(feature = "linear")]
+use crate::linear::{Analysis, LinearError};
 use crate::network::ContactNetwork;
 use crate::packing::{Packing, PackingError};
 use crate::relax::{Criterion, rounding_floor};

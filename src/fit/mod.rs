@@ -9,6 +9,7 @@ pub mod ensemble;
 mod incomplete_beta;
 pub mod modes;
 pub mod profile;
+mod profile_fit;
 mod rings;
 mod screening;
 mod search;

@@ -1,7 +1,7 @@
 //! The units a profile is fitted in: powers of two near its own lengths and displacements, so that squares neither overflow
 //! nor vanish whatever the profile's units, and no number is rounded on the way in or out.
 
-use crate::fit::profile::{ElasticFit, ProfileFit, ScreenedFit};
+use crate::fit::profile_fit::{ElasticFit, ProfileFit, ScreenedFit};
 use crate::fit::{Estimate, FitError};
 use crate::observe::radial_profile::Ring;
 use crate::reference::{Annulus, ReferenceError};

@@ -5,7 +5,7 @@
 //! the rim would otherwise have holes as soon as r_out plus the contact range exceeds half a side, so a label can occur
 //! twice in it.
 
-use crate::inflation::InflationError;
+use crate::inflation::error::InflationError;
 use crate::network::ContactNetwork;
 use crate::packing::{Domain, Packing, ball_volume};
 use crate::vector::{Vector, dot, norm, two_sum};

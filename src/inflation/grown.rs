@@ -1,6 +1,10 @@
 //! [`Grown`]: the moment of an inflation at which the disk has grown and nothing has moved yet.
 
-use crate::inflation::{Boundary, Circle, Inflation, InflationError, Rest, Stage, choose_centre, displacement};
+use crate::inflation::choose_centre::choose_centre;
+use crate::inflation::circle::Circle;
+use crate::inflation::error::InflationError;
+use crate::inflation::rest::{Rest, Stage};
+use crate::inflation::settings::{Boundary, Inflation};
 use crate::law::pair_law::PairLaw;
 use crate::network::ContactNetwork;
 use crate::packing::{Packing, PackingError};
@@ -212,4 +216,10 @@ pub(crate) fn with_centre_of_mass_of<const D: usize>(before: &Packing<D>, mut af
         after.displace(disk, shift);
     }
     after
+}
+
+/// How far a disk moved, to the rounding of that distance (positions are sums of two numbers).
+pub(crate) fn displacement<const D: usize>(before: &Packing<D>, after: &Packing<D>, disk: usize) -> [f64; D] {
+    let ((a, a_low), (b, b_low)) = (after.centre(disk), before.centre(disk));
+    std::array::from_fn(|d| (a[d] - b[d]) + (a_low[d] - b_low[d]))
 }

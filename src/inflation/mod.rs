@@ -4,235 +4,24 @@
 //! and the whole periodic box, in which nothing is held and the centre of mass stays where it is. Deflation takes the
 //! inflated state, gives the disk its first radius back and relaxes again.
 
+mod choose_centre;
 pub mod circle;
+mod error;
 pub(crate) mod grown;
+mod rest;
+mod settings;
 
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64;
-use serde::{Deserialize, Serialize};
-
+pub use choose_centre::choose_centre;
 pub use circle::Circle;
+pub use error::InflationError;
 pub use grown::Grown;
+pub(crate) use grown::displacement;
+pub use rest::{Rest, Stage};
+pub use settings::{Boundary, Centre, Inflation};
 
-use crate::law::on_site::OnSite;
 use crate::law::pair_law::PairLaw;
-use crate::network::ContactNetwork;
-use crate::packing::{Packing, PackingError};
-use crate::relax::{Cost, Criterion, Relaxed, Relaxer, Residual, Stop, Trace};
-
-/// What keeps the packing in place while a disk is inflated.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Boundary {
-    /// A circle is cut out; disks from this radius outwards are held, and so is the centre.
-    HeldRim {
-        /// r_out over the shortest side of the box, at most 1/2 \[1\].
-        outer_radius_over_side: f64,
-    },
-    /// The periodic box; nothing is held, the centre of mass stays.
-    Periodic,
-}
-
-impl Default for Boundary {
-    /// Source: design §4, r_out/L for 5548 disks (0.486 and 0.491 for 22184 and 88776).
-    fn default() -> Self {
-        Boundary::HeldRim { outer_radius_over_side: 0.480 }
-    }
-}
-
-/// Which disk is inflated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Centre {
-    /// A random one of the smallest disks on the backbone (of all the smallest disks where there is no backbone).
-    #[default]
-    Backbone,
-    /// A random one of the smallest disks, rattler or not.
-    AnySmall,
-    /// The disk with this label.
-    Label(u64),
-}
-
-/// The inflation of one disk.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Inflation {
-    /// d_0, by which the radius grows at once \[length\].
-    pub increase: f64,
-    /// What keeps the packing in place.
-    pub boundary: Boundary,
-    /// Which disk is inflated.
-    pub centre: Centre,
-    /// Whether the disk is deflated again afterwards.
-    pub deflate: bool,
-    /// Γ of an energy −Γu²/2 on every mobile disk, u its displacement from where it was in the packing given; absent, there
-    /// is none \[force / length\]. The packing itself is prepared without it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub on_site_coupling: Option<f64>,
-}
-
-impl Inflation {
-    /// A law with the sites of the inflation, if disks have any.
-    pub fn law_with_sites<L: PairLaw>(&self, law: &L) -> OnSite<L> {
-        OnSite { law: *law, coupling: self.on_site_coupling.unwrap_or(0.0) }
-    }
-
-    /// The same.
-    ///
-    /// # Errors
-    /// A coupling that is not finite.
-    pub(crate) fn checked_law_with_sites<L: PairLaw>(&self, law: &L) -> Result<OnSite<L>, InflationError> {
-        match self.on_site_coupling {
-            Some(coupling) if !coupling.is_finite() => Err(InflationError::CouplingNotFinite { coupling }),
-            _ => Ok(self.law_with_sites(law)),
-        }
-    }
-}
-
-impl Default for Inflation {
-    /// Source: design §4 (d_0 = 0.1).
-    fn default() -> Self {
-        Inflation {
-            increase: 0.1,
-            boundary: Boundary::default(),
-            centre: Centre::default(),
-            deflate: false,
-            on_site_coupling: None,
-        }
-    }
-}
-
-/// Why an inflation could not be done.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum InflationError {
-    /// The disks themselves are at fault.
-    #[error(transparent)]
-    Packing(#[from] PackingError),
-    /// A circle is cut from a periodic box only.
-    #[error("the packing is not periodic: a circle with its held rim is cut from a periodic box")]
-    NotPeriodic,
-    /// r_out must leave every mobile disk one image.
-    #[error("outer radius {outer_radius} is not between 0 and half the shortest side of the box, {half_side}")]
-    OuterRadiusOutOfRange {
-        /// The radius asked for.
-        outer_radius: f64,
-        /// Half the shortest side.
-        half_side: f64,
-    },
-    /// Nothing could move.
-    #[error("no disk lies within the outer radius {outer_radius}")]
-    NoMobileDisk {
-        /// The radius asked for.
-        outer_radius: f64,
-    },
-    /// d_0 must be finite and leave a positive radius.
-    #[error("increase is {increase}, which leaves no positive radius of a disk of radius {radius}")]
-    IncreaseNotPossible {
-        /// d_0 asked for.
-        increase: f64,
-        /// Radius of the disk.
-        radius: f64,
-    },
-    /// The inflated disk would cover the centre of a neighbour.
-    #[error(
-        "increase is {increase}, larger than the neighbours allow: a disk of radius {radius} has a neighbour's centre at {nearest}, so the increase must stay below {}",
-        nearest - radius
-    )]
-    IncreaseTooLarge {
-        /// d_0 asked for.
-        increase: f64,
-        /// Radius of the disk.
-        radius: f64,
-        /// Distance of the nearest centre.
-        nearest: f64,
-    },
-    /// Γ must be a number.
-    #[error("on_site_coupling is {coupling}, not a finite number")]
-    CouplingNotFinite {
-        /// The value asked for.
-        coupling: f64,
-    },
-    /// There is no disk with the label asked for.
-    #[error("no disk has the label {label}")]
-    NoSuchLabel {
-        /// The label asked for.
-        label: u64,
-    },
-    /// A mobile disk was pushed through the held rim: its centre is farther out than the rim and a disk.
-    #[error(
-        "{stage}: disk {label} was pushed through the rim: it is at {distance} from the centre, and disks from {outer_radius} on are held"
-    )]
-    BeyondRim {
-        /// Which of the relaxations.
-        stage: Stage,
-        /// Label of the disk.
-        label: u64,
-        /// Its distance from the centre \[length\].
-        distance: f64,
-        /// r_out \[length\].
-        outer_radius: f64,
-    },
-    /// A relaxation did not end at rest.
-    #[error("{stage}: the relaxation stopped with {stop:?} after {step_count} steps, residual {residual:e}")]
-    NotAtRest {
-        /// Which of the relaxations.
-        stage: Stage,
-        /// Why it stopped.
-        stop: Stop,
-        /// Steps taken.
-        step_count: usize,
-        /// Relative residual reached.
-        residual: f64,
-    },
-}
-
-/// The relaxations of an inflation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Stage {
-    /// Before anything is inflated (at once at rest if the packing was).
-    Before,
-    /// After the inflation.
-    Inflated,
-    /// After the deflation.
-    Deflated,
-}
-
-impl std::fmt::Display for Stage {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.write_str(match self {
-            Stage::Before => "before the inflation",
-            Stage::Inflated => "after the inflation",
-            Stage::Deflated => "after the deflation",
-        })
-    }
-}
-
-/// One state of an inflation at rest.
-#[derive(Debug, Clone)]
-pub struct Rest<const D: usize> {
-    /// The disks.
-    pub packing: Relaxed<Packing<D>>,
-    /// Pressure of the circle or the box \[force / length^(D−1)\].
-    pub pressure: f64,
-    /// Elastic energy, with that of the sites where there are some \[energy\].
-    pub energy: f64,
-    /// Number of contacts, held–held ones left out.
-    pub contact_count: usize,
-    /// Number of mobile disks that are rattlers.
-    pub rattler_count: usize,
-    /// Whether each disk belongs to the backbone.
-    pub backbone: Vec<bool>,
-    /// Residual reached.
-    pub residual: Residual,
-    /// Rounding floor of the relative residual \[1\].
-    pub rounding_floor: f64,
-    /// Which limit was met.
-    pub criterion: Criterion,
-    /// What it cost.
-    pub cost: Cost,
-}
+use crate::packing::Packing;
+use crate::relax::{Relaxer, Trace};
 
 /// An inflation done: the states before, after, and after deflation if asked for.
 #[derive(Debug, Clone)]
@@ -251,29 +40,6 @@ pub struct Inflated<const D: usize> {
     pub after: Rest<D>,
     /// At rest with the disk deflated again.
     pub deflated: Option<Rest<D>>,
-}
-
-/// Picks the disk to inflate.
-///
-/// # Errors
-/// A label that no disk has; two disks with the same centre.
-pub fn choose_centre<const D: usize, L: PairLaw>(
-    packing: &Packing<D>,
-    law: &L,
-    centre: Centre,
-    seed: u64,
-) -> Result<usize, InflationError> {
-    if let Centre::Label(label) = centre {
-        let found = packing.labels().iter().position(|&other| other == label);
-        return found.ok_or(InflationError::NoSuchLabel { label });
-    }
-    let smallest = packing.radii().iter().copied().fold(f64::INFINITY, f64::min);
-    let small: Vec<usize> = (0..packing.len()).filter(|&disk| packing.radii()[disk] == smallest).collect();
-    let backbone = ContactNetwork::new(packing, law)?.backbone;
-    let rigid: Vec<usize> = small.iter().copied().filter(|&disk| backbone[disk]).collect();
-    let candidates = if centre == Centre::Backbone && !rigid.is_empty() { rigid } else { small };
-    let mut generator = Pcg64::seed_from_u64(seed);
-    Ok(candidates[generator.random_range(0..candidates.len())])
 }
 
 /// Inflates a disk of a packing and relaxes the rest.
@@ -299,10 +65,4 @@ pub fn inflate<const D: usize, L: PairLaw>(
     };
     let Grown { centre, inner_radius, outer_radius, mobile_count, before, .. } = grown;
     Ok(Inflated { centre, inner_radius, outer_radius, mobile_count, before, after, deflated })
-}
-
-/// How far a disk moved, to the rounding of that distance (positions are sums of two numbers).
-pub(crate) fn displacement<const D: usize>(before: &Packing<D>, after: &Packing<D>, disk: usize) -> [f64; D] {
-    let ((a, a_low), (b, b_low)) = (after.centre(disk), before.centre(disk));
-    std::array::from_fn(|d| (a[d] - b[d]) + (a_low[d] - b_low[d]))
 }

@@ -30,9 +30,10 @@
 //! ASE, `ase.io.extxyz`; OVITO manual, "XYZ file reader".
 
 use crate::io::comment_line::{CommentLine, Problem, list};
+use crate::io::frame::Frame;
+use crate::io::read_error::ReadError;
 use crate::io::source::{AXES, Source, largest_radius};
-use crate::io::xyz_columns::Columns;
-use crate::io::{Frame, ReadError};
+use crate::io::xyz_columns::{Columns, flag};
 use crate::packing::{Domain, Packing};
 
 /// Reads one frame.
@@ -180,12 +181,4 @@ fn components<const N: usize>(
         *number = source.number(line, field, part)?;
     }
     Ok(numbers)
-}
-
-pub(super) fn flag(text: &str) -> Option<bool> {
-    match text {
-        "T" | "True" | "true" | "1" => Some(true),
-        "F" | "False" | "false" | "0" => Some(false),
-        _ => None,
-    }
 }

@@ -24,8 +24,9 @@
 //! # Source
 //! LAMMPS manual, commands `read_data` and `write_data`.
 
+use crate::io::frame::Frame;
+use crate::io::read_error::ReadError;
 use crate::io::source::{Disk, Source};
-use crate::io::{Frame, ReadError};
 use crate::packing::{Domain, Packing};
 
 /// Number of columns of `Atoms` in style sphere, without and with image flags.

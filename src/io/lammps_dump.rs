@@ -32,8 +32,9 @@
 //! # Source
 //! LAMMPS manual, commands `dump` and `dump_modify`.
 
+use crate::io::frame::Frame;
+use crate::io::read_error::ReadError;
 use crate::io::source::{Disk, Source};
-use crate::io::{Frame, ReadError};
 use crate::packing::{Domain, Packing};
 
 /// The kinds of position, the one preferred first, and whether they are fractions of the box.

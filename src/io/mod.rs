@@ -17,6 +17,7 @@
 pub mod atomic;
 mod comment_line;
 pub mod extended_xyz;
+mod frame;
 pub mod lammps_data;
 pub mod lammps_dump;
 mod read_error;
@@ -29,6 +30,7 @@ mod xyz_columns;
 use std::path::Path;
 
 pub use atomic::{WriteError, write_atomically};
+pub use frame::Frame;
 pub use read_error::ReadError;
 pub use unfinished::{remove_unfinished, try_name};
 pub use write_lammps_data::write_lammps_data;
@@ -36,16 +38,6 @@ pub use write_packing::{Column, write_packing};
 
 use crate::packing::Packing;
 use source::Source;
-
-/// Which of the packings in one file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Frame {
-    /// The last one.
-    #[default]
-    Last,
-    /// By position in the file, from 0.
-    Index(usize),
-}
 
 /// The formats that can be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

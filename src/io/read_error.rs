@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use crate::io::source::spacing;
 use crate::packing::PackingError;
 
 /// Why a file was not read as a packing. Lines count from 1; long values are shortened.
@@ -235,4 +234,9 @@ pub enum ReadError {
         /// What is wrong with them.
         source: PackingError,
     },
+}
+
+/// From a number to the next one that is larger in size.
+pub(super) fn spacing(number: f64) -> f64 {
+    number.abs().next_up() - number.abs()
 }

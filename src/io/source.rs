@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use crate::io::{Frame, ReadError};
+use crate::io::frame::Frame;
+use crate::io::read_error::ReadError;
 use crate::packing::{Domain, LARGEST_RADIUS, Packing, SMALLEST_RADIUS};
 use crate::vector::Vector;
 
@@ -42,11 +43,6 @@ pub(super) fn excerpt(text: &str) -> String {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text.to_owned(),
     }
-}
-
-/// From a number to the next one that is larger in size.
-pub(super) fn spacing(number: f64) -> f64 {
-    number.abs().next_up() - number.abs()
 }
 
 /// The largest radius \[length\].

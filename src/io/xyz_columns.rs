@@ -1,9 +1,8 @@
 //! The columns of extended XYZ by the key `Properties`, and what the rows hold in them.
 
-use crate::io::ReadError;
 use crate::io::comment_line::CommentLine;
-use crate::io::extended_xyz::flag;
-use crate::io::source::{AXES, Disk, Row, Source, excerpt, spacing};
+use crate::io::read_error::{ReadError, spacing};
+use crate::io::source::{AXES, Disk, Row, Source, excerpt};
 use crate::vector::Vector;
 
 /// Largest number of values one property may have; far above any use, far below an overflow of their sum.
@@ -167,5 +166,13 @@ impl<const D: usize> Columns<D> {
             }
         }
         Ok(vector)
+    }
+}
+
+pub(super) fn flag(text: &str) -> Option<bool> {
+    match text {
+        "T" | "True" | "true" | "1" => Some(true),
+        "F" | "False" | "false" | "0" => Some(false),
+        _ => None,
     }
 }

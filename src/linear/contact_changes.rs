@@ -8,7 +8,7 @@
 //! Contacts with rattlers are left out: their forces vanish in any load.
 
 use crate::law::pair_law::PairLaw;
-use crate::linear::LinearResponse;
+use crate::linear::response::LinearResponse;
 use crate::network::ContactNetwork;
 use crate::packing::{Packing, PackingError};
 use crate::vector::{Vector, difference, dot, norm, scaled, sum};

@@ -13,7 +13,7 @@
 //! Hestenes, Stiefel (1952), J. Res. Natl. Bur. Stand. 49, 409; Meijerink, van der Vorst (1977), Math. Comput. 31, 148
 //! (incomplete factors); Manteuffel (1980), Math. Comput. 34, 473 (the shift).
 
-use crate::linear::LinearError;
+use crate::linear::error::LinearError;
 use crate::sparse::SymmetricMatrix;
 use crate::vector::larger;
 

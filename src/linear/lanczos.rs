@@ -12,7 +12,7 @@ use faer::{Mat, Side};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::linear::LinearError;
+use crate::linear::error::LinearError;
 
 /// ‖A y − θ y‖/θ at which a pair counts as found \[1\]: some hundred roundings, which is what a solution leaves.
 const FOUND: f64 = 1e-14;

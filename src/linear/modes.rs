@@ -16,9 +16,10 @@
 use faer::{Mat, Side};
 
 use crate::law::pair_law::PairLaw;
+use crate::linear::error::LinearError;
+use crate::linear::factorisation::Analysis;
 use crate::linear::hessian::{Hessian, Members, Prestress};
 use crate::linear::lanczos::{dot, largest, norm};
-use crate::linear::{Analysis, LinearError};
 use crate::memory::Memory;
 use crate::packing::Packing;
 use crate::sparse::SymmetricMatrix;

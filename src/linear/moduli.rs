@@ -29,8 +29,10 @@
 use faer::{Mat, Side};
 
 use crate::law::pair_law::PairLaw;
+use crate::linear::error::LinearError;
+use crate::linear::factorisation::Analysis;
 use crate::linear::hessian::{Hessian, Members, Prestress, contact_block};
-use crate::linear::{Analysis, LinearError, pinned};
+use crate::linear::pinned::pinned;
 use crate::network::ContactNetwork;
 use crate::packing::Packing;
 use crate::vector::{Vector, dot, larger, norm};

@@ -13,8 +13,9 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
 
+use crate::linear::dissection;
+use crate::linear::error::LinearError;
 use crate::linear::hessian::Hessian;
-use crate::linear::{LinearError, dissection};
 
 /// The order that is best here: minimum degree in two dimensions, nested dissection in three.
 ///

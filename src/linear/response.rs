@@ -14,8 +14,9 @@
 use crate::forces::assembly::Assembly;
 use crate::forces::elastic::geometry;
 use crate::law::pair_law::PairLaw;
+use crate::linear::error::LinearError;
+use crate::linear::factorisation::Analysis;
 use crate::linear::hessian::{Hessian, Members, Prestress};
-use crate::linear::{Analysis, LinearError};
 use crate::network::ContactNetwork;
 use crate::packing::Packing;
 use crate::vector::{Vector, difference, scaled, sum};

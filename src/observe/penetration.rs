@@ -15,7 +15,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::observe::RadialProfile;
+use crate::observe::radial_profile::RadialProfile;
 use crate::vector::larger;
 
 /// Thresholds of a penetration length.

@@ -1,6 +1,6 @@
 //! Where disks live: a periodic box or the open plane, and the nearest image of a pair.
 
-use crate::packing::PackingError;
+use crate::packing::error::PackingError;
 use crate::vector::{Vector, extended_sum, two_sum};
 
 /// The space a packing fills.

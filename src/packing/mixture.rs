@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::packing::{LARGEST_RADIUS, PackingError, SMALLEST_RADIUS};
+use crate::packing::error::{LARGEST_RADIUS, PackingError, SMALLEST_RADIUS};
 
 /// One kind of disk in a mixture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

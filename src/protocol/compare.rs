@@ -4,8 +4,11 @@ use std::collections::BTreeSet;
 
 use crate::inflation::{Rest, displacement};
 use crate::network::ContactNetwork;
+use crate::protocol::compared::{Compared, ProtocolSensitivity};
 use crate::protocol::descend::Landing;
-use crate::protocol::{Compared, Ending, ProtocolSensitivity, ProtocolSettings, Spreads};
+use crate::protocol::ending::Ending;
+use crate::protocol::settings::ProtocolSettings;
+use crate::protocol::spread::Spreads;
 use crate::relax::Criterion;
 use crate::vector::{Vector, difference, larger, norm, scaled, sum};
 

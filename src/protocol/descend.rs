@@ -6,7 +6,8 @@ use crate::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
 use crate::law::pair_law::PairLaw;
 use crate::network::ContactNetwork;
 use crate::packing::{Packing, PackingError};
-use crate::protocol::{Ending, ProtocolSettings};
+use crate::protocol::ending::Ending;
+use crate::protocol::settings::ProtocolSettings;
 use crate::relax::{
     Criterion, Fire, ForceLimit, GradientFlow, ImplicitDynamics, Newton, NonlinearConjugateGradients, Outcome,
     QuasiNewton, Relaxer, RelaxerChoice, Staged, Stop, Trace,

@@ -2,12 +2,7 @@
 
 use serde::Serialize;
 
-use crate::displacement::DisplacementField;
-use crate::fit::profile::{Decision, ProfileFit, ProfileFitSettings, fit_radial_profile};
-use crate::inflation::Inflated;
-use crate::observe::RadialProfile;
-use crate::protocol::{Compared, Spreads};
-use crate::reference::Annulus;
+use crate::fit::profile::{Decision, ProfileFit};
 
 /// A fit in the numbers that are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -37,21 +32,5 @@ impl From<ProfileFit> for EndingFit {
             wavenumber: screened.wavenumber.value,
         });
         EndingFit { decision: fit.decision, elastic_amplitude: fit.elastic.amplitude.value, screened }
-    }
-}
-
-impl Compared<2> {
-    /// Fits the response of every ending at rest, counted from the state before, and adds the spreads.
-    ///
-    /// An ending whose profile cannot be fitted has no fit.
-    pub fn fit(&mut self, inflated: &Inflated<2>, ring_width: f64, settings: &ProfileFitSettings) {
-        let Ok(annulus) = Annulus::new(inflated.inner_radius, inflated.outer_radius) else { return };
-        for (ending, state) in self.sensitivity.endings.iter_mut().zip(&self.states) {
-            let Some(after) = state else { continue };
-            let response = Inflated { after: after.clone(), deflated: None, ..inflated.clone() };
-            let profile = RadialProfile::of(&DisplacementField::of_inflation(&response), ring_width);
-            ending.fit = fit_radial_profile(&profile, annulus, settings).ok().map(EndingFit::from);
-        }
-        self.sensitivity.spreads = Spreads::of(&self.sensitivity.endings);
     }
 }

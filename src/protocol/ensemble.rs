@@ -4,7 +4,8 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::Serialize;
 
-use crate::protocol::{ProtocolSensitivity, Spread};
+use crate::protocol::compared::ProtocolSensitivity;
+use crate::protocol::spread::Spread;
 use crate::vector::larger;
 
 /// Which of these samples, by name and seed, the comparison is done to: fraction × number of them, to the nearest, at least one.

@@ -16,131 +16,31 @@
 //! The standard deviation of a quantity over the endings is its error bar for "which minimum".
 
 mod compare;
+mod compared;
 mod descend;
+mod ending;
 #[cfg(feature = "fit")]
 mod ending_fit;
 mod ending_response;
 mod ensemble;
+mod measure;
+mod settings;
 mod spread;
 
-use serde::{Deserialize, Serialize};
-
-use crate::inflation::{Inflated, Inflation, Rest};
+use crate::inflation::{Inflated, Inflation};
 use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError, ball_volume};
-use crate::relax::{Cost, Stop, Trace};
+use crate::relax::Trace;
 
+pub use compared::{Compared, ProtocolSensitivity};
 pub use descend::Protocol;
+pub use ending::Ending;
 #[cfg(feature = "fit")]
 pub use ending_fit::{EndingFit, EndingScreened};
 pub use ending_response::EndingResponse;
 pub use ensemble::{ProtocolSummary, chosen};
+pub use settings::ProtocolSettings;
 pub use spread::{Spread, Spreads};
-
-/// How protocols are compared.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct ProtocolSettings {
-    /// Share of the samples of a scene it is done to, at least one of them \[1\].
-    pub fraction: f64,
-    /// ε: farthest disks of two states in one minimum, over the mean overlap \[1\].
-    pub same_minimum: f64,
-    /// Distance over the mean overlap beyond which a disk is named as one that differs \[1\].
-    pub differing: f64,
-    /// Relative residual to which Newton's method brings every ending \[1\]; four times the rounding floor where that is more.
-    pub residual: f64,
-}
-
-impl Default for ProtocolSettings {
-    /// All samples; ε = 10⁻⁴; a tenth of an overlap; 10⁻¹⁰.
-    fn default() -> Self {
-        ProtocolSettings { fraction: 1.0, same_minimum: 1e-4, differing: 0.1, residual: 1e-10 }
-    }
-}
-
-/// Where one protocol ended.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Ending {
-    /// The relaxer, with its damping law if it has one.
-    pub relaxer: String,
-    /// Why the relaxer itself stopped.
-    pub stop: Stop,
-    /// Why Newton's method after it stopped; absent where it was not called (not at rest, or no contacts).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub finish: Option<Stop>,
-    /// What the relaxer cost, Newton's method after it left out.
-    pub cost: Cost,
-    /// Largest way of a disk of the backbone during the finish \[length\]; 0 where there was none.
-    pub finish_way: f64,
-    /// Relative residual in the end \[1\].
-    pub relative_residual: f64,
-    /// Number of the minimum, from 1, in the order in which they were found; absent if not at rest or without contacts.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub minimum: Option<usize>,
-    /// Largest distance of a disk of both backbones from where it is in the reference \[length\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub distance: Option<f64>,
-    /// Labels of the disks farther away than [`ProtocolSettings::differing`] mean overlaps, farthest first.
-    pub differing: Vec<u64>,
-    /// Contacts between disks of the backbone that the reference has and this has not, or the other way about.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub contact_difference_count: Option<usize>,
-    /// Number of contacts.
-    pub contact_count: usize,
-    /// Elastic energy, with that of sites \[energy\].
-    pub energy: f64,
-    /// Pressure \[force / length^(D−1)\].
-    pub pressure: f64,
-    /// Δp \[force / length^(D−1)\]; absent if not at rest.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub pressure_change: Option<f64>,
-    /// Its angular correlation and contact changes, where they were asked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub response: Option<EndingResponse>,
-    /// What was fitted to its radial profile.
-    #[cfg(feature = "fit")]
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub fit: Option<EndingFit>,
-}
-
-impl Ending {
-    /// Whether it came to rest, contacts or not.
-    pub fn at_rest(&self) -> bool {
-        self.pressure_change.is_some()
-    }
-}
-
-/// The endings of several protocols from one start.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ProtocolSensitivity {
-    /// One entry a protocol, in the order given.
-    pub endings: Vec<Ending>,
-    /// Which of them is the reference of distances: the first at rest with contacts.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub reference: Option<usize>,
-    /// Mean overlap of the contacts of its backbone, ⟨δ⟩ \[length\].
-    pub mean_overlap: f64,
-    /// Number of minima found.
-    pub minimum_count: usize,
-    /// Largest distance from the reference \[length\].
-    pub largest_distance: f64,
-    /// Largest distance of an ending from the first one in its minimum, over ⟨δ⟩ \[1\].
-    pub farthest_within: f64,
-    /// Smallest distance between the first endings of two minima, over ⟨δ⟩ \[1\]; absent if there is but one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub nearest_between: Option<f64>,
-    /// Means and standard deviations over the endings at rest.
-    pub spreads: Spreads,
-}
-
-/// A comparison with the states compared.
-#[derive(Debug, Clone)]
-pub struct Compared<const D: usize> {
-    /// The comparison.
-    pub sensitivity: ProtocolSensitivity,
-    /// The states in the order of the endings; none where a protocol did not come to rest.
-    pub states: Vec<Option<Rest<D>>>,
-}
 
 impl<const D: usize> Compared<D> {
     /// Relaxes `start` by every protocol and compares where they end.

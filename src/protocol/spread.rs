@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::protocol::Ending;
+use crate::protocol::ending::Ending;
 
 /// Mean and standard deviation of a quantity over some endings.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

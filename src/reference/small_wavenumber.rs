@@ -21,7 +21,7 @@
 //! # Source
 //! Abramowitz & Stegun (1964), 9.1.10 and 9.1.11; DLMF 10.53.
 
-use crate::reference::bessel::polynomial;
+use crate::reference::bessel::polynomial::polynomial;
 use crate::reference::local_series::Sign;
 
 /// 1/14!² = 10⁻²² at κr = 2.

@@ -12,10 +12,13 @@ use crate::io::{Column, write_atomically, write_packing};
 use crate::law::choice::LawChoice;
 use crate::packing::Packing;
 use crate::processor::{Processor, Vectors};
+use crate::report::csv;
 use crate::report::data_file::DataFile;
-use crate::report::output::{Kind, OutputFolder};
-use crate::report::rows::{done, law};
-use crate::report::{ReportError, csv};
+use crate::report::error::ReportError;
+use crate::report::output::Kind;
+use crate::report::output::OutputFolder;
+use crate::report::rows::law;
+use crate::report::rows::section::done;
 use crate::run::{Report, SampleReport, SampleResult};
 use crate::vector::Vector;
 

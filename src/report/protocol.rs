@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::protocol::{Ending, ProtocolSensitivity, Spread};
 use crate::relax::{Criterion, Stop};
 use crate::report::number::{count, significant};
-use crate::report::rows::{Rows, Section};
+use crate::report::rows::section::{Rows, Section};
 use crate::run::{Report, SampleReport, SampleResult};
 
 /// The comparison of a sample, if it was made.

@@ -1,7 +1,8 @@
 //! [`terminal_table`], [`analysis_table`]: a report, or analyses, as plain text, a column a sample, no wider than [`WIDTH`].
 
 use crate::analysis::Analysis;
-use crate::report::rows::{Section, Times, failures, refusals, sections};
+use crate::report::rows::section::Section;
+use crate::report::rows::{Times, failures, refusals, sections};
 use crate::run::{Report, SampleReport};
 use crate::verdict::RestVerdict;
 

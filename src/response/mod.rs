@@ -20,11 +20,11 @@ pub use phase::{Evidence, Phase, PhaseDecision, PhaseOutcome};
 
 use crate::displacement::{DisplacementField, MeasuredOn};
 #[cfg(feature = "fit")]
-use crate::fit::angular::{CrossoverFit, SlopeFit, fit_crossover, fit_slope};
+use crate::fit::angular::{CrossoverFit, CrossoverOutcome, SlopeFit, SlopeOutcome, fit_crossover, fit_slope};
 #[cfg(feature = "fit")]
 use crate::fit::modes::{ElasticModesFit, fit_elastic_modes};
 #[cfg(feature = "fit")]
-use crate::fit::profile::{ProfileFit, fit_radial_profile};
+use crate::fit::profile::{Decision, ProfileFit, fit_radial_profile};
 use crate::observe::angular::{
     AngularCorrelation, AngularError, PowerSpectrum, RingAnalysis, RingSample, radial_dependence,
 };
@@ -34,7 +34,8 @@ use crate::observe::penetration::PenetrationLength;
 use crate::observe::state::State;
 use crate::observe::{AngularProfile, Multipoles, RadialProfile};
 #[cfg(feature = "fit")]
-use crate::reference::Annulus;
+use crate::reference::{Annulus, poles::pole};
+use crate::response::phase::{by_contact_changes, by_pressure_change};
 use crate::scene::{AngularCorrelationSettings, Observables};
 use crate::verdict::RestVerdict;
 
@@ -89,6 +90,10 @@ pub struct Subject<'a> {
     /// Δp \[force / length\].
     pub pressure_change: f64,
 }
+
+/// Slope from which on a power law counts as that of an elastic response: the published one at p_c.
+#[cfg(feature = "fit")]
+const SCALE_FREE_SLOPE: f64 = 1.5;
 
 /// All that is measured on a response; what was not asked for is absent.
 #[derive(Debug, Clone, Serialize)]
@@ -217,8 +222,23 @@ impl Response {
                 .map(|settings| BondChanges::between(&before, &after, centre, settings.bonds)),
             field,
         };
-        response.phase = PhaseDecision::of(&response, pressure_change, increase);
+        response.phase = response.phase(pressure_change, increase);
         response
+    }
+
+    /// What the measurements say, `increase` being d_0.
+    fn phase(&self, pressure_change: f64, increase: f64) -> PhaseDecision {
+        let Some(permit) = self.verdict.permit() else { return PhaseDecision::not_at_rest() };
+        if self.measured_on == MeasuredOn::AllDisks {
+            return PhaseDecision { outcome: PhaseOutcome::Unjammed, ..PhaseDecision::default() };
+        }
+        let evidence = Evidence {
+            profile: by_profile(self),
+            pressure_change: by_pressure_change(pressure_change, increase),
+            spectrum: by_spectrum(self),
+            contact_changes: self.contact_changes.as_ref().and_then(|it| by_contact_changes(it.inflation)),
+        };
+        PhaseDecision::from_evidence(permit, evidence)
     }
 }
 
@@ -256,4 +276,43 @@ impl RingResponse {
             }),
         })
     }
+}
+
+#[cfg(feature = "fit")]
+fn by_profile(response: &Response) -> Option<Phase> {
+    let fit = response.profile_fit.as_ref()?.measured()?;
+    match fit.decision {
+        Decision::Screened => Some(Phase::Plastic),
+        Decision::Elastic => {
+            let annulus = Annulus::new(response.field.inner_radius, response.field.outer_radius).ok()?;
+            let bound = fit.elastic.wavenumber_bound?;
+            (bound < pole::<2>(annulus, 1)).then_some(Phase::Quasielastic)
+        }
+        Decision::Neither => None,
+    }
+}
+
+#[cfg(feature = "fit")]
+fn by_spectrum(response: &Response) -> Option<Phase> {
+    let ring = response.angular_correlation.as_ref()?.measured()?;
+    match ring.crossover.as_ref()?.measured()?.outcome {
+        CrossoverOutcome::Found { .. } | CrossoverOutcome::White { .. } => Some(Phase::Plastic),
+        CrossoverOutcome::ScaleFree { .. } => {
+            let slope = ring.slope.as_ref()?.measured().filter(|slope| slope.outcome != SlopeOutcome::Undetermined)?;
+            (slope.exponent.best >= SCALE_FREE_SLOPE).then_some(Phase::Quasielastic)
+        }
+        CrossoverOutcome::Undetermined => None,
+    }
+}
+
+/// Without the feature `fit` nothing is fitted.
+#[cfg(not(feature = "fit"))]
+fn by_profile(_response: &Response) -> Option<Phase> {
+    None
+}
+
+/// Without the feature `fit` nothing is fitted.
+#[cfg(not(feature = "fit"))]
+fn by_spectrum(_response: &Response) -> Option<Phase> {
+    None
 }

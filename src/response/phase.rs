@@ -21,14 +21,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::displacement::MeasuredOn;
-#[cfg(feature = "fit")]
-use crate::fit::angular::{CrossoverOutcome, SlopeOutcome};
-#[cfg(feature = "fit")]
-use crate::fit::profile::Decision;
-#[cfg(feature = "fit")]
-use crate::reference::{Annulus, poles::pole};
-use crate::response::{ContactChangeCounts, Response};
+use crate::response::contacts::ContactChangeCounts;
 use crate::verdict::VerdictPermit;
 
 /// A phase above jamming.
@@ -98,26 +91,7 @@ const PLASTIC_CHANGES: f64 = 0.02;
 /// The share below which it is quasielastic. Source: the same.
 const QUASIELASTIC_CHANGES: f64 = 0.005;
 
-/// Slope from which on a power law counts as that of an elastic response: the published one at p_c.
-#[cfg(feature = "fit")]
-const SCALE_FREE_SLOPE: f64 = 1.5;
-
 impl PhaseDecision {
-    /// What the measurements of a response say, `increase` being d_0.
-    pub(super) fn of(response: &Response, pressure_change: f64, increase: f64) -> Self {
-        let Some(permit) = response.verdict.permit() else { return Self::not_at_rest() };
-        if response.measured_on == MeasuredOn::AllDisks {
-            return PhaseDecision { outcome: PhaseOutcome::Unjammed, ..PhaseDecision::default() };
-        }
-        let evidence = Evidence {
-            profile: by_profile(response),
-            pressure_change: by_pressure_change(pressure_change, increase),
-            spectrum: by_spectrum(response),
-            contact_changes: response.contact_changes.as_ref().and_then(|it| by_contact_changes(it.inflation)),
-        };
-        Self::from_evidence(permit, evidence)
-    }
-
     /// No phase, for states that are not at rest.
     pub fn not_at_rest() -> Self {
         PhaseDecision { outcome: PhaseOutcome::NotAtRest, ..PhaseDecision::default() }
@@ -145,7 +119,7 @@ impl PhaseDecision {
 }
 
 /// The sign of Δp against that of d_0.
-fn by_pressure_change(change: f64, increase: f64) -> Option<Phase> {
+pub(super) fn by_pressure_change(change: f64, increase: f64) -> Option<Phase> {
     let change = if increase == 0.0 { 0.0 } else { change * increase.signum() };
     if change < 0.0 {
         Some(Phase::Plastic)
@@ -157,7 +131,7 @@ fn by_pressure_change(change: f64, increase: f64) -> Option<Phase> {
 }
 
 /// The share of contacts changed by the inflation.
-fn by_contact_changes(changes: ContactChangeCounts) -> Option<Phase> {
+pub(super) fn by_contact_changes(changes: ContactChangeCounts) -> Option<Phase> {
     let changed = (changes.made_count + changes.broken_count) as f64;
     let share = changed / (changes.kept_count + changes.broken_count) as f64;
     if share > PLASTIC_CHANGES {
@@ -167,45 +141,6 @@ fn by_contact_changes(changes: ContactChangeCounts) -> Option<Phase> {
     } else {
         None
     }
-}
-
-#[cfg(feature = "fit")]
-fn by_profile(response: &Response) -> Option<Phase> {
-    let fit = response.profile_fit.as_ref()?.measured()?;
-    match fit.decision {
-        Decision::Screened => Some(Phase::Plastic),
-        Decision::Elastic => {
-            let annulus = Annulus::new(response.field.inner_radius, response.field.outer_radius).ok()?;
-            let bound = fit.elastic.wavenumber_bound?;
-            (bound < pole::<2>(annulus, 1)).then_some(Phase::Quasielastic)
-        }
-        Decision::Neither => None,
-    }
-}
-
-#[cfg(feature = "fit")]
-fn by_spectrum(response: &Response) -> Option<Phase> {
-    let ring = response.angular_correlation.as_ref()?.measured()?;
-    match ring.crossover.as_ref()?.measured()?.outcome {
-        CrossoverOutcome::Found { .. } | CrossoverOutcome::White { .. } => Some(Phase::Plastic),
-        CrossoverOutcome::ScaleFree { .. } => {
-            let slope = ring.slope.as_ref()?.measured().filter(|slope| slope.outcome != SlopeOutcome::Undetermined)?;
-            (slope.exponent.best >= SCALE_FREE_SLOPE).then_some(Phase::Quasielastic)
-        }
-        CrossoverOutcome::Undetermined => None,
-    }
-}
-
-/// Without the feature `fit` nothing is fitted.
-#[cfg(not(feature = "fit"))]
-fn by_profile(_response: &Response) -> Option<Phase> {
-    None
-}
-
-/// Without the feature `fit` nothing is fitted.
-#[cfg(not(feature = "fit"))]
-fn by_spectrum(_response: &Response) -> Option<Phase> {
-    None
 }
 
 #[cfg(test)]

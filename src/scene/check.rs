@@ -7,9 +7,11 @@ use crate::packing::PackingError;
 #[cfg(feature = "linear")]
 use crate::relax::implicit::Finish;
 use crate::relax::{ForceLimit, RelaxerChoice, TimeStep};
+use crate::scene::definition::{Sample, Scene};
 use crate::scene::finite::{self, NotWritable};
+use crate::scene::observables::Observables;
 use crate::scene::size::{BYTES_A_DISK, DISK_INDEX};
-use crate::scene::{Observables, Sample, Scene, Source};
+use crate::scene::source::Source;
 
 /// A number of a scene that makes no sense.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

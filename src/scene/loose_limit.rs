@@ -10,7 +10,9 @@
 
 use crate::law::pair_law::PairLaw;
 use crate::relax::{ForceLimit, RelaxerChoice};
-use crate::scene::{Sample, Scene, SceneError, Source};
+use crate::scene::SceneError;
+use crate::scene::definition::{Sample, Scene};
+use crate::scene::source::Source;
 use crate::verdict::LARGEST_RESIDUAL;
 
 /// A packing fraction below that of any jammed packing of disks: it makes the bound on the force the larger \[1\].

@@ -14,7 +14,7 @@ use crate::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
 use crate::relax::{Fire, RelaxerChoice};
 #[cfg(feature = "linear")]
 use crate::relax::{ImplicitDynamics, Staged};
-use crate::scene::Source;
+use crate::scene::source::Source;
 
 /// How packings come to rest after the inflation.
 ///

@@ -1,7 +1,7 @@
 //! The reduced pressure p̂ = p N^(α−1) of a scene: N counts the disks in the circle by area, α is the exponent of the law.
 
 use crate::inflation::Boundary;
-use crate::scene::Scene;
+use crate::scene::definition::Scene;
 
 /// N, the disks in the circle by area, or all of the periodic box.
 pub(crate) fn mobile_count(disk_count: usize, boundary: Boundary) -> f64 {

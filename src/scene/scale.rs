@@ -4,7 +4,9 @@
 
 use crate::law::choice::LawChoice;
 use crate::law::pair_law::PairLaw;
-use crate::scene::{Scene, SceneError, Source};
+use crate::scene::SceneError;
+use crate::scene::definition::Scene;
+use crate::scene::source::Source;
 use crate::vector::larger;
 
 /// Largest ratio of two radii. Contact forces go as the square of radii, so beyond it those of small disks are below the

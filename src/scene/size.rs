@@ -2,7 +2,7 @@
 
 use crate::memory::{Limit, Memory, TooLarge};
 use crate::relax::RelaxerChoice;
-use crate::scene::Scene;
+use crate::scene::definition::Scene;
 
 /// Memory of one disk while its packing is relaxed and measured \[bytes\]. Peak memory of `jamscope run` without observables at
 /// φ = 0.5, where there is least of everything: 513 bytes a disk more from 10000 to 40000 disks, of which half is kept.

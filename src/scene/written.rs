@@ -1,13 +1,15 @@
 //! [`Written`]: a scene as a file has it, where a protocol stands in for relaxers.
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 
 use crate::inflation::Inflation;
 use crate::law::choice::LawChoice;
 use crate::packing::Mixture;
 use crate::relax::RelaxerChoice;
+use crate::scene::definition::{PreparationSettings, Sample, Scene};
+use crate::scene::observables::Observables;
 use crate::scene::protocol::ProtocolChoice;
-use crate::scene::{Observables, PreparationSettings, Sample, Scene, Source};
+use crate::scene::source::Source;
 use crate::verdict::VerdictSettings;
 
 /// The fields of a [`Scene`], and `protocol`, which gives samples without a relaxer theirs.
@@ -53,6 +55,12 @@ impl WrittenSample {
     fn complete(self, protocol: ProtocolChoice) -> Sample {
         let WrittenSample { name, seed, source, relaxer } = self;
         Sample { relaxer: relaxer.unwrap_or_else(|| protocol.relaxer_of(&source)), name, seed, source }
+    }
+}
+
+impl<'de> Deserialize<'de> for Scene {
+    fn deserialize<R: Deserializer<'de>>(reader: R) -> Result<Self, R::Error> {
+        Written::deserialize(reader).map(Scene::from)
     }
 }
 

@@ -15,7 +15,8 @@ use crate::study::merge::{MergeError, Merged, merge_in};
 use crate::study::plan::{Plan, Shard, Task};
 use crate::study::record::{FailureKind, Record, RecordOutcome};
 use crate::study::settings::{Study, StudyError};
-use crate::study::store::{Problem, Store, StoreError, TaskState};
+use crate::study::store::{Problem, Store, TaskState};
+use crate::study::store_error::StoreError;
 
 /// What a study tells while it runs; `()` hears nothing.
 pub trait StudyProgress: Sync {

@@ -12,7 +12,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::study::plan::Shard;
-use crate::study::store::StoreError;
+use crate::study::store_error::StoreError;
 
 /// A study.json is written in less time; whoever holds its lock longer has been stopped.
 pub(super) const PATIENCE: Duration = Duration::from_secs(3);

@@ -13,7 +13,8 @@ use crate::study::plan::Plan;
 use crate::study::samples::CellSamples;
 use crate::study::settings::{Study, StudyError};
 use crate::study::statistics::CellStatistics;
-use crate::study::store::{Problem, Store, StoreError, TaskState};
+use crate::study::store::{Problem, Store, TaskState};
+use crate::study::store_error::StoreError;
 
 /// What a merge found.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -22,6 +22,7 @@ mod samples;
 mod settings;
 mod statistics;
 mod store;
+mod store_error;
 
 pub use execute::{ExecuteError, Execution, StudyProgress, Whole, execute, execute_and_merge};
 pub use lock::StudyLock;
@@ -32,7 +33,8 @@ pub use record::{Cell, FailureKind, Record, RecordOutcome};
 pub use samples::{CellSamples, MeanCurve, MeanPoint, Single, StretchingRow};
 pub use settings::{Part, Seeds, Study, StudyError, Target};
 pub use statistics::{CellStatistics, NumberStatistics, PhaseCounts};
-pub use store::{Problem, StoreError};
+pub use store::Problem;
+pub use store_error::StoreError;
 
 use std::path::Path;
 

@@ -12,58 +12,13 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::io::{WriteError, remove_unfinished, write_atomically};
+use crate::io::{remove_unfinished, write_atomically};
 use crate::processor::{Processor, Vectors};
 use crate::study::lock::{self, PATIENCE, PAUSE, StudyLock};
 use crate::study::plan::{Shard, Task, hash};
 use crate::study::record::Record;
 use crate::study::settings::Study;
-
-/// Why a folder cannot be used.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum StoreError {
-    /// The system refused.
-    #[error("{path}: {source}")]
-    Io {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// A file could not be written.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    /// Another study lives there.
-    #[error(
-        "{path}: the folder holds another study; give this one a folder of its own, or say that it takes that one's place \
-         (samples both have are kept, those of the other are left alone)"
-    )]
-    OtherStudy {
-        /// The file that says so.
-        path: PathBuf,
-    },
-    /// No study lives there.
-    #[error("{path}: not there, so the folder holds no study")]
-    NoStudy {
-        /// The file looked for.
-        path: PathBuf,
-    },
-    /// The study of the folder cannot be understood.
-    #[error("{path}: {reason}")]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        reason: String,
-    },
-    /// Somebody else runs the same part of it.
-    #[error("{path}: locked, another process runs the study in this folder, or this part of it; nothing was changed")]
-    Locked {
-        /// The lock.
-        path: PathBuf,
-    },
-}
+use crate::study::store_error::StoreError;
 
 /// A file of the folder that is not what it should be; it is left alone.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

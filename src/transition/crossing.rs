@@ -6,8 +6,7 @@
 use crate::fit::ensemble::{
     BootstrapInterval, HalfCrossing, HitCount, Trend, bootstrap, half_crossing, half_crossing_interval,
 };
-use crate::transition::RESAMPLINGS;
-use crate::transition::evidence::{CannotTell, LEAST_CELLS_OF_SIDE, LEAST_SAMPLES_OF_SIDE, excludes_half};
+use crate::transition::evidence::{CannotTell, LEAST_CELLS_OF_SIDE, LEAST_SAMPLES_OF_SIDE, RESAMPLINGS, excludes_half};
 use crate::transition::pressure::TransitionPressure;
 
 /// On which side of the transition a cell lies, and whether that is clear at 95 %.

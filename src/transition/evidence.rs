@@ -128,6 +128,9 @@ pub(super) fn excludes_half(hits: f64, count: f64) -> bool {
     (2.0 * hits - count).powi(2) > QUANTILE_SQUARED * count
 }
 
+/// Resamplings of a bootstrap here: its ends then stand on the tenth value from either end.
+pub(crate) const RESAMPLINGS: usize = 400;
+
 #[cfg(test)]
 mod tests {
     use super::*;

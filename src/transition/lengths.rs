@@ -16,9 +16,8 @@ use crate::fit::ensemble::{
     DivergenceAt, DivergenceOutcome, MeasuredPoint, bootstrap, bootstrap_all, fit_divergence, fit_divergence_at,
 };
 use crate::study::{Cell, CellSamples, MeanPoint, Merged, NumberStatistics, StretchingRow, Target};
-use crate::transition::RESAMPLINGS;
-use crate::transition::evidence::Sampled;
-use crate::transition::series::SeriesPoint;
+use crate::transition::evidence::{RESAMPLINGS, Sampled};
+use crate::transition::series_point::SeriesPoint;
 
 /// y from which on bonds stretch as in a continuum. Source: the study.
 pub(crate) const ISOSTATIC_THRESHOLD: f64 = 1.3;

@@ -16,12 +16,14 @@
 
 mod calibration;
 mod crossing;
+mod estimates;
 mod evidence;
 mod lengths;
 mod literature;
 mod pressure;
 mod scaling;
 mod series;
+mod series_point;
 mod spectra;
 
 use serde::Serialize;
@@ -31,7 +33,8 @@ pub use lengths::{JammingSeries, LengthPoint, Lengths, PenetrationPoint};
 pub use literature::{Comparison, Verdict};
 pub use pressure::{Method, MethodEstimate, TransitionPressure};
 pub use scaling::{ExponentOutcome, PressureLaw, Scaling};
-pub use series::{AtPressure, Series, SeriesPoint};
+pub use series::{AtPressure, Series};
+pub use series_point::SeriesPoint;
 pub use spectra::{AngleDivergence, CellSpectrum, RingSlope};
 
 #[cfg(feature = "plot")]
@@ -45,13 +48,12 @@ pub(crate) use pressure::{FIRST_ZERO, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATI
 #[cfg(feature = "plot")]
 pub(crate) use scaling::{beta, laws_and_relaxers};
 #[cfg(feature = "plot")]
-pub(crate) use series::{ANGLE, ANTICORRELATION, PUBLISHED};
+pub(crate) use series::PUBLISHED;
+#[cfg(feature = "plot")]
+pub(crate) use series_point::{ANGLE, ANTICORRELATION};
 
 use crate::response::Calibration;
 use crate::study::Merged;
-
-/// Resamplings of a bootstrap here: its ends then stand on the tenth value from either end.
-pub(crate) const RESAMPLINGS: usize = 400;
 
 /// What a study says.
 #[derive(Debug, Clone, Serialize)]

@@ -19,7 +19,8 @@ use crate::law::choice::LawChoice;
 use crate::relax::RelaxerChoice;
 use crate::study::Merged;
 use crate::transition::pressure::{Method, TransitionPressure};
-use crate::transition::series::{ANTICORRELATION, Series};
+use crate::transition::series::Series;
+use crate::transition::series_point::ANTICORRELATION;
 
 /// Resamplings of a collapse, which is a search of its own each time.
 const RESAMPLINGS: usize = 100;

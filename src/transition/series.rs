@@ -4,10 +4,11 @@ use serde::Serialize;
 
 use crate::fit::ensemble::bootstrap;
 use crate::study::{Cell, CellSamples, Merged, NumberStatistics, Target};
-use crate::transition::RESAMPLINGS;
-use crate::transition::evidence::Sampled;
+use crate::transition::estimates::estimates;
+use crate::transition::evidence::{RESAMPLINGS, Sampled};
 use crate::transition::lengths::{Lengths, matching};
-use crate::transition::pressure::{MethodEstimate, TransitionPressure, estimates};
+use crate::transition::pressure::{MethodEstimate, TransitionPressure};
+use crate::transition::series_point::{ANGLE, ANTICORRELATION, SeriesPoint};
 use crate::transition::spectra::{AngleDivergence, CellSpectrum, likelihood_slope_of, slope_of};
 
 /// Cells that differ in the pressure alone, ascending in it.
@@ -39,19 +40,6 @@ pub struct Series {
     pub pressure_changes: Vec<Option<NumberStatistics>>,
 }
 
-/// One cell of a series.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct SeriesPoint {
-    /// Its place among the cells of the study.
-    pub cell: usize,
-    /// p, mean over samples \[force / length\].
-    pub pressure: f64,
-    /// p̂, likewise \[force / length\].
-    pub reduced_pressure: f64,
-    /// Samples measured.
-    pub sample_count: usize,
-}
-
 /// What there is at one p̂, between two cells linear in ln p̂.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AtPressure {
@@ -70,12 +58,6 @@ pub struct AtPressure {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub likelihood_slope: Option<Sampled>,
 }
-
-/// G*.
-pub(crate) const ANTICORRELATION: &str = "anticorrelation";
-
-/// θ* of the threshold 0.1.
-pub(crate) const ANGLE: &str = "correlation_angle_at_0.1";
 
 /// p̂_c of Hertzian disks by the spectrum. Source: the study.
 pub(crate) const PUBLISHED: f64 = 1e8;

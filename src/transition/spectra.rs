@@ -19,9 +19,8 @@ use crate::fit::ensemble::{
     crossover_interval, crossover_of_mean, fit_divergence, fit_divergence_at, slope_interval, slope_of_mean,
 };
 use crate::study::{CellSamples, MeanCurve};
-use crate::transition::RESAMPLINGS;
-use crate::transition::evidence::LEAST_CELLS;
-use crate::transition::series::SeriesPoint;
+use crate::transition::evidence::{LEAST_CELLS, RESAMPLINGS};
+use crate::transition::series_point::SeriesPoint;
 
 /// f from which to which a slope is taken: f = 1 is a mode of its own at high pressure, and above a few tens leakage removed is noise.
 const SLOPE_WINDOW: [usize; 2] = [2, 24];

@@ -1,8 +1,7 @@
 //! Whittle's likelihood of the powers of rings, amplitudes and noise at their best.
 
-use crate::fit::angular::{
-    HighestFrequency, LEAST_POWER_COUNT, SingleDiskNoise, SpectrumFitError, SpectrumWindowSettings,
-};
+use crate::fit::angular::error::{LEAST_POWER_COUNT, SpectrumFitError};
+use crate::fit::angular::window::{HighestFrequency, SingleDiskNoise, SpectrumWindowSettings};
 use crate::fit::search::golden;
 use crate::observe::angular::{
     FrequencyLimit, Leakage, PowerSpectrum, RingSample, Source, SpectralWindow, SpectrumEstimator, SpectrumSettings,

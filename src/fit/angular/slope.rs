@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::fit::angular::error::SpectrumFitError;
+use crate::fit::angular::interval::Interval;
 use crate::fit::angular::likelihood::Powers;
-use crate::fit::angular::{Interval, SpectrumFitError, SpectrumWindowSettings};
+use crate::fit::angular::window::SpectrumWindowSettings;
 use crate::fit::search::minimum;
 use crate::observe::angular::RingSample;
 

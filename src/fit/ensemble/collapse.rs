@@ -1,7 +1,7 @@
 //! [`collapse`]: the exponents with which curves of several sizes lie on one.
 
-use crate::fit::ensemble::quality::Curves;
-use crate::fit::ensemble::{CollapseQuality, Curve, EnsembleFitError};
+use crate::fit::ensemble::error::EnsembleFitError;
+use crate::fit::ensemble::quality::{CollapseQuality, Curve, Curves};
 use crate::fit::search::minimum;
 
 /// The search ends at this share of a range.

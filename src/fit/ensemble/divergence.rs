@@ -6,8 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::fit::Estimate;
 use crate::fit::angular::Interval;
+use crate::fit::ensemble::error::EnsembleFitError;
+use crate::fit::ensemble::measured_point::MeasuredPoint;
 use crate::fit::ensemble::power_law::{Line, different, fit_power_law};
-use crate::fit::ensemble::{EnsembleFitError, MeasuredPoint};
 use crate::fit::search::minimum;
 
 /// ln((x_c − x_max)/(x_max − x_min)) is searched from −16 to 12 in steps of 1/4. Beyond 12, at μ = 1, the law differs from an

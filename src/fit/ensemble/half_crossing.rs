@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::fit::Estimate;
-use crate::fit::ensemble::{BootstrapInterval, EnsembleFitError, bootstrap};
+use crate::fit::ensemble::bootstrap;
+use crate::fit::ensemble::bootstrap::BootstrapInterval;
+use crate::fit::ensemble::error::EnsembleFitError;
 
 /// ln L is concave, and a few Newton steps are enough: more than these are a defect.
 const STEP_LIMIT: usize = 100;

@@ -3,8 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::fit::angular::{Crossover, CrossoverOutcome, CrossoverSettings, Located, Shape, locate};
+use crate::fit::ensemble::bootstrap;
+use crate::fit::ensemble::bootstrap::BootstrapInterval;
+use crate::fit::ensemble::error::EnsembleFitError;
 use crate::fit::ensemble::mean_powers::MeanPowers;
-use crate::fit::ensemble::{BootstrapInterval, EnsembleFitError, bootstrap};
 
 /// Rise of −2 ln L within two standard errors of one parameter.
 const RISE: f64 = 4.0;

@@ -8,7 +8,7 @@
 //! A power with leakage removed may be negative, and so may a mean of few. Where such means weigh, no E describes them, and ln A
 //! falls without bound: a shape is refused where they have more than a tenth of Σ |P̄/e|.
 
-use crate::fit::ensemble::EnsembleFitError;
+use crate::fit::ensemble::error::EnsembleFitError;
 
 /// Powers a window needs.
 const LEAST_POWER_COUNT: usize = 3;

@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::fit::Estimate;
 use crate::fit::angular::Interval;
+use crate::fit::ensemble::bootstrap::{BootstrapInterval, bootstrap_all};
+use crate::fit::ensemble::error::EnsembleFitError;
 use crate::fit::ensemble::mean_powers::MeanPowers;
-use crate::fit::ensemble::{BootstrapInterval, EnsembleFitError, bootstrap_all};
 use crate::fit::search::minimum;
 
 /// Exponents searched: −2 to 6 in steps of 1/4.

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::fit::Estimate;
-use crate::fit::ensemble::{EnsembleFitError, MeasuredPoint};
+use crate::fit::ensemble::error::EnsembleFitError;
+use crate::fit::ensemble::measured_point::MeasuredPoint;
 
 /// A power law through points.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

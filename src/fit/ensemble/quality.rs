@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::fit::ensemble::{EnsembleFitError, MeasuredPoint};
+use crate::fit::ensemble::error::EnsembleFitError;
+use crate::fit::ensemble::measured_point::MeasuredPoint;
 
 /// A curve y(x) measured at one set of K scale factors.
 #[derive(Debug, Clone, PartialEq)]

@@ -12,7 +12,7 @@
 
 use serde::Serialize;
 
-use crate::observe::angular::AngularError;
+use crate::observe::angular::error::AngularError;
 use crate::observe::angular::pairs::PairSums;
 use crate::observe::angular::ring::{RingSample, Weights};
 

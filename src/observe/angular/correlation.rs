@@ -19,10 +19,11 @@ use std::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 
 use crate::observe::angular::crossing::{CrossingOutcome, ThresholdCrossing};
+use crate::observe::angular::error::AngularError;
+use crate::observe::angular::limits::{MOST_STEPS, at_most};
 use crate::observe::angular::pairs::PairSums;
 use crate::observe::angular::power_spectrum::{FrequencyLimit, PowerSpectrum, SpectrumSettings};
 use crate::observe::angular::ring::{RingSample, Weights};
-use crate::observe::angular::{AngularError, MOST_STEPS, at_most};
 
 /// How the correlation function is estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

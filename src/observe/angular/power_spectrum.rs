@@ -10,12 +10,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::observe::angular::error::AngularError;
 use crate::observe::angular::even_grid::{binned, interpolated};
 use crate::observe::angular::fourier::{fourier_sums, transform};
+use crate::observe::angular::limits::{MOST_COUPLED_FREQUENCIES, MOST_GRID_POINTS, at_most};
 use crate::observe::angular::ring::{Centred, RingSample, Weights};
 use crate::observe::angular::unmixing::{Shares, unmix};
 use crate::observe::angular::window::SpectralWindow;
-use crate::observe::angular::{AngularError, MOST_COUPLED_FREQUENCIES, MOST_GRID_POINTS, at_most};
 
 /// How the spectrum is estimated from values at irregular angles.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

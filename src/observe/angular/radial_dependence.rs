@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::displacement::DisplacementField;
-use crate::observe::angular::{
-    AngularCorrelation, AngularError, CorrelationSettings, PowerSpectrum, RingSample, RingSettings, SpectrumSettings,
-};
+use crate::observe::angular::correlation::{AngularCorrelation, CorrelationSettings};
+use crate::observe::angular::error::AngularError;
+use crate::observe::angular::power_spectrum::{PowerSpectrum, SpectrumSettings};
+use crate::observe::angular::ring::{RingSample, RingSettings};
 use crate::observe::angular_profile::RING_HALF_WIDTH;
 
 /// Which rings, and what is taken in them.

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 
 use crate::displacement::DisplacementField;
-use crate::observe::angular::{AngularError, LEAST_DISK_COUNT};
+use crate::observe::angular::error::{AngularError, LEAST_DISK_COUNT};
 use crate::observe::angular_profile::{AngularProfile, RING_HALF_WIDTH};
 
 /// Values beyond this have no square.

@@ -5,8 +5,10 @@
 
 use serde::Serialize;
 
+use crate::observe::angular::correlation::{AngularCorrelation, CorrelationOutcome};
 use crate::observe::angular::crossing::CrossingOutcome;
-use crate::observe::angular::{AngularCorrelation, AngularError, CorrelationOutcome, PowerSpectrum};
+use crate::observe::angular::error::AngularError;
+use crate::observe::angular::power_spectrum::PowerSpectrum;
 
 /// A mean over samples.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

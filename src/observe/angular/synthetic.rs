@@ -12,8 +12,9 @@ use num_complex::Complex64;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
+use crate::observe::angular::error::AngularError;
 use crate::observe::angular::fourier::transform_in_place;
-use crate::observe::angular::{AngularError, RingSample};
+use crate::observe::angular::ring::RingSample;
 
 /// Where the disks of a synthetic ring stand.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -12,32 +12,21 @@
 //! # Source
 //! Ellenbroek, Somfai, van Hecke, van Saarloos (2006), Phys. Rev. Lett. 97, 258001; the study, threshold 1.3, C ≈ 6.
 
+mod point;
 mod settings;
 
 use serde::{Deserialize, Serialize};
 
+pub use point::IsostaticPoint;
 pub use settings::{IsostaticError, IsostaticRule, IsostaticSettings, Normalisation, Scale, Tail};
 
 use crate::inflation::Inflated;
 use crate::law::pair_law::PairLaw;
-use crate::observe::ExcessCoordination;
 use crate::observe::bond_changes::BondChanges;
+use crate::observe::excess_coordination::ExcessCoordination;
 use crate::observe::fluctuations::{FluctuationRing, Fluctuations};
 use crate::observe::state::State;
 use crate::vector::larger;
-
-/// One ring, scaled.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct IsostaticPoint {
-    /// r \[length\].
-    pub radius: f64,
-    /// x = r ΔZ or r √ΔZ \[1\].
-    pub scaled_radius: f64,
-    /// y = (h_∥/h_0) xⁿ \[1\].
-    pub scaled_fluctuation: f64,
-    /// Standard error of y from that of h_∥, h_0 taken as exact \[1\].
-    pub standard_error: f64,
-}
 
 /// Where y reaches the threshold.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

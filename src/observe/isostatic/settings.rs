@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::observe::bond_changes::BondSet;
 use crate::observe::fluctuations::{BondMeasure, FluctuationRing};
-use crate::observe::isostatic::IsostaticPoint;
+use crate::observe::isostatic::point::IsostaticPoint;
 use crate::packing::PackingError;
 
 /// What h_∥ is divided by, h_0.

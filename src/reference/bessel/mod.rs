@@ -15,11 +15,7 @@ pub mod modified;
 mod modified_tables;
 pub mod modulus_phase;
 mod modulus_tables;
+pub(crate) mod polynomial;
 pub mod spherical;
 
 pub use modulus_phase::{ASYMPTOTIC_FROM, ModulusPhase, modulus_phase};
-
-/// `Σ c_k t^k`.
-pub(crate) fn polynomial(coefficients: &[f64], t: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, &coefficient| sum * t + coefficient)
-}

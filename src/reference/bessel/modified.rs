@@ -39,7 +39,7 @@
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, LN_2};
 
 use crate::reference::bessel::modified_tables::{RANGES, Range};
-use crate::reference::bessel::polynomial;
+use crate::reference::bessel::polynomial::polynomial;
 
 /// Euler's constant γ (DLMF 5.2.3).
 const EULER: f64 = 0.577_215_664_901_532_9;

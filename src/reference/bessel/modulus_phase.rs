@@ -16,7 +16,7 @@
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_2_PI};
 
 use crate::reference::bessel::modulus_tables::{RANGES, Range};
-use crate::reference::bessel::polynomial;
+use crate::reference::bessel::polynomial::polynomial;
 
 /// From here on the asymptotic expansions are used \[1\]: their 13th term is below 2⁻⁵⁶ of the first.
 pub const ASYMPTOTIC_FROM: f64 = 25.0;

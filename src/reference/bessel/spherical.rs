@@ -35,7 +35,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::reference::bessel::polynomial;
+use crate::reference::bessel::polynomial::polynomial;
 
 /// Below this j_1 is its series \[1\].
 const ALTERNATING_BELOW: f64 = 2.0;

@@ -3,9 +3,9 @@
 use crate::reference::lorentzian::area;
 use crate::reference::lorentzian::complex::Complex;
 use crate::reference::lorentzian::contour::{Contour, DECAY_LIMIT, Kind, ray_angle};
-use crate::reference::lorentzian::crossing::{Crossing, first_crossing, only_crossing};
+use crate::reference::lorentzian::crossing::{Crossing, SCAN_STEP, first_crossing, only_crossing, scan_end};
 use crate::reference::lorentzian::cusp::{CUSP_BELOW, Cusp};
-use crate::reference::lorentzian::{LorentzianError, SCAN_STEP, check_exponent, check_threshold, scan_end};
+use crate::reference::lorentzian::error::{LorentzianError, check_exponent, check_threshold};
 
 /// First panel of the contour: u^s bends there, which costs less than 2^(−24(1+s)).
 const FIRST_PANEL: f64 = 1.0 / 16_777_216.0;

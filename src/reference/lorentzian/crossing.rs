@@ -128,3 +128,11 @@ fn root(curve: &impl Fn(f64) -> (f64, f64), threshold: f64, low: f64, high: f64)
     }
     angle
 }
+
+/// Step of the search for crossings where G may oscillate, in units of 1/max(1, f†): the shortest period is 2π.
+pub(super) const SCAN_STEP: f64 = 0.2;
+
+/// Where oscillations have died to e^(−45), in the same units: the first pole gives e^(−f†θ sin(π/s)).
+pub(super) fn scan_end(exponent: f64) -> f64 {
+    45.0 / libm::sin(std::f64::consts::PI / exponent)
+}

@@ -19,27 +19,25 @@ mod continuum;
 mod contour;
 mod crossing;
 mod cusp;
+mod error;
 mod gauss;
 
 use std::f64::consts::PI;
 
-use thiserror::Error;
-
 pub use continuum::ContinuumLorentzian;
 pub use crossing::Crossing;
+pub use error::{LARGEST_EXPONENT, LorentzianError};
 
 use crate::reference::lorentzian::complex::Complex;
 use crate::reference::lorentzian::continuum::last_panel;
 use crate::reference::lorentzian::contour::{Contour, Kind};
-use crate::reference::lorentzian::crossing::{first_crossing, only_crossing};
+use crate::reference::lorentzian::crossing::{SCAN_STEP, first_crossing, only_crossing, scan_end};
 use crate::reference::lorentzian::cusp::Cusp;
+use crate::reference::lorentzian::error::{check_exponent, check_threshold};
 use crate::vector::two_product;
 
 /// The exponent s of the angular power spectrum of the displacements.
 pub const USUAL_EXPONENT: f64 = 1.5;
-
-/// Exponents are taken up to here: nodes and time grow with s, and S is a step long before.
-pub const LARGEST_EXPONENT: f64 = 100.0;
 
 /// Where the contour leaves the real axis; f = 1 is taken by itself, so that S is nowhere larger than S(1) on the way.
 const CONTOUR_START: f64 = 1.5;
@@ -269,48 +267,4 @@ fn fold(angle: f64) -> Option<(f64, f64)> {
     let (high, low) = two_product(turns, TURN.0);
     let rest = (angle - high) - (low + turns * TURN.1);
     Some((rest.abs().min(PI), if rest < 0.0 { -1.0 } else { 1.0 }))
-}
-
-/// Step of the search for crossings where G may oscillate, in units of 1/max(1, f†): the shortest period is 2π.
-const SCAN_STEP: f64 = 0.2;
-
-/// Where oscillations have died to e^(−45), in the same units: the first pole gives e^(−f†θ sin(π/s)).
-fn scan_end(exponent: f64) -> f64 {
-    45.0 / libm::sin(PI / exponent)
-}
-
-fn check_exponent(exponent: f64) -> Result<(), LorentzianError> {
-    if exponent > 1.0 && exponent <= LARGEST_EXPONENT {
-        Ok(())
-    } else {
-        Err(LorentzianError::ExponentOutOfRange { exponent })
-    }
-}
-
-fn check_threshold(threshold: f64) -> Result<(), LorentzianError> {
-    if threshold < 1.0 { Ok(()) } else { Err(LorentzianError::ThresholdNotBelowOne { threshold }) }
-}
-
-/// Why a Lorentzian, or an angle of one, could not be had.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[non_exhaustive]
-pub enum LorentzianError {
-    /// The crossover frequency is not positive and finite.
-    #[error("the crossover frequency must be positive and finite, it is {crossover}")]
-    CrossoverNotPositive {
-        /// The frequency given \[1\].
-        crossover: f64,
-    },
-    /// The exponent is 1 or less, where Σ S diverges, or too large, or not a number.
-    #[error("the exponent must be above 1 and at most {LARGEST_EXPONENT}, it is {exponent}")]
-    ExponentOutOfRange {
-        /// The exponent given \[1\].
-        exponent: f64,
-    },
-    /// A correlation function that is 1 at θ = 0 does not fall to 1 or more.
-    #[error("the threshold must be below 1, it is {threshold}")]
-    ThresholdNotBelowOne {
-        /// The threshold given \[1\].
-        threshold: f64,
-    },
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::io::{WriteError, write_atomically};
-use crate::report::ReportError;
+use crate::report::error::ReportError;
 
 /// The files of a report.
 #[derive(Debug, Serialize, Deserialize)]

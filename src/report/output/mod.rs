@@ -13,6 +13,7 @@
 //! Files that no report wrote, or that were changed since, are never removed. One that stands in the way is renamed to
 //! `NAME.~1~`.
 
+mod kind;
 mod manifest;
 mod place;
 
@@ -20,59 +21,11 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use crate::io::{remove_unfinished, try_name};
-use crate::report::ReportError;
-use crate::report::data_file::DataFile;
+use crate::report::error::ReportError;
+use crate::report::output::kind::{PART, READY};
+pub use kind::Kind;
 use manifest::Manifest;
 pub use place::{complete, is_of_the_last_report};
-
-/// What a folder is filled with. Reports of different kinds in one folder know nothing of each other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// The report of a run.
-    Report,
-    /// The analysis of states relaxed elsewhere.
-    Analysis,
-    /// Error against cost.
-    Precision,
-}
-
-impl Kind {
-    /// Name of its document without the ending.
-    fn name(self) -> &'static str {
-        match self {
-            Kind::Report => "report",
-            Kind::Analysis => "analysis",
-            Kind::Precision => "precision",
-        }
-    }
-
-    /// The file that is there if and only if all others are.
-    fn document(self) -> String {
-        format!("{}.json", self.name())
-    }
-
-    /// The list of files.
-    fn manifest(self) -> String {
-        format!(".{}.files.json", self.name())
-    }
-
-    /// The longest ending of a file that has the name of its sample.
-    fn longest_ending(self) -> &'static str {
-        match self {
-            Kind::Report | Kind::Analysis => DataFile::longest_ending(),
-            Kind::Precision => "displacement_factorisations.svg",
-        }
-    }
-
-    /// How the names of folders begin that are filled or ready.
-    fn prefix(self) -> String {
-        format!(".{}-", self.name())
-    }
-}
-
-/// How the name of a folder ends while it is filled, and when it is complete.
-const PART: &str = ".part";
-const READY: &str = ".ready";
 
 /// A folder for a report, made and tried before the work that the report is of.
 ///

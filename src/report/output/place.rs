@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::io::read_properties;
-use crate::report::ReportError;
+use crate::report::error::ReportError;
+use crate::report::output::kind::{Kind, READY};
 use crate::report::output::manifest::Manifest;
-use crate::report::output::{Kind, READY};
 
 /// Moving files takes less time; whoever holds the lock of a folder longer has been stopped.
 const PATIENCE: Duration = Duration::from_secs(30);

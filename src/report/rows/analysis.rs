@@ -2,7 +2,8 @@
 
 use crate::analysis::{Analysis, StateAnalysis};
 use crate::report::number::{count, significant};
-use crate::report::rows::{Rows, Section, response};
+use crate::report::rows::response;
+use crate::report::rows::section::{Rows, Section};
 
 /// All rows; sections without rows are left out.
 pub(crate) fn sections(analyses: &[Analysis]) -> Vec<Section> {

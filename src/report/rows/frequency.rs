@@ -1,7 +1,7 @@
 //! The rows that say how often samples like these are called what they are called.
 
 use crate::report::number::significant;
-use crate::report::rows::{Rows, Section};
+use crate::report::rows::section::{Rows, Section};
 use crate::response::PhaseFrequency;
 use crate::run::{SampleReport, SampleResult};
 

@@ -3,27 +3,15 @@
 pub(crate) mod analysis;
 mod frequency;
 pub(crate) mod response;
+pub(crate) mod section;
 mod states;
 
 use crate::law::choice::LawChoice;
+use crate::report::rows::section::{Section, done};
 use crate::response::Measurement;
 use crate::run::{Report, SampleOutcome, SampleReport, SampleResult};
 use crate::scene::Sample;
 use crate::verdict::RestVerdict;
-
-/// Rows under one heading.
-pub(crate) struct Section {
-    pub title: &'static str,
-    pub rows: Vec<Row>,
-}
-
-/// One quantity.
-pub(crate) struct Row {
-    /// What it is, with its unit.
-    pub label: String,
-    /// One a sample; a dash where a sample has none.
-    pub cells: Vec<String>,
-}
 
 /// Whether wall times are wanted.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -31,53 +19,6 @@ pub(crate) enum Times {
     Shown,
     #[cfg_attr(not(feature = "plot"), allow(dead_code, reason = "only the page leaves them out"))]
     LeftOut,
-}
-
-/// Collects the rows of some results, one a column; none where a sample came to nothing.
-pub(crate) struct Rows<'a, T> {
-    results: Vec<Option<&'a T>>,
-    rows: Vec<Row>,
-}
-
-impl<'a> Rows<'a, SampleResult> {
-    /// No row of these samples yet.
-    pub(crate) fn of_samples(samples: &'a [SampleReport]) -> Self {
-        Rows::new(samples.iter().map(done).collect())
-    }
-}
-
-impl<'a, T> Rows<'a, T> {
-    /// No row yet.
-    pub(crate) fn new(results: Vec<Option<&'a T>>) -> Self {
-        Rows { results, rows: Vec::new() }
-    }
-
-    /// Adds a row, unless no sample has the quantity.
-    pub(crate) fn add(&mut self, label: impl Into<String>, cell: impl Fn(&T) -> Option<String>) -> &mut Self {
-        let cells: Vec<Option<String>> = self.results.iter().map(|result| result.and_then(&cell)).collect();
-        if cells.iter().any(Option::is_some) {
-            let cells = cells.into_iter().map(|cell| cell.unwrap_or_else(|| "–".into())).collect();
-            self.rows.push(Row { label: label.into(), cells });
-        }
-        self
-    }
-
-    /// Adds a row that all have.
-    pub(crate) fn add_cells(&mut self, label: &str, cells: impl Iterator<Item = String>) {
-        self.rows.push(Row { label: label.into(), cells: cells.collect() });
-    }
-
-    pub(crate) fn section(self, title: &'static str) -> Section {
-        Section { title, rows: self.rows }
-    }
-}
-
-/// The result of a sample that came to one.
-pub(crate) fn done(sample: &SampleReport) -> Option<&SampleResult> {
-    match &sample.result {
-        SampleOutcome::Done(result) => Some(result),
-        SampleOutcome::Failed(_) => None,
-    }
 }
 
 /// The samples that came to nothing, with the reason.

@@ -10,7 +10,8 @@ use crate::observe::penetration::Penetration;
 #[cfg(feature = "fit")]
 use crate::report::curve;
 use crate::report::number::{count, significant};
-use crate::report::rows::{Rows, Section, refused_of};
+use crate::report::rows::refused_of;
+use crate::report::rows::section::{Rows, Section};
 #[cfg(feature = "fit")]
 use crate::response::Measurement;
 use crate::response::{Phase, PhaseOutcome, Response, RingResponse};

@@ -6,7 +6,7 @@ use crate::reference::lorentzian::{Lorentzian, USUAL_EXPONENT};
 use crate::report::figures::Figure;
 use crate::report::figures::plot::{Guide, Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare, colour};
 use crate::report::number::significant;
-use crate::report::study::{Subject, reduced, short};
+use crate::report::study::subject::{Subject, reduced, short};
 use crate::study::{MeanCurve, MeanPoint};
 use crate::transition::{RingSlope, Series};
 

@@ -3,7 +3,7 @@
 use crate::report::figures::Figure;
 use crate::report::figures::plot::{Guide, Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare, colour};
 use crate::report::number::with_error;
-use crate::report::study::{Subject, reduced, series_colour, short};
+use crate::report::study::subject::{Subject, reduced, series_colour, short};
 use crate::transition::{FIRST_ZERO, ISOSTATIC_THRESHOLD, JAMMING, JammingSeries, Series};
 
 /// Both lengths of every series.

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use crate::reference::lorentzian::{Lorentzian, USUAL_EXPONENT};
 use crate::report::figures::Figure;
 use crate::report::figures::plot::{Guide, Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare, colour};
-use crate::report::study::{Subject, series_colour, short};
+use crate::report::study::subject::{Subject, series_colour, short};
 use crate::study::NumberStatistics;
 use crate::transition::{
     ANGLE, ANTICORRELATION, FIRST_ZERO, PUBLISHED, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION, Series, beta,

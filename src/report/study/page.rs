@@ -6,8 +6,13 @@ use crate::fit::ensemble::{BootstrapInterval, DivergenceOutcome};
 use crate::report::figures::{Figure, escaped};
 use crate::report::number::{count, significant, with_error};
 use crate::report::page::{head, pictures};
+use crate::report::study::angular;
+use crate::report::study::lengths;
+use crate::report::study::order;
 use crate::report::study::order::Abscissa;
-use crate::report::study::{Subject, angular, lengths, order, radial, scaling};
+use crate::report::study::radial;
+use crate::report::study::scaling;
+use crate::report::study::subject::Subject;
 use crate::study::{CellStatistics, Merged, NumberStatistics, PhaseCounts};
 use crate::transition::{
     CellSpectrum, Comparison, ExponentOutcome, LEAST_CELLS, LEAST_SAMPLES, Sampled, Series, Transition,

@@ -5,7 +5,7 @@ use crate::reference::screened::Screened;
 use crate::reference::{Annulus, RadialSolution};
 use crate::report::figures::Figure;
 use crate::report::figures::plot::{Guide, Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare, colour};
-use crate::report::study::{Subject, series_colour, short, target, with_relaxer};
+use crate::report::study::subject::{Subject, series_colour, short, target, with_relaxer};
 use crate::study::{CellSamples, Single};
 use crate::transition::{FIRST_ZERO, Series};
 

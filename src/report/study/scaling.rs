@@ -7,7 +7,7 @@ use crate::relax::RelaxerChoice;
 use crate::report::figures::Figure;
 use crate::report::figures::palette::{BLUE, VERMILLION};
 use crate::report::figures::plot::{Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare};
-use crate::report::study::{Subject, series_colour, short};
+use crate::report::study::subject::{Subject, series_colour, short};
 use crate::transition::{
     ANGLE, ANTICORRELATION, Method, SCALE_FREE_ANTICORRELATION, Series as Cells, beta, laws_and_relaxers,
 };

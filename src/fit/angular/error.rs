@@ -1,0 +1,56 @@
+//! [`SpectrumFitError`]: why there is nothing to fit.
+
+use crate::observe::angular::AngularError;
+
+/// Powers a fit needs.
+pub const LEAST_POWER_COUNT: usize = 3;
+
+/// Why there is nothing to fit. That a spectrum is white or scale-free is an outcome, not an error.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SpectrumFitError {
+    /// No ring was given.
+    #[error("no ring to fit")]
+    NoRing,
+    /// Fewer powers than [`LEAST_POWER_COUNT`].
+    #[error(
+        "{power_count} powers from f = {lowest} to {highest} of {disk_count} disks: at least {LEAST_POWER_COUNT} are needed"
+    )]
+    TooFewPowers {
+        /// Powers in the window.
+        power_count: usize,
+        /// Lowest f.
+        lowest: usize,
+        /// Highest f.
+        highest: usize,
+        /// Disks of the ring.
+        disk_count: usize,
+    },
+    /// The window begins at 0 or ends above n/2.
+    #[error("powers from f = {lowest} to {highest} of {disk_count} disks: from 1 to n/2 there are")]
+    WindowOutOfRange {
+        /// Lowest f.
+        lowest: usize,
+        /// Highest f.
+        highest: usize,
+        /// Disks of the ring.
+        disk_count: usize,
+    },
+    /// Every value of a ring is the same.
+    #[error("ring {ring} has no power")]
+    NoPower {
+        /// Index of the ring.
+        ring: usize,
+    },
+    /// A setting out of its range.
+    #[error("{setting} = {value} is out of range")]
+    SettingOutOfRange {
+        /// The setting.
+        setting: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The spectrum could not be taken.
+    #[error("the spectrum: {0}")]
+    Spectrum(#[from] AngularError),
+}

@@ -1,0 +1,75 @@
+//! [`ProfileFit`]: what fits of a radial profile give.
+
+use serde::{Deserialize, Serialize};
+
+use crate::fit::Estimate;
+
+/// The elastic solution fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ElasticFit {
+    /// d_0^eff \[length\].
+    pub amplitude: Estimate,
+    /// Largest κ compatible with the profile, one-sided, 95 % \[1/length\]; none if the search ended before one.
+    pub wavenumber_bound: Option<f64>,
+    /// Σ (residual/error)² over the rings.
+    pub chi_squared: f64,
+    /// Share of the weighted Σ (r·d_r)² described, per degree of freedom: `1 − (χ²/(n−1))/(χ²_0/n)` \[1\].
+    pub share_described: f64,
+    /// Number of independent rings n_eff, from its residuals.
+    pub effective_ring_count: f64,
+    /// Probability that no displacement at all would fit so much worse by chance (F test).
+    pub chance_of_nothing: f64,
+}
+
+/// The screened solution fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ScreenedFit {
+    /// d_0^eff \[length\]; of either sign, zero at a pole.
+    pub amplitude: Estimate,
+    /// κ \[1/length\].
+    pub wavenumber: Estimate,
+    /// Correlation of the two errors \[1\].
+    pub correlation: f64,
+    /// Number of poles below κ: 0 below κ_1, 1 between κ_1 and κ_2.
+    pub branch: usize,
+    /// Σ (residual/error)² over the rings.
+    pub chi_squared: f64,
+    /// Share of the weighted Σ (r·d_r)² described, per degree of freedom: `1 − (χ²/(n−2))/(χ²_0/n)` \[1\].
+    pub share_described: f64,
+    /// Number of independent rings n_eff, from its residuals.
+    pub effective_ring_count: f64,
+    /// Probability that no displacement at all would fit so much worse by chance (F test, corrected for the branches).
+    pub chance_of_nothing: f64,
+    /// Probability that κ = 0 would fit so much worse by chance (F test, corrected for the branches).
+    pub chance_of_elastic: f64,
+}
+
+/// What describes the profile.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Decision {
+    /// The elastic solution; κ is consistent with zero, below [`ElasticFit::wavenumber_bound`].
+    Elastic,
+    /// The screened one, with κ ≠ 0.
+    Screened,
+    /// None of the two.
+    Neither,
+}
+
+/// Both fits and which of them to believe.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ProfileFit {
+    /// What describes the profile.
+    pub decision: Decision,
+    /// The elastic solution.
+    pub elastic: ElasticFit,
+    /// The screened solution; absent if no κ > 0 up to the largest searched fits better than κ = 0, or the rings
+    /// cannot tell κ from the amplitude.
+    pub screened: Option<ScreenedFit>,
+    /// Rings used.
+    pub ring_count: usize,
+    /// Inner and outer end of the range used \[length\].
+    pub range: [f64; 2],
+    /// Largest κ searched \[1/length\].
+    pub largest_wavenumber: f64,
+}

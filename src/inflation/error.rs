@@ -1,0 +1,90 @@
+//! [`InflationError`]: why an inflation could not be done.
+
+use crate::inflation::rest::Stage;
+use crate::packing::PackingError;
+use crate::relax::Stop;
+
+/// Why an inflation could not be done.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InflationError {
+    /// The disks themselves are at fault.
+    #[error(transparent)]
+    Packing(#[from] PackingError),
+    /// A circle is cut from a periodic box only.
+    #[error("the packing is not periodic: a circle with its held rim is cut from a periodic box")]
+    NotPeriodic,
+    /// r_out must leave every mobile disk one image.
+    #[error("outer radius {outer_radius} is not between 0 and half the shortest side of the box, {half_side}")]
+    OuterRadiusOutOfRange {
+        /// The radius asked for.
+        outer_radius: f64,
+        /// Half the shortest side.
+        half_side: f64,
+    },
+    /// Nothing could move.
+    #[error("no disk lies within the outer radius {outer_radius}")]
+    NoMobileDisk {
+        /// The radius asked for.
+        outer_radius: f64,
+    },
+    /// d_0 must be finite and leave a positive radius.
+    #[error("increase is {increase}, which leaves no positive radius of a disk of radius {radius}")]
+    IncreaseNotPossible {
+        /// d_0 asked for.
+        increase: f64,
+        /// Radius of the disk.
+        radius: f64,
+    },
+    /// The inflated disk would cover the centre of a neighbour.
+    #[error(
+        "increase is {increase}, larger than the neighbours allow: a disk of radius {radius} has a neighbour's centre at {nearest}, so the increase must stay below {}",
+        nearest - radius
+    )]
+    IncreaseTooLarge {
+        /// d_0 asked for.
+        increase: f64,
+        /// Radius of the disk.
+        radius: f64,
+        /// Distance of the nearest centre.
+        nearest: f64,
+    },
+    /// Γ must be a number.
+    #[error("on_site_coupling is {coupling}, not a finite number")]
+    CouplingNotFinite {
+        /// The value asked for.
+        coupling: f64,
+    },
+    /// There is no disk with the label asked for.
+    #[error("no disk has the label {label}")]
+    NoSuchLabel {
+        /// The label asked for.
+        label: u64,
+    },
+    /// A mobile disk was pushed through the held rim: its centre is farther out than the rim and a disk.
+    #[error(
+        "{stage}: disk {label} was pushed through the rim: it is at {distance} from the centre, and disks from {outer_radius} on are held"
+    )]
+    BeyondRim {
+        /// Which of the relaxations.
+        stage: Stage,
+        /// Label of the disk.
+        label: u64,
+        /// Its distance from the centre \[length\].
+        distance: f64,
+        /// r_out \[length\].
+        outer_radius: f64,
+    },
+    /// A relaxation did not end at rest.
+    #[error("{stage}: the relaxation stopped with {stop:?} after {step_count} steps, residual {residual:e}")]
+    NotAtRest {
+        /// Which of the relaxations.
+        stage: Stage,
+        /// Why it stopped.
+        stop: Stop,
+        /// Steps taken.
+        step_count: usize,
+        /// Relative residual reached.
+        residual: f64,
+    },
+}

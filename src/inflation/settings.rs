@@ -1,0 +1,89 @@
+//! [`Inflation`]: which disk is inflated, by how much, and what keeps the packing in place.
+
+use serde::{Deserialize, Serialize};
+
+use crate::inflation::error::InflationError;
+use crate::law::on_site::OnSite;
+use crate::law::pair_law::PairLaw;
+
+/// What keeps the packing in place while a disk is inflated.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Boundary {
+    /// A circle is cut out; disks from this radius outwards are held, and so is the centre.
+    HeldRim {
+        /// r_out over the shortest side of the box, at most 1/2 \[1\].
+        outer_radius_over_side: f64,
+    },
+    /// The periodic box; nothing is held, the centre of mass stays.
+    Periodic,
+}
+
+impl Default for Boundary {
+    /// Source: design §4, r_out/L for 5548 disks (0.486 and 0.491 for 22184 and 88776).
+    fn default() -> Self {
+        Boundary::HeldRim { outer_radius_over_side: 0.480 }
+    }
+}
+
+/// Which disk is inflated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Centre {
+    /// A random one of the smallest disks on the backbone (of all the smallest disks where there is no backbone).
+    #[default]
+    Backbone,
+    /// A random one of the smallest disks, rattler or not.
+    AnySmall,
+    /// The disk with this label.
+    Label(u64),
+}
+
+/// The inflation of one disk.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Inflation {
+    /// d_0, by which the radius grows at once \[length\].
+    pub increase: f64,
+    /// What keeps the packing in place.
+    pub boundary: Boundary,
+    /// Which disk is inflated.
+    pub centre: Centre,
+    /// Whether the disk is deflated again afterwards.
+    pub deflate: bool,
+    /// Γ of an energy −Γu²/2 on every mobile disk, u its displacement from where it was in the packing given; absent, there
+    /// is none \[force / length\]. The packing itself is prepared without it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub on_site_coupling: Option<f64>,
+}
+
+impl Inflation {
+    /// A law with the sites of the inflation, if disks have any.
+    pub fn law_with_sites<L: PairLaw>(&self, law: &L) -> OnSite<L> {
+        OnSite { law: *law, coupling: self.on_site_coupling.unwrap_or(0.0) }
+    }
+
+    /// The same.
+    ///
+    /// # Errors
+    /// A coupling that is not finite.
+    pub(crate) fn checked_law_with_sites<L: PairLaw>(&self, law: &L) -> Result<OnSite<L>, InflationError> {
+        match self.on_site_coupling {
+            Some(coupling) if !coupling.is_finite() => Err(InflationError::CouplingNotFinite { coupling }),
+            _ => Ok(self.law_with_sites(law)),
+        }
+    }
+}
+
+impl Default for Inflation {
+    /// Source: design §4 (d_0 = 0.1).
+    fn default() -> Self {
+        Inflation {
+            increase: 0.1,
+            boundary: Boundary::default(),
+            centre: Centre::default(),
+            deflate: false,
+            on_site_coupling: None,
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! [`LinearError`]: why there is no solution.
+
+use crate::memory::TooLarge;
+use crate::packing::PackingError;
+
+/// Why there is no solution.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LinearError {
+    /// More modes than memory holds.
+    #[error(transparent)]
+    TooLarge(#[from] TooLarge),
+    /// The disks themselves are at fault.
+    #[error(transparent)]
+    Packing(#[from] PackingError),
+    /// Nothing to solve for: no disk is on the backbone.
+    #[error("no mobile disk of {disk_count} is on the backbone: an unjammed packing has no linear response")]
+    NoBackbone {
+        /// Number of disks.
+        disk_count: usize,
+    },
+    /// The disk to inflate touches no disk that could answer.
+    #[error("disk {disk} has no contact with the backbone: inflating it by an infinitesimal amount moves nothing")]
+    CentreTouchesNothing {
+        /// The disk.
+        disk: usize,
+    },
+    /// There is no such disk.
+    #[error("disk {disk} of {disk_count}: there is none")]
+    NoSuchDisk {
+        /// The index asked for.
+        disk: usize,
+        /// Number of disks.
+        disk_count: usize,
+    },
+    /// A load that is not a number.
+    #[error("the load on disk {disk} is not a finite vector")]
+    LoadNotFinite {
+        /// The disk.
+        disk: usize,
+    },
+    /// Loads and disks differ in number.
+    #[error("{found} forces for {disk_count} disks")]
+    LoadNotOneADisk {
+        /// Number of forces.
+        found: usize,
+        /// Number of disks.
+        disk_count: usize,
+    },
+    /// Only held disks can be moved at will.
+    #[error("disk {disk} is not held: its displacement is part of the answer")]
+    NotHeld {
+        /// The disk.
+        disk: usize,
+    },
+    /// An entry is NaN or infinite.
+    #[error("the matrix has the entry {value} in row {row}, column {column}")]
+    NotFinite {
+        /// Row of the entry.
+        row: usize,
+        /// Column of the entry.
+        column: usize,
+        /// The entry.
+        value: f64,
+    },
+    /// Entries stand elsewhere than in the matrix analysed.
+    #[error("the matrix of {dimension} rows does not have the pattern that was analysed")]
+    PatternDiffers {
+        /// Its number of rows.
+        dimension: usize,
+    },
+    /// An order of elimination names a row twice, one that is not there, or not every row.
+    #[error("the order of elimination has row {row} in place {place}, which is no order of {dimension} rows")]
+    NotAnOrder {
+        /// Number of rows of the matrix.
+        dimension: usize,
+        /// The place at fault, from 0.
+        place: usize,
+        /// The row found there.
+        row: usize,
+    },
+    /// A Cholesky factor was asked for and there is none.
+    #[error("the matrix of {dimension} rows is not positive definite")]
+    NotPositiveDefinite {
+        /// Its number of rows.
+        dimension: usize,
+    },
+    /// Singular to rounding: some motion costs nothing.
+    #[error("the matrix is singular to rounding: its pivots span {pivot_ratio:e}, smallest over largest")]
+    Singular {
+        /// Smallest over largest size of a pivot; for a definite matrix the inverse condition number lies below it.
+        pivot_ratio: f64,
+    },
+    /// Refinement does not bring the backward error down to rounding.
+    #[error("the backward error of the solution stays at {backward_error:e} after {refinement_count} refinements")]
+    NotAccurate {
+        /// ‖b − A x‖ / (‖A‖ ‖x‖ + ‖b‖) reached.
+        backward_error: f64,
+        /// Refinements made.
+        refinement_count: usize,
+    },
+    /// Conjugate gradients did not come to an end.
+    #[error("the backward error is {backward_error:e} after {iteration_count} iterations, all that were allowed")]
+    IterationsUsedUp {
+        /// Iterations made.
+        iteration_count: usize,
+        /// ‖b − A x‖ / (‖A‖ ‖x‖ + ‖b‖) reached.
+        backward_error: f64,
+    },
+    /// Held disks do not follow the strain of a box.
+    #[error("{held_count} disks are held: elastic moduli are those of a periodic packing that nothing holds")]
+    HeldDisks {
+        /// Number of held disks.
+        held_count: usize,
+    },
+    /// There is no box to strain.
+    #[error("the packing lies in the open plane: elastic moduli are those of a periodic packing")]
+    NotPeriodic,
+    /// Sites do not follow the strain of a box.
+    #[error("sites hold or push the disks with Γ = {coupling}: the energy is not one of the strain alone")]
+    OnSites {
+        /// Γ of the law.
+        coupling: f64,
+    },
+    /// Not all modes asked for were found.
+    #[error(
+        "{found} of {asked} modes were found to {tolerance:e} of the norm after {factorisation_count} factorisations"
+    )]
+    ModesNotFound {
+        /// Number found.
+        found: usize,
+        /// Number asked for.
+        asked: usize,
+        /// Residual over norm they should have.
+        tolerance: f64,
+        /// Factorisations made.
+        factorisation_count: usize,
+    },
+    /// No memory for the factors.
+    #[error("the factors of a matrix of {dimension} rows do not fit in memory")]
+    OutOfMemory {
+        /// Its number of rows.
+        dimension: usize,
+    },
+}

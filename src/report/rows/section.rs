@@ -1,0 +1,64 @@
+//! [`Section`]: rows under one heading, and [`Rows`], which collects them.
+
+use crate::run::{SampleOutcome, SampleReport, SampleResult};
+
+/// Rows under one heading.
+pub(crate) struct Section {
+    pub title: &'static str,
+    pub rows: Vec<Row>,
+}
+
+/// One quantity.
+pub(crate) struct Row {
+    /// What it is, with its unit.
+    pub label: String,
+    /// One a sample; a dash where a sample has none.
+    pub cells: Vec<String>,
+}
+
+/// Collects the rows of some results, one a column; none where a sample came to nothing.
+pub(crate) struct Rows<'a, T> {
+    results: Vec<Option<&'a T>>,
+    rows: Vec<Row>,
+}
+
+impl<'a> Rows<'a, SampleResult> {
+    /// No row of these samples yet.
+    pub(crate) fn of_samples(samples: &'a [SampleReport]) -> Self {
+        Rows::new(samples.iter().map(done).collect())
+    }
+}
+
+impl<'a, T> Rows<'a, T> {
+    /// No row yet.
+    pub(crate) fn new(results: Vec<Option<&'a T>>) -> Self {
+        Rows { results, rows: Vec::new() }
+    }
+
+    /// Adds a row, unless no sample has the quantity.
+    pub(crate) fn add(&mut self, label: impl Into<String>, cell: impl Fn(&T) -> Option<String>) -> &mut Self {
+        let cells: Vec<Option<String>> = self.results.iter().map(|result| result.and_then(&cell)).collect();
+        if cells.iter().any(Option::is_some) {
+            let cells = cells.into_iter().map(|cell| cell.unwrap_or_else(|| "–".into())).collect();
+            self.rows.push(Row { label: label.into(), cells });
+        }
+        self
+    }
+
+    /// Adds a row that all have.
+    pub(crate) fn add_cells(&mut self, label: &str, cells: impl Iterator<Item = String>) {
+        self.rows.push(Row { label: label.into(), cells: cells.collect() });
+    }
+
+    pub(crate) fn section(self, title: &'static str) -> Section {
+        Section { title, rows: self.rows }
+    }
+}
+
+/// The result of a sample that came to one.
+pub(crate) fn done(sample: &SampleReport) -> Option<&SampleResult> {
+    match &sample.result {
+        SampleOutcome::Done(result) => Some(result),
+        SampleOutcome::Failed(_) => None,
+    }
+}
