@@ -1,9 +1,9 @@
-//! A few fast disks of very many: those that have moved far since a Verlet list was built.
+//! Fast disks: the few disks that have moved far since a Verlet list was built.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-/// Chosen disks, to be found by their numbers and in ranges of them.
+/// A set of disks, searchable by disk number and by range of numbers.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct FastDisks {
     /// In ascending order.
@@ -12,7 +12,7 @@ pub(crate) struct FastDisks {
 }
 
 impl FastDisks {
-    /// Chooses these of so many disks, in place of those before.
+    /// Replaces the set by `disks`, out of `disk_count` disks.
     ///
     /// # Shape
     /// `disks` are in ascending order.
@@ -24,24 +24,24 @@ impl FastDisks {
         self.disks = disks;
     }
 
-    /// All of them.
+    /// All disks of the set.
     pub fn disks(&self) -> &[u32] {
         &self.disks
     }
 
-    /// Whether this is one of them.
+    /// Whether the set contains this disk.
     pub fn contains(&self, disk: u32) -> bool {
         self.is_far[disk as usize]
     }
 
-    /// Whether any of these is one of them.
+    /// Whether the set contains any disk of this range.
     pub fn any_of(&self, disks: Range<usize>) -> bool {
         let at = self.disks.partition_point(|&disk| (disk as usize) < disks.start);
         self.disks.get(at).is_some_and(|&disk| (disk as usize) < disks.end)
     }
 }
 
-/// Disks that were updated since the list was built, by the cells where they were then.
+/// Disks that were updated since the list was built, sorted by the cells they were in at the update.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct UpdatedDisks {
     pub(crate) of_cells: HashMap<usize, Vec<u32>>,
@@ -49,7 +49,7 @@ pub(crate) struct UpdatedDisks {
 }
 
 impl UpdatedDisks {
-    /// None any more.
+    /// Empties the set.
     pub fn clear(&mut self) {
         self.of_cells.clear();
         self.disks.clear();

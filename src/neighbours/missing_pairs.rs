@@ -6,11 +6,13 @@ use crate::neighbours::pair_list::PairList;
 use crate::neighbours::verlet_list::{Anchored, Disks, ListRoom};
 use crate::vector::{Vector, difference, dot, sum};
 
-/// A pair that is nearer than the range of a list by this share of the skin is in it, whatever the rounding of coordinates \[1\].
+/// Margin of the search over the skin \[1\]. A pair closer than the range by this margin is certainly in the list,
+/// despite rounding.
 const UNSURE: f64 = 1e-3;
 
 impl<const D: usize> ListRoom<D> {
-    /// Takes note that these disks are listed anew where they are. False if they would be more than so many.
+    /// Records that these disks have been updated to their present positions. Returns false if more than `most` disks
+    /// would be recorded.
     pub(crate) fn note_updated(&mut self, disks: &Disks<'_, D>, far: &FastDisks, most: usize) -> bool {
         let UpdatedDisks { of_cells, disks: updated } = &mut self.updated;
         let others = far.disks().iter().filter(|&disk| !updated.contains(disk)).count();
@@ -29,12 +31,12 @@ impl<const D: usize> ListRoom<D> {
     }
 }
 
-/// Adds the pairs that a list lacks once some disks are listed where they are. Nothing is done, and false returned, where there are
-/// not places enough.
+/// Inserts the pairs that a list is missing after some fast disks have been updated to their present positions. Returns
+/// false, without any change, if the reserved blocks have too little space.
 ///
 /// # Shape
-/// The list is complete for where each disk was `listed`, from its anchor, or is the near pairs of such a list, with a skin of their own;
-/// `far` are those to be listed anew. Disks that were listed anew in the list of all pairs before, and those that are now, are in `room`.
+/// The list is complete for disks at anchor + `listed`, or is an inner list with a skin of its own. `far` are the disks
+/// to update. `room` holds all disks updated in the outer list, including those of this call.
 pub(crate) fn insert_missing_pairs<const D: usize>(
     disks: &Disks<'_, D>,
     (listed, skin): (&[Vector<D>], f64),
@@ -50,7 +52,7 @@ pub(crate) fn insert_missing_pairs<const D: usize>(
         let mut apart: Vector<D> = difference(a, b);
         if let Some(lengths) = lengths {
             for d in 0..D {
-                // Most are near as they are.
+                // Most pairs need no periodic image.
                 if 2.0 * apart[d].abs() > lengths[d] {
                     apart[d] -= (apart[d] / lengths[d]).round_ties_even() * lengths[d];
                 }
@@ -69,13 +71,13 @@ pub(crate) fn insert_missing_pairs<const D: usize>(
             if disk == other || apart(here, now(other)) >= range * range || first as usize >= disks.mobile_count {
                 return;
             }
-            // Those that were near before are listed; where rounding might decide that is looked up.
+            // Pairs that were near before are in the list. Pairs within the rounding margin are looked up below.
             let surely = range - UNSURE * skin;
             if apart(there, before(other)) >= surely * surely {
                 missing.push((first, second));
             }
         };
-        // Others are in the cells they were in; those that were listed anew are in others as well.
+        // Other disks are in their cells of the last build; updated disks are also in the cells of their updates.
         grid.neighbourhood(grid.cell_at(disks.domain.wrapped(here)), lengths, &mut runs);
         for Run { cells, .. } in &runs {
             let (start, end) = (grid.starts[cells.start] as usize, grid.starts[cells.end] as usize);
