@@ -1,6 +1,7 @@
-//! The few disks that go far while the others hardly move: they are listed anew, so that a list lasts for the others.
+//! Incremental update: a few fast disks get their present positions as reference, so that a list lasts for the slow
+//! disks.
 //!
-//! What is done for them is done where they are: portions whose bound says that none went far are not looked at.
+//! The cost depends on the number of fast disks: portions whose bound excludes fast disks are not checked.
 
 use std::ops::Range;
 
@@ -12,32 +13,32 @@ use crate::neighbours::pair_list::PairList;
 use crate::neighbours::verlet_list::ListRoom;
 use crate::vector::{Vector, difference, dot, longest_difference_squared};
 
-/// Disks of which one may go far at once.
+/// At most one disk in so many may be fast.
 const ONE_OF: usize = 128;
 
-/// What is best for lists of one tile, which are near the processor and quickly made, is not for long ones. Changes speed only.
+/// Parameters that differ between lists of one tile, which stay in cache and are built quickly, and long lists. They
+/// change speed only.
 pub(crate) struct Tuning {
-    /// A disk has gone far if it went this share of the way for which its list holds \[1\].
+    /// A disk is fast if its displacement exceeds this fraction of the limit of its list \[1\].
     far: f64,
-    /// Disks of which one may have been listed anew since a list was made.
+    /// At most one disk in so many may have been updated since the list was built.
     updated_one_of: usize,
-    /// Time of amending near pairs over that of picking them \[1\].
+    /// Time of an incremental update over that of pruning \[1\].
     amending: f64,
-    /// Widest skin of near pairs over that of the list in use \[1\]. A twelfth of a radius lasts some 70 steps where it is the best; picking the
-    /// pairs of large packings costs two to three evaluations more than PICKING says.
+    /// Widest inner skin over the skin of the list in use \[1\].
     pub widest_near: f64,
 }
 
 const SHORT: Tuning = Tuning { far: 0.5, updated_one_of: 64, amending: 0.4, widest_near: 0.16 };
 const LONG: Tuning = Tuning { far: 0.7, updated_one_of: 8, amending: 0.1, widest_near: 0.3 };
 
-/// Time of picking near pairs of large lists over what it gains, over that of small ones \[1\].
+/// Cost of pruning a large list relative to its gain, over the same ratio for small lists \[1\].
 const PICKING: f64 = 3.5;
 
-/// Disks of which one may go farther than the way that is common to the others.
+/// One disk in so many may exceed the common displacement.
 const COMMON_BUT_ONE_OF: usize = 512;
 
-/// Disks that are asked for that way at least, if there are so many: some 250 of them go farther.
+/// Size of the sample of disks for the common displacement; some 250 of the sample exceed it.
 const ASKED: usize = 1 << 17;
 
 impl<const D: usize, L: PairLaw> Assembly<D, L> {
@@ -45,12 +46,12 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         if self.pairs.is_long() { &LONG } else { &SHORT }
     }
 
-    /// Whether lists are amended before they are spent: a step that spends one need not be made without it then.
+    /// Whether lists are updated before they expire. A step by tiles is then never interrupted by an expired list.
     fn looks_ahead(&self) -> bool {
         self.prunes && self.pairs.is_long()
     }
 
-    /// Amends the list in use if a step like the last one may spend it. True if that was done.
+    /// Updates the list in use if a step like the last one may exceed its limit. Returns whether it did.
     pub(crate) fn amend_ahead(&mut self) -> bool {
         let limit = LISTED * self.skin();
         let nearly: Vec<usize> = self.bounds.nearly_spent(limit).collect();
@@ -61,7 +62,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.bounds.nearly_spent(limit).next().is_some() && self.amend()
     }
 
-    /// The disks that [`Assembly::keep`] looks at after a step that did not spend the list.
+    /// The disks that [`Assembly::keep`] checks after a step for which the list was complete.
     pub(crate) fn disks_to_see(&self) -> Vec<Range<usize>> {
         let limit = LISTED * self.skin();
         if !self.looks_ahead() || self.bounds.nearly_spent(limit).next().is_none() {
@@ -75,13 +76,15 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         portions.into_iter().map(|portion| self.bounds.disks_of(portion)).collect()
     }
 
-    /// Lists the disks that went far anew, if they are few, and adds the pairs that the list in use lacks then. False if that cannot be: then
-    /// it is as it was, and that of all pairs holds for as far as it did.
+    /// Updates the few fast disks to their present positions and inserts the pairs that the list in use is missing.
+    /// Returns false if that is impossible. Then the list in use is unchanged, and the outer list stays valid up to its
+    /// old limit.
     pub(crate) fn amend(&mut self) -> bool {
         if !self.pairs.keeps_places {
             return false;
         }
-        // Disks that go far in near pairs are looked for in the cells of the list of all pairs, and must not be far from there.
+        // Disks that are fast in the inner list are searched in the cells of the outer list, so they must not be far
+        // from those cells.
         let of_all = self.amend_all();
         let amended = match self.inner_skin {
             None => of_all == Some(true),
@@ -90,14 +93,15 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         if amended {
             self.listing_number.1 += 1;
             if self.inner_skin.is_none() && !self.pairs.is_long() {
-                // How fast disks are is looked at as for a new list.
+                // The speed of the disks is checked as for a new list.
                 self.prune_lists(self.prunes);
             }
         }
         amended
     }
 
-    /// Lists the disks anew that went far in the list of all pairs. Whether there were any; none if that cannot be.
+    /// Updates the disks that are fast in the outer list. Returns whether there were any; none if the update is
+    /// impossible.
     fn amend_all(&mut self) -> Option<bool> {
         let portions: Vec<usize> = self.far_portions_of_all().collect();
         let disks = self.far_of(&portions, &self.listed, self.skin)?;
@@ -123,7 +127,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         Some(true)
     }
 
-    /// The same of near pairs.
+    /// The same for the inner list.
     fn amend_near(&mut self, skin: f64) -> bool {
         let portions: Vec<usize> = self.far_portions().collect();
         let Some(disks) = self.far_of(&portions, &self.inner_at_build, skin).filter(|disks| !disks.is_empty()) else {
@@ -149,14 +153,14 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         insert_missing_pairs(&self.disks(), listing, &self.far, |a, b| law.coefficient(a, b), room, pairs)
     }
 
-    /// Portions of which a disk may have gone far in the list in use.
+    /// Portions that may contain disks that are fast in the list in use.
     fn far_portions(&self) -> impl Iterator<Item = usize> {
         let limit = self.tuning().far * LISTED * self.skin();
         let bounds = self.bounds.portions.iter().enumerate();
         bounds.filter(move |(_, bound)| bound.total > limit).map(|(portion, _)| portion)
     }
 
-    /// The same in the list of all pairs.
+    /// The same for the outer list.
     fn far_portions_of_all(&self) -> impl Iterator<Item = usize> {
         let limit = self.tuning().far * LISTED * self.skin;
         let before = self.bounds_before.iter().copied().chain(std::iter::repeat(0.0));
@@ -164,7 +168,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         bounds.enumerate().filter(move |(_, way)| *way > limit).map(|(portion, _)| portion)
     }
 
-    /// The disks of some portions that went far from where they were listed, if they are few.
+    /// The disks of some portions that are far from their reference positions; none if they are too many.
     fn far_of(&self, portions: &[usize], listed: &[Vector<D>], skin: f64) -> Option<Vec<u32>> {
         let limit = self.tuning().far * LISTED * skin;
         let disks = portions.iter().flat_map(|&portion| self.bounds.disks_of(portion));
@@ -176,7 +180,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         (far.len() <= self.len() / ONE_OF).then_some(far)
     }
 
-    /// Takes how far the disks of some portions have gone since they were listed, in place of bounds on it.
+    /// Computes the displacements of the disks of some portions, in place of their bounds.
     pub(crate) fn measure_portions(&mut self, portions: Vec<usize>) {
         for portion in portions {
             let disks = self.bounds.disks_of(portion);
@@ -185,7 +189,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
     }
 
-    /// The same for how far they had gone in the list of all pairs when they were listed in near pairs.
+    /// The same for the displacements in the outer list up to the build of the inner list.
     fn measure_portions_before(&mut self, portions: &[usize]) {
         for &portion in portions {
             let disks = self.bounds.disks_of(portion);
@@ -193,8 +197,9 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
     }
 
-    /// The way from where they were by which disks wear near pairs out: as much less by those that note_updated as amending takes less than
-    /// picking; for large lists more, as picking takes longer there.
+    /// Effective displacement since `from` that wears out the inner list. Displacements of fast disks count less, by
+    /// the ratio of the costs of an update and of pruning. For large lists all count more, because pruning takes longer
+    /// there.
     pub(crate) fn effective_displacement(&self, from: &[Vector<D>]) -> f64 {
         let longest = self.longest_way(from);
         if self.pairs.keeps_places {
@@ -204,7 +209,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
     }
 
-    /// The way from where they were that all mobile disks but a few, which may note_updated, did not exceed \[length\].
+    /// The displacement since `from` that all mobile disks but a few, which can be updated, do not exceed \[length\].
     pub(crate) fn common_displacement(&self, from: &[Vector<D>]) -> f64 {
         if !self.pairs.keeps_places || self.mobile_count == 0 {
             return self.longest_way(from);
