@@ -65,7 +65,7 @@ pub struct Peeling {
     neighbours: Vec<u32>,
     /// Number of contacts with disks that are not removed yet.
     degree: Vec<u32>,
-    doomed: Vec<u32>,
+    pending: Vec<u32>,
 }
 
 impl Peeling {
@@ -76,7 +76,7 @@ impl Peeling {
         contacts: &[(u32, u32)],
         remains: &mut [bool],
     ) {
-        let Peeling { starts, next, neighbours, degree, doomed } = self;
+        let Peeling { starts, next, neighbours, degree, pending } = self;
         let count = remains.len();
         degree.clear();
         degree.resize(count, 0);
@@ -100,20 +100,20 @@ impl Peeling {
             }
         }
         let least = D as u32 + 1;
-        doomed.clear();
+        pending.clear();
         for (disk, remains) in remains.iter_mut().enumerate() {
             *remains = held(disk) || degree[disk] >= least;
             if !*remains {
-                doomed.push(disk as u32);
+                pending.push(disk as u32);
             }
         }
-        while let Some(disk) = doomed.pop() {
+        while let Some(disk) = pending.pop() {
             for &other in &neighbours[starts[disk as usize] as usize..starts[disk as usize + 1] as usize] {
                 let disk = other as usize;
                 degree[disk] -= 1;
                 if remains[disk] && !held(disk) && degree[disk] < least {
                     remains[disk] = false;
-                    doomed.push(other);
+                    pending.push(other);
                 }
             }
         }

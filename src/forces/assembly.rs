@@ -18,7 +18,7 @@ use crate::forces::elastic::{Across, Plain};
 use crate::forces::stiffness_bound::{Weight, stiffness_rows};
 use crate::forces::totals::Totals;
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::displacement_bounds::{DisplacementBounds, LISTED};
+use crate::neighbours::displacement_bounds::{DisplacementBounds, SKIN_FRACTION};
 use crate::neighbours::fast_disks::FastDisks;
 use crate::neighbours::pair_list::PairList;
 use crate::neighbours::verlet_list::{Disks, ListRoom, build_pairs, spatial_order};
@@ -58,10 +58,10 @@ pub struct Assembly<const D: usize, L> {
     /// Number of calls of [`Assembly::keep_listed`] since the list in use was built, and the number at which the speed
     /// of the disks is checked.
     age: usize,
-    look_at: usize,
+    next_check: usize,
     /// Displacements at the last speed check, and the value of `age` then.
-    seen: Vec<Vector<D>>,
-    seen_at: usize,
+    checked_displacements: Vec<Vector<D>>,
+    checked_at: usize,
     across: Across<f64, D>,
     list_room: ListRoom<D>,
     smallest_radius: f64,
@@ -71,10 +71,10 @@ pub struct Assembly<const D: usize, L> {
     skins: RangeInclusive<f64>,
     /// Displacements at the build of the outer list, or at the last update of a disk in it; the same for the inner
     /// list.
-    listed: Vec<Vector<D>>,
+    outer_at_build: Vec<Vector<D>>,
     inner_at_build: Vec<Vector<D>>,
     /// The fast disks of the present update.
-    far: FastDisks,
+    fast_disks: FastDisks,
     /// Displacements that the relaxer can restore, if it has set a checkpoint.
     checkpoint: Vec<Vector<D>>,
     /// Displacement bounds since the list in use was built.
@@ -145,9 +145,9 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             anchors,
             displacements,
             forces: vec![[0.0; D]; packing.len()],
-            listed: Vec::new(),
+            outer_at_build: Vec::new(),
             inner_at_build: Vec::new(),
-            far: FastDisks::default(),
+            fast_disks: FastDisks::default(),
             checkpoint: Vec::new(),
             bounds: DisplacementBounds::default(),
             bounds_before: Vec::new(),
@@ -159,9 +159,9 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             inner_skin: None,
             prunes: false,
             age: 0,
-            look_at: 0,
-            seen: Vec::new(),
-            seen_at: 0,
+            next_check: 0,
+            checked_displacements: Vec::new(),
+            checked_at: 0,
             across: Across::default(),
             list_room: ListRoom::default(),
             radii,
@@ -174,8 +174,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             // An anchor is the rounded difference of position and origin; the displacement has the remainder.
             let from_site = |&disk: &u32| {
                 let position = packing.positions()[disk as usize];
-                let way = packing.way_from_site(disk as usize, position);
-                std::array::from_fn(|d| extended_sum(way[d], -two_sum(position[d], -origin[d]).1))
+                let offset = packing.way_from_site(disk as usize, position);
+                std::array::from_fn(|d| extended_sum(offset[d], -two_sum(position[d], -origin[d]).1))
             };
             assembly.from_sites = assembly.order[..assembly.mobile_count].iter().map(from_site).collect();
         }
@@ -272,10 +272,10 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         if !self.may_advance() {
             return Advanced::Not;
         }
-        let limit = LISTED * self.skin();
+        let limit = SKIN_FRACTION * self.skin();
         let (pairs, listed) = match self.inner_skin {
             Some(_) => (&self.inner_pairs, &self.inner_at_build),
-            None => (&self.pairs, &self.listed),
+            None => (&self.pairs, &self.outer_at_build),
         };
         let movers = Movers { velocities, displacements: &mut self.displacements, forces: &mut self.forces };
         let longest = |first: usize, displacements: &[Vector<D>]| {
@@ -388,7 +388,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             }
             other => other,
         })?;
-        self.begin_all();
+        self.begin_outer_list();
         self.rebuild_count += 1;
         Ok(())
     }

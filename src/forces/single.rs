@@ -198,11 +198,11 @@ impl<const D: usize> Single<D> {
         let movers = Movers { velocities, displacements: &mut self.offsets, forces: &mut self.forces };
         let reach = Reach { limit, bounds, longest };
         let advanced = Advanced::of(advance(&kernel, pairs, (movers, &mut self.across), reach, kick, look));
-        if matches!(advanced, Advanced::Moved) || assembly.looks_next() {
+        if matches!(advanced, Advanced::Moved) || assembly.checks_next() {
             // The assembly checks its displacements.
             self.settle(assembly);
         } else {
-            for disks in assembly.disks_to_see() {
+            for disks in assembly.disks_to_check() {
                 self.settle_some(assembly, disks);
             }
         }

@@ -104,9 +104,9 @@ impl CellGrid {
             let (mut neighbour, mut shift, mut inside) = (0, [0.0; D], true);
             for d in 0..D {
                 match sides[d][digits % 3] {
-                    Some((start, way)) => {
+                    Some((start, offset)) => {
                         neighbour += start;
-                        shift[d] = way;
+                        shift[d] = offset;
                     }
                     None => inside = false,
                 }

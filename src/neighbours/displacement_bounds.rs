@@ -9,7 +9,7 @@ use crate::vector::larger;
 
 /// Displacement up to which a list is complete, over the width of the skin: one half, less the rounding of the
 /// comparison.
-pub(crate) const LISTED: f64 = 0.4999;
+pub(crate) const SKIN_FRACTION: f64 = 0.4999;
 
 /// Number of disks in a portion.
 pub(crate) const PORTION: usize = 1024;
@@ -72,8 +72,8 @@ impl DisplacementBounds {
 }
 
 /// Whether a displacement is within the limit; false for NaN.
-pub(crate) fn is_within(way: f64, limit: f64) -> bool {
-    way <= limit
+pub(crate) fn is_within(displacement: f64, limit: f64) -> bool {
+    displacement <= limit
 }
 
 #[cfg(test)]

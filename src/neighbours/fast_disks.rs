@@ -8,7 +8,7 @@ use std::ops::Range;
 pub(crate) struct FastDisks {
     /// In ascending order.
     disks: Vec<u32>,
-    is_far: Vec<bool>,
+    is_fast: Vec<bool>,
 }
 
 impl FastDisks {
@@ -18,9 +18,9 @@ impl FastDisks {
     /// `disks` are in ascending order.
     pub fn set(&mut self, disks: Vec<u32>, disk_count: usize) {
         debug_assert!(disks.is_sorted());
-        self.disks.iter().for_each(|&disk| self.is_far[disk as usize] = false);
-        self.is_far.resize(disk_count, false);
-        disks.iter().for_each(|&disk| self.is_far[disk as usize] = true);
+        self.disks.iter().for_each(|&disk| self.is_fast[disk as usize] = false);
+        self.is_fast.resize(disk_count, false);
+        disks.iter().for_each(|&disk| self.is_fast[disk as usize] = true);
         self.disks = disks;
     }
 
@@ -31,7 +31,7 @@ impl FastDisks {
 
     /// Whether the set contains this disk.
     pub fn contains(&self, disk: u32) -> bool {
-        self.is_far[disk as usize]
+        self.is_fast[disk as usize]
     }
 
     /// Whether the set contains any disk of this range.
@@ -66,19 +66,19 @@ mod tests {
 
     #[test]
     fn chosen_disks_are_found_and_others_are_not() {
-        let mut far = FastDisks::default();
+        let mut fast = FastDisks::default();
         for chosen in [vec![3, 4, 9], vec![], vec![0, 11], vec![4]] {
-            far.set(chosen.clone(), 12);
-            assert!((0..12).all(|disk| far.contains(disk) == chosen.contains(&disk)));
+            fast.set(chosen.clone(), 12);
+            assert!((0..12).all(|disk| fast.contains(disk) == chosen.contains(&disk)));
             for begin in 0..12 {
                 for end in begin..12 {
                     assert_eq!(
-                        far.any_of(begin..end),
+                        fast.any_of(begin..end),
                         chosen.iter().any(|&disk| (begin..end).contains(&(disk as usize)))
                     );
                 }
             }
-            assert_eq!(far.any_of(4..usize::MAX), chosen.iter().any(|&disk| disk >= 4));
+            assert_eq!(fast.any_of(4..usize::MAX), chosen.iter().any(|&disk| disk >= 4));
         }
     }
 }

@@ -22,44 +22,44 @@ use crate::vector::Vector;
 
 /// Relative number of pairs that a skin of one radius adds to those in contact \[1\]. A tenth of a radius adds 8 %, a
 /// quarter 15 %.
-const PAIRS_A_RADIUS: f64 = 0.75;
+const PAIRS_PER_RADIUS: f64 = 0.75;
 
 /// Time to prune a list over the time of one force evaluation \[1\].
-const PICKING: f64 = 4.0;
+const PRUNING_COST: f64 = 4.0;
 
 /// Time to build a list over the time of one force evaluation \[1\].
-const MAKING: f64 = 25.0;
+const BUILD_COST: f64 = 25.0;
 
 /// Narrowest skin over the smallest radius \[1\]. It adds 0.4 % of pairs and is far above rounding.
 const NARROWEST: f64 = 1e-3;
 
-/// The inner skin with the lowest cost per step, if the fastest disk moves by `way` per step \[length\].
-pub(crate) fn best_skin(radius: f64, way: f64) -> f64 {
-    best_for(PICKING, radius, way).max(NARROWEST * radius)
+/// The inner skin with the lowest cost per step, if the fastest disk moves by `displacement` per step \[length\].
+pub(crate) fn best_inner_skin(radius: f64, displacement: f64) -> f64 {
+    best_for(PRUNING_COST, radius, displacement).max(NARROWEST * radius)
 }
 
-/// The outer skin with the lowest cost per step, if most disks move by `way` per step and the list can be updated for
-/// the others \[length\].
-pub(crate) fn best_skin_of_all(radius: f64, way: f64) -> f64 {
-    best_for(MAKING, radius, way)
+/// The outer skin with the lowest cost per step, if most disks move by `displacement` per step. The list can be updated
+/// for the others \[length\].
+pub(crate) fn best_outer_skin(radius: f64, displacement: f64) -> f64 {
+    best_for(BUILD_COST, radius, displacement)
 }
 
-fn best_for(cost: f64, radius: f64, way: f64) -> f64 {
-    (2.0 * cost / PAIRS_A_RADIUS * way * radius).sqrt()
+fn best_for(cost: f64, radius: f64, displacement: f64) -> f64 {
+    (2.0 * cost / PAIRS_PER_RADIUS * displacement * radius).sqrt()
 }
 
 impl<const D: usize> PairList<D> {
     /// Overwrites the list by the pairs of another one closer than R_i + R_j + `skin`.
     pub(crate) fn prune(&mut self, whole: &PairList<D>, displacements: &[Vector<D>], skin: f64) {
         self.first_count = whole.first_count;
-        self.keeps_places = whole.keeps_places;
+        self.reserves_blocks = whole.reserves_blocks;
         self.fill_tiles(whole.tiles.len(), whole.tile_size, |list, place, tile| {
             let blocks = &whole.tiles[place];
             list.add_blocks(
                 (tile, place * whole.tile_size),
                 &mut Pruned { whole, displacements, skin },
-                |list, arranger, near| near.line_up(&whole.blocks[blocks.inner.clone()], list, arranger),
-                |list, arranger, near| near.line_up(&whole.blocks[blocks.border.clone()], list, arranger),
+                |list, arranger, near| near.select_pairs(&whole.blocks[blocks.inner.clone()], list, arranger),
+                |list, arranger, near| near.select_pairs(&whole.blocks[blocks.border.clone()], list, arranger),
             );
         });
     }
@@ -74,7 +74,7 @@ struct Pruned<'a, const D: usize> {
 
 impl<const D: usize> Pruned<'_, D> {
     /// Adds the pairs of these blocks within the skin to the arranger, row by row.
-    fn line_up(&mut self, blocks: &[Block], list: &mut PairList<D>, arranger: &mut Arranger<D>) {
+    fn select_pairs(&mut self, blocks: &[Block], list: &mut PairList<D>, arranger: &mut Arranger<D>) {
         let mut moved = [[0.0; D]; BLOCK];
         let mut excess = [0.0; BLOCK];
         for block in blocks {
@@ -89,8 +89,8 @@ impl<const D: usize> Pruned<'_, D> {
                 let (mut near, mut near_count) = ([0; LONGEST_ROW], 0);
                 for &excess in excess {
                     near[near_count % LONGEST_ROW] = pair;
-                    let far = excess > 0.0;
-                    near_count += usize::from(!far);
+                    let outside = excess > 0.0;
+                    near_count += usize::from(!outside);
                     pair += 1;
                 }
                 let begin = arranger.group.pairs.len();
@@ -106,9 +106,9 @@ impl<const D: usize> Source<D> for Pruned<'_, D> {
         self.whole.second[pair as usize]
     }
 
-    fn measure(&mut self, _first: &[u32], pairs: &[u32], measured: &mut PairBlock<D>) {
+    fn measure(&mut self, _first: &[u32], pairs: &[u32], pair_block: &mut PairBlock<D>) {
         for (place, &pair) in pairs.iter().enumerate() {
-            measured.copy(place, (&self.whole.pair_blocks[pair as usize / BLOCK], pair as usize % BLOCK));
+            pair_block.copy(place, (&self.whole.pair_blocks[pair as usize / BLOCK], pair as usize % BLOCK));
         }
     }
 }
@@ -152,19 +152,19 @@ mod tests {
     use crate::law::power_laws::Hertzian;
     use crate::vector::{difference, norm};
 
-    /// Moves every disk by `way` per step, each in its own direction. Every tenth step compares energy, contacts and
-    /// forces with those of a rebuilt list. Returns the fraction of steps with the inner list and the fraction with a
-    /// rebuild of the outer list.
-    fn walk(assembly: &mut Assembly<2, Hertzian>, way: f64, steps: usize) -> (f64, f64) {
+    /// Moves every disk by `displacement` per step, each in its own direction. Every tenth step compares energy,
+    /// contacts and forces with those of a rebuilt list. Returns the fraction of steps with the inner list and the
+    /// fraction with a rebuild of the outer list.
+    fn move_disks(assembly: &mut Assembly<2, Hertzian>, displacement: f64, steps: usize) -> (f64, f64) {
         let mobile = assembly.mobile_count();
         let (mut near, made) = (0, assembly.rebuild_count());
         for step in 0..steps {
             for disk in 0..mobile {
                 let angle = (disk * (step / 40 + 1)) as f64;
-                assembly.displacements[disk][0] += way * angle.cos();
-                assembly.displacements[disk][1] += way * angle.sin();
+                assembly.displacements[disk][0] += displacement * angle.cos();
+                assembly.displacements[disk][1] += displacement * angle.sin();
             }
-            assembly.keep_listed(way).expect("no coincidence");
+            assembly.keep_listed(displacement).expect("no coincidence");
             near += usize::from(assembly.inner_list_is_used());
             let found = assembly.evaluate_totals();
             let forces = assembly.forces.clone();
@@ -191,23 +191,23 @@ mod tests {
         let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("no coincidence");
         assembly.prune_lists(true);
         let radius = 0.5;
-        let (near, made) = walk(&mut assembly, 1e-4 * radius, 400);
+        let (near, made) = move_disks(&mut assembly, 1e-4 * radius, 400);
         assert!(near > 0.9 && made == 0.0, "slowly: {near} {made}");
         assert!(assembly.pairs().len() * 10 < assembly.all_pairs().len() * 9, "a tenth of the pairs and more left out");
-        let (near, made) = walk(&mut assembly, 2e-2 * radius, 200);
+        let (near, made) = move_disks(&mut assembly, 2e-2 * radius, 200);
         assert!(near < 0.5 && made > 0.02, "fast: {near} {made}");
-        let (near, _) = walk(&mut assembly, 1e-4 * radius, 400);
+        let (near, _) = move_disks(&mut assembly, 1e-4 * radius, 400);
         assert!(near > 0.7, "slowly again: {near}");
         assembly.prune_lists(false);
-        let (near, _) = walk(&mut assembly, 1e-2 * radius, 100);
+        let (near, _) = move_disks(&mut assembly, 1e-2 * radius, 100);
         assert!(near < 0.3, "not any more: {near}");
     }
 
     #[test]
     fn the_best_skin_is_where_a_step_costs_least() {
-        let cost = |skin: f64| PAIRS_A_RADIUS * skin / 0.5 + PICKING * 2.0 * 1e-4 / skin;
-        let best = best_skin(0.5, 1e-4);
+        let cost = |skin: f64| PAIRS_PER_RADIUS * skin / 0.5 + PRUNING_COST * 2.0 * 1e-4 / skin;
+        let best = best_inner_skin(0.5, 1e-4);
         assert!(cost(best) < cost(0.9 * best) && cost(best) < cost(1.1 * best));
-        assert_eq!(best_skin(0.5, 0.0), 0.5 * NARROWEST, "disks at rest");
+        assert_eq!(best_inner_skin(0.5, 0.0), 0.5 * NARROWEST, "disks at rest");
     }
 }

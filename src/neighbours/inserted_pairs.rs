@@ -27,21 +27,21 @@ const BORDER: usize = 2;
 
 impl<const D: usize> PairList<D> {
     /// Whether a list of so many disks reserves blocks for inserted pairs.
-    pub(crate) fn keeps_places(disk_count: usize) -> bool {
+    pub(crate) fn reserves_blocks(disk_count: usize) -> bool {
         disk_count >= FEWEST
     }
 
     /// Adds the reserved blocks for pairs within a tile, whose rows are counted from disk `origin`.
-    pub(crate) fn add_inner_places(&mut self, origin: u32) {
-        self.add_places(origin, INNER);
+    pub(crate) fn reserve_inner_blocks(&mut self, origin: u32) {
+        self.reserve_blocks(origin, INNER);
     }
 
     /// Adds the reserved blocks for pairs across the border of a tile.
-    pub(crate) fn add_border_places(&mut self) {
-        self.add_places(0, BORDER);
+    pub(crate) fn reserve_border_blocks(&mut self) {
+        self.reserve_blocks(0, BORDER);
     }
 
-    fn add_places(&mut self, origin: u32, count: usize) {
+    fn reserve_blocks(&mut self, origin: u32, count: usize) {
         for _ in 0..count {
             self.begin_block(Block { row_length: 1, origin, ..Block::default() });
             self.rows.resize(self.rows.len() + BLOCK, 0);
@@ -66,28 +66,28 @@ impl<const D: usize> PairList<D> {
 
     /// Inserts missing pairs in the given order; `source` identifies each pair by its second disk. Returns false,
     /// without any change, if the reserved blocks have too little space.
-    pub(crate) fn amend(&mut self, missing: &[(u32, u32)], source: &mut impl Source<D>) -> bool {
+    pub(crate) fn insert_pairs(&mut self, missing: &[(u32, u32)], source: &mut impl Source<D>) -> bool {
         // The block of each pair is chosen before anything is written.
         let mut taken = BTreeMap::new();
         let mut places = Vec::with_capacity(missing.len());
         for &pair in missing {
             let (tile, inside) = self.place_of(pair);
             let mut blocks = if inside {
-                places_of(&self.tiles[tile].inner, INNER)
+                reserved_blocks(&self.tiles[tile].inner, INNER)
             } else {
-                places_of(&self.tiles[tile].border, BORDER)
+                reserved_blocks(&self.tiles[tile].border, BORDER)
             };
             let free = |place: &usize| self.blocks[*place].pair_count + taken.get(place).unwrap_or(&0) < BLOCK;
             let Some(place) = blocks.find(free) else { return false };
             *taken.entry(place).or_insert(0) += 1;
             places.push(place);
         }
-        let mut measured = PairBlock::default();
+        let mut pair_block = PairBlock::default();
         for (missing, places) in missing.chunks(BLOCK).zip(places.chunks(BLOCK)) {
             let (first, second): (Vec<u32>, Vec<u32>) = missing.iter().copied().unzip();
-            source.measure(&first, &second, &mut measured);
+            source.measure(&first, &second, &mut pair_block);
             for (k, (&pair, &place)) in missing.iter().zip(places).enumerate() {
-                self.put(pair, place, (&measured, k));
+                self.put(pair, place, (&pair_block, k));
             }
         }
         if !missing.iter().all(|&pair| self.place_of(pair).1) {
@@ -103,7 +103,7 @@ impl<const D: usize> PairList<D> {
     }
 
     /// Writes a pair to a block with free space.
-    fn put(&mut self, (first, second): (u32, u32), block: usize, measured: (&PairBlock<D>, usize)) {
+    fn put(&mut self, (first, second): (u32, u32), block: usize, pair_block: (&PairBlock<D>, usize)) {
         let block = &mut self.blocks[block];
         let (place, row) = (block.pairs + block.pair_count, block.rows + block.row_count);
         block.pair_count += 1;
@@ -111,12 +111,14 @@ impl<const D: usize> PairList<D> {
         let origin = block.origin;
         (self.first[place], self.second[place]) = (first, second);
         (self.rows[row], self.ends[place]) = (first - origin, second - origin);
-        self.pair_blocks[place / BLOCK].copy(place % BLOCK, measured);
+        self.pair_blocks[place / BLOCK].copy(place % BLOCK, pair_block);
     }
 
     /// Blocks that may hold inserted pairs.
     pub(crate) fn blocks_with_insertions(&self) -> impl Iterator<Item = usize> {
-        self.tiles.iter().flat_map(|tile| places_of(&tile.inner, INNER).chain(places_of(&tile.border, BORDER)))
+        self.tiles
+            .iter()
+            .flat_map(|tile| reserved_blocks(&tile.inner, INNER).chain(reserved_blocks(&tile.border, BORDER)))
     }
 
     /// Finds the pairs that act on each tile from other tiles.
@@ -130,6 +132,6 @@ impl<const D: usize> PairList<D> {
 }
 
 /// The reserved blocks of a tile: the last ones of this range.
-fn places_of(blocks: &Range<usize>, count: usize) -> Range<usize> {
+fn reserved_blocks(blocks: &Range<usize>, count: usize) -> Range<usize> {
     blocks.end - count..blocks.end
 }

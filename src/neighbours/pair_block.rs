@@ -5,7 +5,7 @@ use crate::neighbours::block::BLOCK;
 use crate::vector::{Vector, dot};
 
 /// Separation in a vacant place: no displacement closes the gap, and its square is finite.
-const NOWHERE: f64 = 1e100;
+const VACANT_GAP: f64 = 1e100;
 
 /// A block of pairs at their anchors. A vacant place has a gap that no displacement closes.
 #[derive(Debug, Clone)]
@@ -25,9 +25,9 @@ impl<const D: usize> Default for PairBlock<D> {
     /// A block without pairs.
     fn default() -> Self {
         PairBlock {
-            separation: [[NOWHERE; BLOCK]; D],
-            distance: [NOWHERE * (D as f64).sqrt(); BLOCK],
-            overlap: [-NOWHERE * (D as f64).sqrt(); BLOCK],
+            separation: [[VACANT_GAP; BLOCK]; D],
+            distance: [VACANT_GAP * (D as f64).sqrt(); BLOCK],
+            overlap: [-VACANT_GAP * (D as f64).sqrt(); BLOCK],
             coefficient: [1.0; BLOCK],
         }
     }
@@ -57,10 +57,10 @@ impl<const D: usize> PairBlock<D> {
     /// Marks all places from `first` on as vacant.
     pub fn vacate(&mut self, first: usize) {
         for column in &mut self.separation {
-            column[first..].fill(NOWHERE);
+            column[first..].fill(VACANT_GAP);
         }
-        self.distance[first..].fill(NOWHERE * (D as f64).sqrt());
-        self.overlap[first..].fill(-NOWHERE * (D as f64).sqrt());
+        self.distance[first..].fill(VACANT_GAP * (D as f64).sqrt());
+        self.overlap[first..].fill(-VACANT_GAP * (D as f64).sqrt());
         self.coefficient[first..].fill(1.0);
     }
 }

@@ -56,7 +56,7 @@ pub struct PairList<const D: usize> {
     /// Number of disks that can be first in a pair; later disks are held.
     pub(crate) first_count: usize,
     /// Whether tiles reserve blocks for inserted pairs.
-    pub(crate) keeps_places: bool,
+    pub(crate) reserves_blocks: bool,
     /// The order in which one thread processes the tiles in a step.
     pub(crate) schedule: TileSchedule,
     arranger: Box<Arranger<D>>,
@@ -70,7 +70,7 @@ pub(crate) trait Source<const D: usize> {
     fn second(&self, pair: u32) -> u32;
 
     /// Computes the geometry of the pairs of a block; places beyond them are not used.
-    fn measure(&mut self, first: &[u32], pairs: &[u32], measured: &mut PairBlock<D>);
+    fn measure(&mut self, first: &[u32], pairs: &[u32], pair_block: &mut PairBlock<D>);
 }
 
 /// Search for the pairs of a tile, disk by disk.
@@ -86,14 +86,14 @@ pub(crate) struct Arranger<const D: usize> {
     border: Waiting,
     /// Work space for the rows of the group that is closed, and for its block.
     by_length: Vec<Row>,
-    measured: PairBlock<D>,
+    pair_block: PairBlock<D>,
     /// Origin of the next blocks.
     origin: u32,
 }
 
 impl<const D: usize> Arranger<D> {
     /// Separates, from the pairs of a first disk at `begin` and after, those whose second disk is in another tile.
-    fn set_border_apart(&mut self, first: u32, begin: usize, inside: impl Fn(u32) -> bool) {
+    fn separate_border_pairs(&mut self, first: u32, begin: usize, inside: impl Fn(u32) -> bool) {
         let Arranger { group: Waiting { pairs, .. }, border, .. } = self;
         if pairs[begin..].iter().all(|&pair| inside(pair)) {
             return;
@@ -198,7 +198,7 @@ impl<const D: usize> PairList<D> {
     }
 
     /// Overwrites the list by the pairs that a search finds; `search` makes a new one for each tile. Each pair is found
-    /// from one of its disks only. Disks from `first_count` on are never first. With `keeps_places`, pairs can be
+    /// from one of its disks only. Disks from `first_count` on are never first. With `reserves_blocks`, pairs can be
     /// inserted later.
     ///
     /// # Errors
@@ -206,11 +206,11 @@ impl<const D: usize> PairList<D> {
     pub(crate) fn fill<S: Search<D>>(
         &mut self,
         (disk_count, first_count): (usize, usize),
-        keeps_places: bool,
+        reserves_blocks: bool,
         search: impl Fn() -> S + Sync,
     ) -> Result<(), PackingError> {
         self.first_count = first_count;
-        self.keeps_places = keeps_places;
+        self.reserves_blocks = reserves_blocks;
         let tile_size = Self::tile_size(disk_count);
         let disks = |place: usize| place * tile_size..disk_count.min((place + 1) * tile_size);
         self.fill_tiles(disk_count.div_ceil(tile_size), tile_size, |list, place, tile| {
@@ -251,7 +251,7 @@ impl<const D: usize> PairList<D> {
             parts.resize(tiles.len(), PairList::default());
             parallel::each(tiles.iter_mut().zip(&mut parts).enumerate(), |(place, (tile, part))| {
                 part.clear();
-                part.keeps_places = self.keeps_places;
+                part.reserves_blocks = self.reserves_blocks;
                 add(part, place, tile);
             });
             self.concatenate(&parts, &mut tiles);
@@ -281,15 +281,15 @@ impl<const D: usize> PairList<D> {
         arranger.origin = origin as u32;
         inner(self, &mut arranger, source);
         self.close_group(&mut arranger, source);
-        if self.keeps_places {
-            self.add_inner_places(arranger.origin);
+        if self.reserves_blocks {
+            self.reserve_inner_blocks(arranger.origin);
         }
         let (middle, border_pairs) = (self.blocks.len(), self.place_count());
         arranger.origin = 0;
         border(self, &mut arranger, source);
         self.close_group(&mut arranger, source);
-        if self.keeps_places {
-            self.add_border_places();
+        if self.reserves_blocks {
+            self.reserve_border_blocks();
         }
         (tile.inner, tile.border) = (begin..middle, middle..self.blocks.len());
         tile.border_pairs = border_pairs..self.place_count();
@@ -304,7 +304,7 @@ impl<const D: usize> PairList<D> {
                 let begin = arranger.group.pairs.len();
                 search.find(first, &mut arranger.group.pairs);
                 let inside = |pair: u32| disks.contains(&(search.second(pair) as usize));
-                arranger.set_border_apart(first as u32, begin, inside);
+                arranger.separate_border_pairs(first as u32, begin, inside);
                 list.add_rows(first as u32, begin, arranger, search);
             }
         };
@@ -355,7 +355,7 @@ impl<const D: usize> PairList<D> {
 
     /// Stores the waiting rows as blocks, short rows first. Pairs that are not in a row yet stay waiting.
     fn close_group(&mut self, arranger: &mut Arranger<D>, source: &mut impl Source<D>) {
-        let Arranger { group: Waiting { pairs, rows }, by_length, measured, origin, .. } = arranger;
+        let Arranger { group: Waiting { pairs, rows }, by_length, pair_block, origin, .. } = arranger;
         let Some(&Row { begin, length, .. }) = rows.last() else { return };
         sort_by_length(rows, by_length);
         let mut rest = by_length.as_slice();
@@ -363,7 +363,7 @@ impl<const D: usize> PairList<D> {
             let length = rest[0].length;
             let fits = |row: &&Row| row.length == length;
             let (block, later) = rest.split_at(rest.iter().take(BLOCK / length).take_while(fits).count());
-            self.add_block((block, *origin), pairs, measured, source);
+            self.add_block((block, *origin), pairs, pair_block, source);
             rest = later;
         }
         rows.clear();
@@ -375,7 +375,7 @@ impl<const D: usize> PairList<D> {
         &mut self,
         (rows, origin): (&[Row], u32),
         waiting: &[u32],
-        measured: &mut PairBlock<D>,
+        pair_block: &mut PairBlock<D>,
         source: &mut impl Source<D>,
     ) {
         let row_length = rows[0].length;
@@ -395,13 +395,13 @@ impl<const D: usize> PairList<D> {
             }
             pair += length;
         }
-        source.measure(first, second, measured);
-        measured.vacate(count);
+        source.measure(first, second, pair_block);
+        pair_block.vacate(count);
         for (pair, end) in second.iter_mut().zip(&mut self.ends[begin..]) {
             *pair = source.second(*pair);
             *end = *pair - origin;
         }
-        self.pair_blocks.push(measured.clone());
+        self.pair_blocks.push(pair_block.clone());
     }
 
     /// Begins a block with vacant places only. The caller appends its geometry.

@@ -36,10 +36,10 @@ impl<const D: usize> Source<D> for Selected<'_, D> {
         self.seconds[pair as usize].0
     }
 
-    fn measure(&mut self, _first: &[u32], pairs: &[u32], measured: &mut PairBlock<D>) {
+    fn measure(&mut self, _first: &[u32], pairs: &[u32], pair_block: &mut PairBlock<D>) {
         for (place, &pair) in pairs.iter().enumerate() {
             let there = self.seconds[pair as usize].1 as usize;
-            measured.copy(place, (&self.whole.pair_blocks[there / BLOCK], there % BLOCK));
+            pair_block.copy(place, (&self.whole.pair_blocks[there / BLOCK], there % BLOCK));
         }
     }
 }

@@ -51,7 +51,7 @@ impl TileSchedule {
 
     /// Stage and tile index, one after the other.
     pub fn iter(&self) -> impl Iterator<Item = (Stage, usize)> {
-        self.0.iter().map(|turn| (turn.stage, turn.place as usize))
+        self.0.iter().map(|step| (step.stage, step.place as usize))
     }
 }
 
@@ -80,7 +80,7 @@ mod tests {
         let order: Vec<_> = schedule.iter().collect();
         assert_eq!(order.len(), 3 * count);
         let at =
-            |stage, place| order.iter().position(|&turn| turn == (stage, place)).expect("every stage of every tile");
+            |stage, place| order.iter().position(|&step| step == (stage, place)).expect("every stage of every tile");
         for place in 0..count {
             assert!(at(Stage::Inside, place) < at(Stage::Border, place));
             assert!(at(Stage::Border, place) < at(Stage::Margins, place));

@@ -46,7 +46,7 @@ pub struct ListRoom<const D: usize> {
     /// Disks updated since the last build.
     pub(crate) updated: UpdatedDisks,
     /// First disks of the pairs that are looked up.
-    pub(crate) asked: FastDisks,
+    pub(crate) queried: FastDisks,
 }
 
 /// Order of the disks cell by cell, mobile disks before held ones. Neighbours in space are neighbours in memory.
@@ -103,8 +103,8 @@ pub fn build_pairs<const D: usize>(
     });
     let (grid, points, sorted) = (&*grid, &*points, &*sorted);
     let nearby = Nearby { disks, skin, lengths, grid, points, sorted };
-    let (counts, keeps_places) = ((points.len(), disks.mobile_count), PairList::<D>::keeps_places(points.len()));
-    pairs.fill(counts, keeps_places, || TileSearch {
+    let (counts, reserves_blocks) = ((points.len(), disks.mobile_count), PairList::<D>::reserves_blocks(points.len()));
+    pairs.fill(counts, reserves_blocks, || TileSearch {
         nearby,
         cell: usize::MAX,
         runs: Vec::new(),
@@ -172,8 +172,8 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Search<D> for TileSearch<'_, D, C> 
                 seconds[count] = second;
                 // Rounding of the coordinates moves this limit by far less than the tolerance of the skin. NaN counts
                 // as near.
-                let far = dot(apart, apart) >= range * range;
-                count += usize::from((second as usize > first) & !far);
+                let outside = dot(apart, apart) >= range * range;
+                count += usize::from((second as usize > first) & !outside);
             }
             seconds.truncate(count);
         }
@@ -185,8 +185,8 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for TileSearch<'_, D, C> 
         self.anchored.second(pair)
     }
 
-    fn measure(&mut self, first: &[u32], second: &[u32], measured: &mut PairBlock<D>) {
-        self.anchored.measure(first, second, measured);
+    fn measure(&mut self, first: &[u32], second: &[u32], pair_block: &mut PairBlock<D>) {
+        self.anchored.measure(first, second, pair_block);
     }
 }
 
@@ -196,7 +196,7 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for Anchored<'_, D, C> {
         pair
     }
 
-    fn measure(&mut self, first: &[u32], second: &[u32], measured: &mut PairBlock<D>) {
+    fn measure(&mut self, first: &[u32], second: &[u32], pair_block: &mut PairBlock<D>) {
         let Anchored { disks, coefficient, ends } = self;
         let lengths = disks.domain.lengths();
         for (place, (&first, &second)) in first.iter().zip(second).enumerate() {
@@ -204,7 +204,7 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for Anchored<'_, D, C> {
             ends.anchors[place] = (disks.anchors[first], disks.anchors[second]);
             ends.radii[place] = (disks.radii[first], disks.radii[second]);
         }
-        processor::dispatch(Measure { ends, lengths, coefficient, measured });
+        processor::dispatch(Measure { ends, lengths, coefficient, pair_block });
     }
 }
 
@@ -222,7 +222,7 @@ struct Measure<'a, const D: usize, C> {
     /// Sides of the periodic box.
     lengths: Option<Vector<D>>,
     coefficient: &'a C,
-    measured: &'a mut PairBlock<D>,
+    pair_block: &'a mut PairBlock<D>,
 }
 
 impl<const D: usize, C: Fn(f64, f64) -> f64> pulp::WithSimd for Measure<'_, D, C> {
@@ -230,8 +230,8 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> pulp::WithSimd for Measure<'_, D, C
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        let Measure { ends: Ends { anchors, radii }, lengths, coefficient, measured } = self;
-        let PairBlock { separation, distance, overlap, coefficient: coefficients } = measured;
+        let Measure { ends: Ends { anchors, radii }, lengths, coefficient, pair_block } = self;
+        let PairBlock { separation, distance, overlap, coefficient: coefficients } = pair_block;
         for k in 0..BLOCK {
             coefficients[k] = coefficient(radii[k].0, radii[k].1);
         }

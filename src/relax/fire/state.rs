@@ -88,8 +88,8 @@ impl<const D: usize> State<D> {
         }
     }
 
-    /// Moves the disks, evaluates their forces and computes the products, tile by tile ([`Assembly::advance`]). No displacement
-    /// is longer than `reach` times the largest velocity component \[time\].
+    /// Moves the disks, evaluates their forces and computes the products, tile by tile ([`Assembly::advance`]). No
+    /// displacement is longer than `reach` times the largest velocity component \[time\].
     pub(super) fn advance<L: PairLaw>(
         &mut self,
         assembly: &mut Assembly<D, L>,

@@ -51,7 +51,8 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         Ok(ExplicitPhase { totals, time, dissipated, peak, motion })
     }
 
-    /// Continues from the end of a phase. `ahead` is the length of the next step, over which contacts may close \[time\].
+    /// Continues from the end of a phase. `ahead` is the length of the next step, over which contacts may close
+    /// \[time\].
     pub(crate) fn accept_phase(&mut self, phase: ExplicitPhase<D, L, C>, ahead: f64) -> Totals<D> {
         let ExplicitPhase { motion, time, dissipated, .. } = phase;
         (self.time, self.dissipated) = (time, dissipated);

@@ -40,7 +40,8 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         stepped
     }
 
-    /// Estimated error of the last step for a mobile disk: that of its position, and that of its velocity times hγ \[length\].
+    /// Estimated error of the last step for a mobile disk: that of its position, and that of its velocity times hγ
+    /// \[length\].
     pub fn error(&self, time_step: f64, disk: usize) -> f64 {
         let scale = time_step * ROS34PW2.diagonal;
         let (mut moved, mut kick) = ([0.0; D], [0.0; D]);

@@ -9,8 +9,8 @@
 //! U_j` has order 2.
 //!
 //! # Source
-//! Rang, Angermann (2005), BIT Numer. Math. 45, 761, ROS34PW2. The form: Hairer, Wanner (1996), Solving Ordinary Differential
-//! Equations II, §IV.7.
+//! Rang, Angermann (2005), BIT Numer. Math. 45, 761, ROS34PW2. The form: Hairer, Wanner (1996), Solving Ordinary
+//! Differential Equations II, §IV.7.
 
 /// Stages of the method.
 pub const STAGE_COUNT: usize = 4;
@@ -135,8 +135,8 @@ mod tests {
 
     #[test]
     fn the_order_conditions_of_a_w_method_hold_to_rounding() {
-        // Hairer, Wanner (1996), §IV.7, eq. (7.11) with the conditions of W-methods: every tree of up to three vertices,
-        // with either matrix on its edges. Sums of four products below 2: 4 roundings of 10⁻¹⁶.
+        // Hairer, Wanner (1996), §IV.7, eq. (7.11) with the conditions of W-methods: every tree of up to three
+        // vertices, with either matrix on its edges. Sums of four products below 2: 4 roundings of 10⁻¹⁶.
         let (a, g) = (&PUBLISHED_ARGUMENT, &PUBLISHED_IMPLICIT);
         let (alpha, gamma) = (row_sums(a), row_sums(g));
         let squares = std::array::from_fn(|i| alpha[i] * alpha[i]);

@@ -40,7 +40,8 @@ const LARGEST_SHARE: f64 = 0.25;
 const LISTED_SKIN: f64 = 0.25;
 
 impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
-    /// Repeats the last stabilised step around some disks. False if that is impossible: the step must then be taken back.
+    /// Repeats the last stabilised step around some disks. Returns false if that is impossible: the step must then be
+    /// taken back.
     ///
     /// # Errors
     /// Two disks with the same centre.

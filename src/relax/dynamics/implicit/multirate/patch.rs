@@ -2,8 +2,10 @@
 //! given.
 //!
 //! ```text
-//! w(x) = w_1 (3x² − 2x³) + h v_0 (x − 2x² + x³) + h v_1 (x³ − x²)        0 ≤ x = t/h ≤ 1: displacement of an outer disk, h the long step
+//! w(x) = w_1 (3x² − 2x³) + h v_0 (x − 2x² + x³) + h v_1 (x³ − x²)        0 ≤ x = t/h ≤ 1
 //! ```
+//!
+//! w is the displacement of an outer disk, h the long step.
 
 use crate::forces::damped::damped_forces;
 use crate::law::damping::DampingLaw;
@@ -21,7 +23,7 @@ const FIRST_PARTS: f64 = 4.0;
 const MOST_STEPS: usize = 500;
 
 /// No index.
-const NOWHERE: u32 = u32::MAX;
+const ABSENT: u32 = u32::MAX;
 
 /// The disks whose errors are too large for the long step, and the accuracy they need.
 pub(crate) struct FastDisks<'a, S> {
@@ -86,7 +88,7 @@ impl<const D: usize> Patch<D> {
     /// Sets the number of disks of the packing.
     pub(crate) fn set_disk_count(&mut self, disk_count: usize) {
         self.places.clear();
-        self.places.resize(disk_count, NOWHERE);
+        self.places.resize(disk_count, ABSENT);
     }
 
     /// Removes all disks.
@@ -107,7 +109,7 @@ impl<const D: usize> Patch<D> {
     }
 
     pub(crate) fn has(&self, disk: u32) -> bool {
-        self.places[disk as usize] != NOWHERE
+        self.places[disk as usize] != ABSENT
     }
 
     /// Index of a disk in the patch.
@@ -146,7 +148,7 @@ impl<const D: usize> Patch<D> {
         }
         self.pairs.select(whole, &self.starts, &self.seconds);
         for &disk in &self.disks {
-            self.places[disk as usize] = NOWHERE;
+            self.places[disk as usize] = ABSENT;
         }
     }
 
@@ -262,7 +264,8 @@ impl<const D: usize> Patch<D> {
         self.before.power = self.power;
     }
 
-    /// One short step of the inner disks at this time of the long step. Returns the work of damping and a bound on displacements.
+    /// One short step of the inner disks at this time of the long step. Returns the work of damping and a bound on
+    /// displacements.
     fn step<L: PairLaw, C: DampingLaw>(
         &mut self,
         laws: (&L, &C),

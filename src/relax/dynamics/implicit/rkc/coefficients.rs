@@ -244,7 +244,8 @@ mod tests {
 
     #[test]
     fn a_damped_oscillator_never_grows() {
-        // ẍ = −κx − gẋ with every g up to λ and κ up to ρg: both roots of x² + gx + κ, over a grid of steps up to the longest.
+        // ẍ = −κx − gẋ with every g up to λ and κ up to ρg: both roots of x² + gx + κ, for a range of steps up to the
+        // longest.
         let decay = 3600.0;
         for ratio in [1.0, 10.0, 30.0, 100.0, 400.0, 2000.0] {
             let stiffness = Stiffness { decay, ratio };

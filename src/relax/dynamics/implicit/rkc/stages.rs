@@ -36,7 +36,8 @@ impl<const D: usize> Stages<D> {
         }
     }
 
-    /// Takes one stage. Returns the largest component of a displacement since the last stage, and since the start of the step.
+    /// Computes one stage. Returns the largest component of a displacement since the last stage, and since the start of
+    /// the step.
     pub(crate) fn advance(
         &mut self,
         terms: &StageTerms,
