@@ -76,7 +76,7 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     let Reach { limit, bounds, longest } = reach;
     let (tiles, size) = (pairs.tiles.as_slice(), pairs.tile_size);
     let spent = AtomicBool::new(false);
-    let is_spent = || spent.load(Ordering::Relaxed);
+    let is_expired = || spent.load(Ordering::Relaxed);
     let nothing = [K::Number::default(); D];
     // Moves disks of a portion, beginning with this one.
     let moves = |disk: usize, (forces, velocities, displacements): Moving<'_, _, D>, bound: &mut Bound| {
@@ -100,7 +100,7 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
             let of_disks = (&mut forces[disks.clone()], &mut velocities[disks.clone()], &mut displacements[disks]);
             moves(first + begin, of_disks, &mut bounds[begin / PORTION]);
         }
-        if is_spent() {
+        if is_expired() {
             return None;
         }
         let task = Task { kernel, pairs, displacements: (displacements, first as u32), tile, offset: first as u32 };
@@ -127,7 +127,7 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
             velocities.chunks_mut(size).zip(bounds.portions.chunks_mut(of_tile)).chain(repeat_with(Default::default));
         let arrays = displacements.chunks_mut(size).zip(forces.chunks_mut(size)).zip(moving);
         insides = parallel::each(arrays.enumerate(), |(place, ((u, f), (v, bounds)))| inside(place, (f, v, u), bounds));
-        if is_spent() {
+        if is_expired() {
             return None;
         }
         let displacements = &*displacements;
@@ -150,13 +150,13 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
                     let disks = (forces, &mut velocities[moving], &mut displacements[begin..end]);
                     insides.push(inside(place, disks, &mut bounds.portions[portions]));
                 }
-                _ if is_spent() => {}
+                _ if is_expired() => {}
                 Stage::Border => border(place, displacements, forces, &mut across.0[place]),
                 Stage::Margins => marginals[place] = Some(margins(place, across, forces, &velocities[moving])),
             }
         }
     }
-    if is_spent() {
+    if is_expired() {
         return None;
     }
     let mut looked: Vec<P> = insides.into_iter().flatten().collect();

@@ -65,7 +65,7 @@ impl DisplacementBounds {
     }
 
     /// The portions whose bound may exceed the limit after one more step.
-    pub fn nearly_spent(&self, limit: f64) -> impl Iterator<Item = usize> {
+    pub fn nearly_expired(&self, limit: f64) -> impl Iterator<Item = usize> {
         let portions = self.portions.iter().enumerate();
         portions.filter(move |(_, bound)| bound.total + STEP_GROWTH * bound.step > limit).map(|(portion, _)| portion)
     }
@@ -108,9 +108,9 @@ mod tests {
         bounds.begin(3000, 8192);
         bounds.portions =
             vec![Bound { total: 0.5, step: 0.2 }, Bound { total: 0.5, step: 0.1 }, Bound { total: 0.9, step: 0.0 }];
-        assert_eq!(bounds.nearly_spent(0.74).collect::<Vec<_>>(), [0, 2]);
-        assert_eq!(bounds.nearly_spent(0.95).count(), 0);
+        assert_eq!(bounds.nearly_expired(0.74).collect::<Vec<_>>(), [0, 2]);
+        assert_eq!(bounds.nearly_expired(0.95).count(), 0);
         bounds.portions[0].step = f64::NAN;
-        assert_eq!(bounds.nearly_spent(0.74).collect::<Vec<_>>(), [2], "that is not known");
+        assert_eq!(bounds.nearly_expired(0.74).collect::<Vec<_>>(), [2], "that is not known");
     }
 }

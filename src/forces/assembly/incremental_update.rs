@@ -54,21 +54,21 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Updates the list in use if a step like the last one may exceed its limit. Returns whether it did.
     pub(crate) fn update_ahead(&mut self) -> bool {
         let limit = SKIN_FRACTION * self.skin();
-        let nearly: Vec<usize> = self.bounds.nearly_spent(limit).collect();
+        let nearly: Vec<usize> = self.bounds.nearly_expired(limit).collect();
         if !self.updates_ahead() || nearly.is_empty() {
             return false;
         }
         self.tighten_bounds(nearly);
-        self.bounds.nearly_spent(limit).next().is_some() && self.update_fast_disks()
+        self.bounds.nearly_expired(limit).next().is_some() && self.update_fast_disks()
     }
 
     /// The disks that [`Assembly::keep`] checks after a step for which the list was complete.
     pub(crate) fn disks_to_check(&self) -> Vec<Range<usize>> {
         let limit = SKIN_FRACTION * self.skin();
-        if !self.updates_ahead() || self.bounds.nearly_spent(limit).next().is_none() {
+        if !self.updates_ahead() || self.bounds.nearly_expired(limit).next().is_none() {
             return Vec::new();
         }
-        let mut portions: Vec<usize> = self.bounds.nearly_spent(limit).collect();
+        let mut portions: Vec<usize> = self.bounds.nearly_expired(limit).collect();
         portions.extend(self.fast_portions());
         portions.extend(self.fast_portions_of_outer());
         portions.sort_unstable();
