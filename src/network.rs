@@ -1,11 +1,11 @@
-//! [`ContactNetwork`]: who touches whom, rattlers, the backbone, coordination and pressure.
+//! [`ContactNetwork`]: contacts, rattlers, backbone, coordination and pressure.
 //!
-//! A rattler is a mobile disk with fewer than D + 1 contacts; removing it may make others rattlers, so it is done until
-//! none is left. What remains is the backbone. The order of removal does not matter: the backbone is the largest set of
-//! disks that has D + 1 contacts each within itself and with held disks.
+//! A rattler is a mobile disk with fewer than D + 1 contacts. Its removal may make other disks rattlers, so removal is
+//! repeated until no rattler is left. The remaining disks are the backbone. It is the largest set in which every disk
+//! has D + 1 contacts with disks of the set or held disks. The order of removal does not matter.
 //!
 //! # Source
-//! Goodrich, Liu, Nagel (2012), Phys. Rev. Lett. 109, 095704; design §4.
+//! Goodrich, Liu, Nagel (2012), Phys. Rev. Lett. 109, 095704.
 
 use crate::forces::assembly::Assembly;
 use crate::forces::block_arithmetic::Columns;
@@ -14,7 +14,7 @@ use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::vector::{Vector, norm};
 
-/// Two disks that press on each other.
+/// A contact of two disks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact<const D: usize> {
     /// First disk.
@@ -31,22 +31,22 @@ pub struct Contact<const D: usize> {
     pub separation: Vector<D>,
 }
 
-/// All contacts of a packing and what follows from them.
+/// All contacts of a packing and the quantities derived from them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactNetwork<const D: usize> {
-    /// Contacts, held–held ones left out, in ascending order of (first, second).
+    /// Contacts, except those of two held disks, in ascending order of (first, second).
     pub contacts: Vec<Contact<D>>,
-    /// Whether each disk belongs to the backbone (held disks do).
+    /// Whether each disk belongs to the backbone; held disks do.
     pub backbone: Vec<bool>,
     held: Vec<bool>,
     forces: Vec<Vector<D>>,
     on_site_energy: f64,
 }
 
-/// Which disks remain after rattlers are removed, held ones among them.
+/// The backbone: the disks that remain after rattlers are removed, with all held disks.
 ///
 /// # Shape
-/// One entry a disk; `contacts` gives pairs of indices below `held.len()`.
+/// One entry per disk; `contacts` contains pairs of indices below `held.len()`.
 ///
 /// # Cost
 /// Linear in disks and contacts.
@@ -56,27 +56,27 @@ pub fn backbone<const D: usize>(held: &[bool], contacts: &[(u32, u32)]) -> Vec<b
     remains
 }
 
-/// Room for finding a backbone, kept between two.
+/// Work space for finding a backbone, reused between calls.
 #[derive(Debug, Clone, Default)]
 pub struct Peeling {
-    /// Where the neighbours of each disk begin, and of the last one end.
+    /// Start of the neighbours of each disk, and the end of the last.
     starts: Vec<u32>,
     next: Vec<u32>,
     neighbours: Vec<u32>,
-    /// Contacts with disks that were not removed yet.
+    /// Number of contacts with disks that are not removed yet.
     degree: Vec<u32>,
-    doomed: Vec<u32>,
+    pending: Vec<u32>,
 }
 
 impl Peeling {
-    /// As [`backbone`], overwriting `remains`, which has one entry a disk.
+    /// Like [`backbone`]; overwrites `remains`, which has one entry per disk.
     pub fn peel<const D: usize>(
         &mut self,
         held: impl Fn(usize) -> bool,
         contacts: &[(u32, u32)],
         remains: &mut [bool],
     ) {
-        let Peeling { starts, next, neighbours, degree, doomed } = self;
+        let Peeling { starts, next, neighbours, degree, pending } = self;
         let count = remains.len();
         degree.clear();
         degree.resize(count, 0);
@@ -100,20 +100,20 @@ impl Peeling {
             }
         }
         let least = D as u32 + 1;
-        doomed.clear();
+        pending.clear();
         for (disk, remains) in remains.iter_mut().enumerate() {
             *remains = held(disk) || degree[disk] >= least;
             if !*remains {
-                doomed.push(disk as u32);
+                pending.push(disk as u32);
             }
         }
-        while let Some(disk) = doomed.pop() {
+        while let Some(disk) = pending.pop() {
             for &other in &neighbours[starts[disk as usize] as usize..starts[disk as usize + 1] as usize] {
                 let disk = other as usize;
                 degree[disk] -= 1;
                 if remains[disk] && !held(disk) && degree[disk] < least {
                     remains[disk] = false;
-                    doomed.push(other);
+                    pending.push(other);
                 }
             }
         }
@@ -121,10 +121,10 @@ impl Peeling {
 }
 
 impl<const D: usize> ContactNetwork<D> {
-    /// The contacts of a packing under a law, in the packing's own numbering.
+    /// The contacts of a packing under a law, in the caller's numbering.
     ///
     /// # Errors
-    /// As [`Assembly::new`].
+    /// As in [`Assembly::new`].
     pub fn new<L: PairLaw>(packing: &Packing<D>, law: &L) -> Result<Self, PackingError> {
         let mut assembly = Assembly::new(packing, *law)?;
         let on_site_energy = assembly.evaluate_totals().on_site_energy;
@@ -156,12 +156,12 @@ impl<const D: usize> ContactNetwork<D> {
         })
     }
 
-    /// Net elastic force on each disk, with the push from its site where the law has one \[force\].
+    /// Net elastic force on each disk, plus the on-site force if the law has sites \[force\].
     pub fn forces(&self) -> &[Vector<D>] {
         &self.forces
     }
 
-    /// Largest net force on a mobile disk \[force\]; NaN if any is.
+    /// Largest net force on a mobile disk \[force\]; NaN if any force is NaN.
     pub fn largest_net_force(&self) -> f64 {
         let mobile = self.forces.iter().zip(&self.held).filter(|(_, held)| !**held);
         mobile.fold(0.0, |most, (force, _)| crate::vector::larger(norm(*force), most))
@@ -172,7 +172,7 @@ impl<const D: usize> ContactNetwork<D> {
         total(self.contacts.iter().map(|contact| contact.energy))
     }
 
-    /// Energy −(Γ/2) Σ u² of the disks at their sites, 0 for a law without them \[energy\].
+    /// Site energy −(Γ/2) Σ u²; 0 for a law without sites \[energy\].
     pub fn on_site_energy(&self) -> f64 {
         self.on_site_energy
     }
@@ -206,7 +206,8 @@ impl<const D: usize> ContactNetwork<D> {
         self.backbone_end_count() as f64 / count as f64
     }
 
-    /// Ends of the contacts of the backbone on its mobile disks: two a contact, one where the other disk is held.
+    /// Number of contacts of the backbone, counted once for each mobile disk: two per contact, one if the other disk is
+    /// held.
     pub fn backbone_end_count(&self) -> usize {
         let mobile = |disk: u32| usize::from(!self.held[disk as usize]);
         self.backbone_contacts().map(|contact| mobile(contact.first) + mobile(contact.second)).sum()
@@ -243,7 +244,8 @@ impl<const D: usize> ContactNetwork<D> {
         virial / (D as f64 * volume)
     }
 
-    /// Pressure of a cluster of disks with a held rim: contacts for which `rim` holds at one end count half \[force / length^(D−1)\].
+    /// Pressure of a cluster of disks with a held rim \[force / length^(D−1)\]. Contacts with one end for which `rim`
+    /// is true count half.
     pub fn cluster_pressure(&self, volume: f64, rim: impl Fn(usize) -> bool) -> f64 {
         let virial = total(self.contacts.iter().map(|contact| {
             let share = if rim(contact.first as usize) || rim(contact.second as usize) { 0.5 } else { 1.0 };
@@ -253,12 +255,12 @@ impl<const D: usize> ContactNetwork<D> {
     }
 }
 
-/// The sum of values in their order; of none 0, where [`Iterator::sum`] has −0.
+/// Sum of values in their order. The sum of no values is 0; [`Iterator::sum`] would give −0.
 fn total(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |sum, value| sum + value)
 }
 
-/// The contacts of an assembly, in working numbering and order of the list.
+/// The contacts of an assembly, in working numbering and list order.
 pub fn working_contacts<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> Vec<Contact<D>> {
     let law = assembly.law();
     let mut contacts = Vec::with_capacity(assembly.pairs().len());
@@ -270,8 +272,8 @@ pub fn working_contacts<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -
     contacts
 }
 
-/// The contacts of an assembly as far as a backbone needs them, in working numbering and order of the list. Room that is kept between
-/// two looks.
+/// The contacts of an assembly, with the data that a backbone needs, in working numbering and list order. The buffers
+/// are reused between checks.
 #[derive(Debug, Clone, Default)]
 pub struct Links {
     /// The disks of each contact.
@@ -281,7 +283,7 @@ pub struct Links {
 }
 
 impl Links {
-    /// Overwrites them by the contacts of an assembly as it stands.
+    /// Overwrites them by the present contacts of an assembly.
     pub fn take<const D: usize, L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
         let pairs = assembly.pairs();
         self.ends.resize(pairs.len(), (0, 0));
@@ -294,7 +296,7 @@ impl Links {
             let ends = pairs.first[listed.clone()].iter().zip(&pairs.second[listed]);
             let values = columns.overlap.iter().zip(&columns.force);
             for ((&first, &second), (&overlap, &force)) in ends.zip(values) {
-                // Which pairs touch cannot be guessed: they are picked without a branch.
+                // The outcome is unpredictable, so contacts are selected without a branch.
                 self.ends[count] = (first, second);
                 self.forces[count] = force;
                 count += usize::from(overlap > 0.0);
@@ -305,7 +307,7 @@ impl Links {
     }
 }
 
-/// Calls a function of (disks, columns of the block, place in them) of every contact, in the order of the list.
+/// Calls a function of (disks, columns of the block, place in the columns) for every contact, in list order.
 fn each_contact<const D: usize, L: PairLaw>(
     assembly: &Assembly<D, L>,
     mut call: impl FnMut((u32, u32), &Columns<D>, usize),

@@ -1,20 +1,20 @@
-//! Pieces of one computation on several threads.
+//! Parallel work on the pieces of one computation.
 //!
-//! Each piece has its own place for what it writes, and results come back in the order of the pieces, so no bit depends
-//! on the number of threads. Inside a thread pool, where samples of an ensemble already run side by side, everything stays on
-//! the thread it is on: a thread that waited for a piece would take up another sample meanwhile.
+//! Each piece writes to its own memory, and results are returned in the order of the pieces. So no bit depends on the
+//! number of threads. Inside a thread pool, where samples of an ensemble already run in parallel, all work stays on the
+//! current thread. A thread that waited for a piece would otherwise start another sample.
 
 #[cfg(feature = "parallel")]
 use std::sync::{Mutex, PoisonError};
 
-/// Fewest pieces that are worth waking other threads for.
+/// Fewest pieces for which parallel work pays.
 #[cfg(feature = "parallel")]
 const LEAST_PIECES: usize = 4;
 
-/// Disks of a piece of a long column that is not cut otherwise; fixed, so the bits do not depend on the number of threads.
+/// Number of disks in a piece of a long column; fixed, so the bits do not depend on the number of threads.
 pub const PIECE: usize = 1 << 14;
 
-/// Whether so many pieces would be worked on by several threads.
+/// Whether this number of pieces is distributed over several threads.
 pub fn is_shared(piece_count: usize) -> bool {
     #[cfg(feature = "parallel")]
     {
@@ -27,7 +27,8 @@ pub fn is_shared(piece_count: usize) -> bool {
     }
 }
 
-/// Overwrites a column by `count` things that are made each on its own; none is copied, and memory is first touched by who writes it.
+/// Overwrites a column by `count` values, each made separately. No value is copied, and the thread that writes a value
+/// touches its memory first.
 pub fn fill<T: Send>(column: &mut Vec<T>, count: usize, make: impl Fn(usize) -> T + Send + Sync) {
     #[cfg(feature = "parallel")]
     if is_shared(count) {
@@ -39,10 +40,10 @@ pub fn fill<T: Send>(column: &mut Vec<T>, count: usize, make: impl Fn(usize) -> 
     column.extend((0..count).map(make));
 }
 
-/// Applies `work` to every piece; the results in the order of the pieces.
+/// Applies `work` to every piece; returns the results in the order of the pieces.
 ///
 /// # Panics
-/// If `work` does.
+/// If `work` panics.
 pub fn each<T: Send, R: Send>(pieces: impl Iterator<Item = T>, work: impl Fn(T) -> R + Send + Sync) -> Vec<R> {
     #[cfg(not(feature = "parallel"))]
     return pieces.map(work).collect();
@@ -78,7 +79,7 @@ enum Place<T, R> {
 
 /// Calls `work` once for every index below `count`, on several threads.
 ///
-/// Not generic: what a thread pool needs is compiled once, not for every piece of work.
+/// It is not generic, so the code of the thread pool is compiled only once.
 #[cfg(feature = "parallel")]
 fn for_each_index(count: usize, work: &(dyn Fn(usize) + Sync)) {
     use rayon::prelude::*;

@@ -1,10 +1,11 @@
-//! A step and the forces after it, tile by tile and in a tile group by group of its pairs: what is moved is still in a cache when its forces are
-//! summed, and these are when the relaxer looks at them. On one thread the pairs across a border follow as soon as both sides have moved.
+//! One step and the forces after it, tile by tile, and within a tile group by group of its pairs. Positions are still
+//! in cache when their forces are summed, and forces are still in cache when the relaxer reads them. On one thread the
+//! border pairs follow as soon as both sides have moved.
 //!
-//! Whether the list holds where the disks come to is known when they are there, so that no step need be short for it. Where it does not, all
-//! disks are moved, and nothing else is done.
+//! Whether the list is still complete is checked after the disks have moved, so the list never shortens a step. If the
+//! list has expired, all disks are moved and no forces are evaluated.
 //!
-//! The bits of positions, velocities and forces are those of the same work done array by array.
+//! Positions, velocities and forces have the same bits as if each array were processed as a whole.
 
 use std::iter::repeat_with;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,7 +16,7 @@ use crate::neighbours::pair_list::PairList;
 use crate::neighbours::tile_schedule::Stage;
 use crate::parallel;
 
-/// What moves, and what acts on it.
+/// Arrays of a step: velocities, displacements and forces.
 pub(crate) struct Movers<'a, T, const D: usize> {
     /// Velocities of the mobile disks \[length / time\].
     pub velocities: &'a mut [[T; D]],
@@ -25,17 +26,17 @@ pub(crate) struct Movers<'a, T, const D: usize> {
     pub forces: &'a mut [[T; D]],
 }
 
-/// Forces, velocities and displacements of the same disks; of disks that do not move there are no velocities.
+/// Forces, velocities and displacements of the same disks; held disks have no velocities.
 type Moving<'a, T, const D: usize> = (&'a mut [[T; D]], &'a mut [[T; D]], &'a mut [[T; D]]);
 
-/// What became of a step tile by tile.
+/// Result of a step by tiles.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Advanced<P> {
-    /// Nothing: the law has sites, or the list is to be looked at after this step.
+    /// Nothing was done: the law has sites, or the list must be checked after this step.
     Not,
-    /// The disks are moved, and the list does not hold where they are.
+    /// The disks have moved, but the list is no longer complete.
     Moved,
-    /// The disks are moved and their forces evaluated. What was seen of each part of them.
+    /// The disks have moved and their forces are evaluated. The observations of all parts of the disks.
     Evaluated(Vec<P>),
 }
 
@@ -45,22 +46,24 @@ impl<P> Advanced<P> {
     }
 }
 
-/// How far the list holds.
+/// Range of validity of the list.
 pub(crate) struct Reach<'a, F> {
-    /// The way it holds for \[length\].
+    /// Displacement up to which the list is complete \[length\].
     pub limit: f64,
-    /// What disks have gone of it.
+    /// Displacement bounds since the list was built.
     pub bounds: &'a mut DisplacementBounds,
-    /// The longest way of disks from this one on since they were listed, from their displacements \[length\].
+    /// Computes, from displacements of consecutive disks beginning with this one, the largest displacement since the
+    /// list was built \[length\].
     pub longest: F,
 }
 
-/// Moves all mobile disks and evaluates the forces where they then are. `kick` gets (forces, velocities, displacements) of some mobile disks
-/// and returns a bound on how far it moved them. What `look` (forces, velocities) returned for each part of the mobile disks, in a fixed
-/// order; none where the list does not hold for all: then forces are anything.
+/// Moves all mobile disks and evaluates the forces at their new positions. `kick` takes (forces, velocities,
+/// displacements) of some mobile disks and returns a bound on their displacements. Returns the results of `look`
+/// (forces, velocities) for each part of the mobile disks, in a fixed order. Returns none if the list is no longer
+/// complete; the forces are then undefined.
 ///
 /// # Accuracy
-/// The bits of `kick` on whole arrays and the forces of the kernel after it.
+/// The same bits as `kick` on whole arrays, followed by the forces of the kernel.
 pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     kernel: &K,
     pairs: &PairList<D>,
@@ -73,9 +76,9 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     let Reach { limit, bounds, longest } = reach;
     let (tiles, size) = (pairs.tiles.as_slice(), pairs.tile_size);
     let spent = AtomicBool::new(false);
-    let is_spent = || spent.load(Ordering::Relaxed);
+    let is_expired = || spent.load(Ordering::Relaxed);
     let nothing = [K::Number::default(); D];
-    // Moves disks of a portion, from this one on.
+    // Moves disks of a portion, beginning with this one.
     let moves = |disk: usize, (forces, velocities, displacements): Moving<'_, _, D>, bound: &mut Bound| {
         bound.step = kick(forces, velocities, displacements);
         bound.total += bound.step;
@@ -97,7 +100,7 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
             let of_disks = (&mut forces[disks.clone()], &mut velocities[disks.clone()], &mut displacements[disks]);
             moves(first + begin, of_disks, &mut bounds[begin / PORTION]);
         }
-        if is_spent() {
+        if is_expired() {
             return None;
         }
         let task = Task { kernel, pairs, displacements: (displacements, first as u32), tile, offset: first as u32 };
@@ -124,7 +127,7 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
             velocities.chunks_mut(size).zip(bounds.portions.chunks_mut(of_tile)).chain(repeat_with(Default::default));
         let arrays = displacements.chunks_mut(size).zip(forces.chunks_mut(size)).zip(moving);
         insides = parallel::each(arrays.enumerate(), |(place, ((u, f), (v, bounds)))| inside(place, (f, v, u), bounds));
-        if is_spent() {
+        if is_expired() {
             return None;
         }
         let displacements = &*displacements;
@@ -147,13 +150,13 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
                     let disks = (forces, &mut velocities[moving], &mut displacements[begin..end]);
                     insides.push(inside(place, disks, &mut bounds.portions[portions]));
                 }
-                _ if is_spent() => {}
+                _ if is_expired() => {}
                 Stage::Border => border(place, displacements, forces, &mut across.0[place]),
                 Stage::Margins => marginals[place] = Some(margins(place, across, forces, &velocities[moving])),
             }
         }
     }
-    if is_spent() {
+    if is_expired() {
         return None;
     }
     let mut looked: Vec<P> = insides.into_iter().flatten().collect();

@@ -1,10 +1,10 @@
 //! [`Assembly`]: a packing laid out for the hot loop.
 //!
-//! Mobile disks come first, then the held ones, each part in spatial order, so that neighbours in space are neighbours
-//! in memory; the caller's numbering stays outside. A centre is an anchor plus a displacement; the displacement is all
-//! that a relaxer moves. Anchors are counted from a corner of the disks' own surroundings, so it does not matter how far
-//! from the origin a packing lies. When the neighbour list is made anew, anchors take over what the displacements have gathered
-//! (without rounding: the remainder stays in the displacement).
+//! Mobile disks come first, then held ones, each part in spatial order. So neighbours in space are neighbours in
+//! memory. The caller's numbering is kept outside. A centre is an anchor plus a displacement, and a relaxer moves only
+//! the displacement. Anchors are relative to a corner near the disks, so the distance of a packing from the origin does
+//! not matter. When the neighbour list is rebuilt, the anchors absorb the displacements without rounding: the remainder
+//! stays in the displacement.
 
 mod incremental_update;
 mod list_keeping;
@@ -18,7 +18,7 @@ use crate::forces::elastic::{Across, Plain};
 use crate::forces::stiffness_bound::{Weight, stiffness_rows};
 use crate::forces::totals::Totals;
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::displacement_bounds::{DisplacementBounds, LISTED};
+use crate::neighbours::displacement_bounds::{DisplacementBounds, SKIN_FRACTION};
 use crate::neighbours::fast_disks::FastDisks;
 use crate::neighbours::pair_list::PairList;
 use crate::neighbours::verlet_list::{Disks, ListRoom, build_pairs, spatial_order};
@@ -26,22 +26,23 @@ use crate::packing::{Domain, Packing, PackingError};
 use crate::parallel::{self, PIECE};
 use crate::vector::{Vector, dot, extended_sum, longest_difference_squared, sum, two_sum};
 
-/// Width of the skin over the smallest radius \[1\]. Changes speed only: a wider one makes lists last longer and adds pairs
-/// that do not touch. From 0.25 to 0.5 these are 7 in 100 pairs and 4 in 100 of the time of the loop, for half the lists and less.
+/// Width of the skin over the smallest radius \[1\]. Changes speed only. With a wider skin, lists last longer but
+/// contain more pairs without contact.
 pub const SKIN: f64 = 0.5;
 
-/// The least for a long list that is amended, so that it need not last for the few disks that go far.
+/// Width of the narrowest skin of a long list with incremental updates. Such a list need not last for the few fast
+/// disks.
 const AMENDED_SKIN: f64 = 0.2;
 
 /// A packing under a contact law, in working order.
 #[derive(Debug, Clone)]
 pub struct Assembly<const D: usize, L> {
     law: L,
-    /// The domain, moved by −`origin`.
+    /// The domain, shifted by −`origin`.
     domain: Domain<D>,
-    /// What anchors are counted from.
+    /// Origin of the anchors.
     origin: Vector<D>,
-    /// Caller's index of each disk in working order.
+    /// The caller's index of each disk in working order.
     order: Vec<u32>,
     mobile_count: usize,
     anchors: Vec<Vector<D>>,
@@ -49,67 +50,71 @@ pub struct Assembly<const D: usize, L> {
     from_sites: Vec<[(f64, f64); D]>,
     radii: Vec<f64>,
     pairs: PairList<D>,
-    /// Near pairs, in place of `pairs` while there is a skin of theirs.
+    /// Inner list, used in place of `pairs` while `inner_skin` is set.
     inner_pairs: PairList<D>,
     inner_skin: Option<f64>,
-    /// Whether near pairs are ever picked.
+    /// Whether an inner list may be used.
     prunes: bool,
-    /// Calls of [`Assembly::keep_listed`] since the list in use was made, and at how many the way of the disks is looked at.
+    /// Number of calls of [`Assembly::keep_listed`] since the list in use was built, and the number at which the speed
+    /// of the disks is checked.
     age: usize,
-    look_at: usize,
-    /// Where the disks were at the last such look, and when that was.
-    seen: Vec<Vector<D>>,
-    seen_at: usize,
+    next_check: usize,
+    /// Displacements at the last speed check, and the value of `age` then.
+    checked_displacements: Vec<Vector<D>>,
+    checked_at: usize,
     across: Across<f64, D>,
     list_room: ListRoom<D>,
     smallest_radius: f64,
-    /// Of the list of all pairs.
+    /// Skin of the outer list.
     skin: f64,
-    /// The narrowest and the widest of that list.
+    /// Narrowest and widest skin of the outer list.
     skins: RangeInclusive<f64>,
-    /// Displacements when the list of all pairs was made, or when a disk was listed anew in it; the same for near pairs.
-    listed: Vec<Vector<D>>,
+    /// Displacements at the build of the outer list, or at the last update of a disk in it; the same for the inner
+    /// list.
+    outer_at_build: Vec<Vector<D>>,
     inner_at_build: Vec<Vector<D>>,
-    /// Those that are listed anew.
-    far: FastDisks,
-    /// Displacements to come back to, if the relaxer set a checkpoint.
+    /// The fast disks of the present update.
+    fast_disks: FastDisks,
+    /// Displacements that the relaxer can restore, if it has set a checkpoint.
     checkpoint: Vec<Vector<D>>,
-    /// How far disks may have moved since they were listed in the list in use.
+    /// Displacement bounds since the list in use was built.
     bounds: DisplacementBounds,
-    /// How far each portion of them had gone in the list of all pairs when they were listed in near pairs; none unless these are in use.
+    /// Bound on the displacements in the outer list up to the build of the inner list, for each portion; empty if the
+    /// inner list is not in use.
     bounds_before: Vec<f64>,
-    /// Lists that were in use so far, and how often this one was amended.
+    /// Number of lists used so far, and number of incremental updates of the present one.
     listing_number: (usize, usize),
     rebuild_count: usize,
-    /// Centre minus anchor of each disk; a relaxer moves the first [`Assembly::mobile_count`] of them \[length\].
+    /// Centre minus anchor of each disk; a relaxer moves the first [`Assembly::mobile_count`] disks \[length\].
     pub displacements: Vec<Vector<D>>,
     /// Forces of the last evaluation, all disks \[force\].
     pub forces: Vec<Vector<D>>,
 }
 
 impl<const D: usize, L: PairLaw> Assembly<D, L> {
-    /// Lays out a packing and makes its neighbour list.
+    /// Lays out a packing and builds its neighbour list.
     ///
     /// # Errors
-    /// A box too small for one image a pair, or two disks with the same centre (named by the caller's indices).
+    /// A box too small for the minimum-image convention, or two disks with the same centre (named by the caller's
+    /// indices).
     pub fn new(packing: &Packing<D>, law: L) -> Result<Self, PackingError> {
         Self::with_skin(packing, law, SKIN)
     }
 
-    /// As [`Assembly::new`] for who has lists pruned and amended ([`Assembly::prune_lists`]): those of a large packing have a narrower skin,
-    /// unless all disks move.
+    /// Like [`Assembly::new`], with an inner list and incremental updates ([`Assembly::prune_lists`]). The lists of a
+    /// large packing have a narrower skin, unless all disks move.
     ///
     /// # Errors
-    /// As there.
+    /// As in [`Assembly::new`].
     pub fn with_amended_lists(packing: &Packing<D>, law: L) -> Result<Self, PackingError> {
         let narrowest = if PairList::<D>::are_long(packing.len()) { AMENDED_SKIN } else { SKIN };
         Self::with_skins(packing, law, narrowest..=SKIN)
     }
 
-    /// As [`Assembly::new`] with another width of the skin, over the smallest radius \[1\].
+    /// Like [`Assembly::new`], with another width of the skin, over the smallest radius \[1\].
     ///
     /// # Errors
-    /// As there.
+    /// As in [`Assembly::new`].
     pub fn with_skin(packing: &Packing<D>, law: L, skin: f64) -> Result<Self, PackingError> {
         Self::with_skins(packing, law, skin..=skin)
     }
@@ -120,7 +125,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         let radii: Vec<f64> = order.iter().map(|&disk| packing.radii()[disk as usize]).collect();
         let smallest_radius = radii.iter().copied().fold(f64::INFINITY, f64::min);
         let largest = radii.iter().copied().fold(0.0, f64::max);
-        // The list takes one image a pair, so its range stays below half the shortest side.
+        // The list contains one image per pair, so its range stays below half of the shortest side.
         let shortest = packing.domain().lengths().map(|lengths| lengths.iter().copied().fold(f64::INFINITY, f64::min));
         let most = shortest.map_or(f64::INFINITY, |shortest| (0.5 * shortest - 2.0 * largest).max(0.0));
         let [narrowest, widest] = [skins.start(), skins.end()].map(|skin| most.min(skin * smallest_radius));
@@ -140,9 +145,9 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             anchors,
             displacements,
             forces: vec![[0.0; D]; packing.len()],
-            listed: Vec::new(),
+            outer_at_build: Vec::new(),
             inner_at_build: Vec::new(),
-            far: FastDisks::default(),
+            fast_disks: FastDisks::default(),
             checkpoint: Vec::new(),
             bounds: DisplacementBounds::default(),
             bounds_before: Vec::new(),
@@ -154,9 +159,9 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             inner_skin: None,
             prunes: false,
             age: 0,
-            look_at: 0,
-            seen: Vec::new(),
-            seen_at: 0,
+            next_check: 0,
+            checked_displacements: Vec::new(),
+            checked_at: 0,
             across: Across::default(),
             list_room: ListRoom::default(),
             radii,
@@ -166,11 +171,11 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             order,
         };
         if law.has_sites() {
-            // An anchor is the position less the origin, rounded; the displacement has the rest.
+            // An anchor is the rounded difference of position and origin; the displacement has the remainder.
             let from_site = |&disk: &u32| {
                 let position = packing.positions()[disk as usize];
-                let way = packing.way_from_site(disk as usize, position);
-                std::array::from_fn(|d| extended_sum(way[d], -two_sum(position[d], -origin[d]).1))
+                let offset = packing.way_from_site(disk as usize, position);
+                std::array::from_fn(|d| extended_sum(offset[d], -two_sum(position[d], -origin[d]).1))
             };
             assembly.from_sites = assembly.order[..assembly.mobile_count].iter().map(from_site).collect();
         }
@@ -178,10 +183,10 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         Ok(assembly)
     }
 
-    /// The packing given, with its disks where the relaxer left them.
+    /// The given packing, with its disks at the present positions.
     ///
     /// # Panics
-    /// If `packing` is not the one the assembly was made from.
+    /// If `packing` has another number of disks than the packing of the assembly.
     pub fn placed(&self, mut packing: Packing<D>) -> Packing<D> {
         assert_eq!(packing.len(), self.order.len(), "an assembly belongs to the packing it was made from");
         if self.law.has_sites() && packing.sites().is_none() {
@@ -201,17 +206,17 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.order.len()
     }
 
-    /// Never true: a packing has at least one disk.
+    /// Always false: a packing has at least one disk.
     pub fn is_empty(&self) -> bool {
         self.order.is_empty()
     }
 
-    /// Number of mobile disks; they are the first.
+    /// Number of mobile disks; they come first.
     pub fn mobile_count(&self) -> usize {
         self.mobile_count
     }
 
-    /// Caller's index of each disk in working order.
+    /// The caller's index of each disk in working order.
     pub fn order(&self) -> &[u32] {
         &self.order
     }
@@ -221,7 +226,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         &self.radii
     }
 
-    /// Where a disk is, rounded, from an origin of the assembly's own \[length\].
+    /// Rounded position of a disk, relative to the assembly's own origin \[length\].
     pub fn place(&self, index: usize) -> Vector<D> {
         sum(self.anchors[index], self.displacements[index])
     }
@@ -236,12 +241,12 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         in_use(self.inner_skin, &self.inner_pairs, &self.pairs)
     }
 
-    /// How often the list of all pairs was made, the first time included.
+    /// Number of builds of the outer list, the first one included.
     pub fn rebuild_count(&self) -> usize {
         self.rebuild_count
     }
 
-    /// Forces of the present displacements into [`Assembly::forces`].
+    /// Evaluates the forces at the present displacements into [`Assembly::forces`].
     pub fn evaluate(&mut self) {
         let pairs = in_use(self.inner_skin, &self.inner_pairs, &self.pairs);
         elastic::forces(&self.law, pairs, &self.displacements, &mut self.across, &mut self.forces);
@@ -250,12 +255,14 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
     }
 
-    /// Moves the mobile disks, evaluates the forces where they then are and looks at them, tile by tile; [`Assembly::keep`] is to be called
-    /// afterwards. Where the list does not hold for where the disks come to they are moved all the same, and that is all.
+    /// Moves the mobile disks, evaluates the forces at their new positions and observes them, tile by tile. The caller
+    /// must then call [`Assembly::keep`]. If the list is no longer complete at the new positions, the disks are only
+    /// moved.
     ///
     /// # Shape
-    /// `velocities` has one entry a mobile disk. `kick` gets (forces, velocities, displacements) of some mobile disks and returns a bound on how
-    /// far it moved any \[length\], `look` gets (forces, velocities); every mobile disk comes once.
+    /// `velocities` has one entry per mobile disk. `kick` takes (forces, velocities, displacements) of some mobile
+    /// disks and returns a bound on their displacements \[length\]. `look` takes (forces, velocities). Each mobile disk
+    /// occurs once.
     pub fn advance<P: Send>(
         &mut self,
         velocities: &mut [Vector<D>],
@@ -265,10 +272,10 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         if !self.may_advance() {
             return Advanced::Not;
         }
-        let limit = LISTED * self.skin();
+        let limit = SKIN_FRACTION * self.skin();
         let (pairs, listed) = match self.inner_skin {
             Some(_) => (&self.inner_pairs, &self.inner_at_build),
-            None => (&self.pairs, &self.listed),
+            None => (&self.pairs, &self.outer_at_build),
         };
         let movers = Movers { velocities, displacements: &mut self.displacements, forces: &mut self.forces };
         let longest = |first: usize, displacements: &[Vector<D>]| {
@@ -278,7 +285,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         Advanced::of(advance(&Plain { law: &self.law, pairs }, pairs, (movers, &mut self.across), reach, kick, look))
     }
 
-    /// Forces as by [`Assembly::evaluate`], with energy, virial and contact count.
+    /// Forces as in [`Assembly::evaluate`], with energy, virial and contact count.
     pub fn evaluate_totals(&mut self) -> Totals<D> {
         let pairs = in_use(self.inner_skin, &self.inner_pairs, &self.pairs);
         let mut totals =
@@ -290,7 +297,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         totals
     }
 
-    /// Adds Γ u to the forces on mobile disks; their energy −(Γ/2) Σ u² is returned.
+    /// Adds Γ u to the forces on mobile disks. Returns their energy −(Γ/2) Σ u².
     fn add_on_site_forces(&mut self) -> f64 {
         let coupling = self.law.on_site_coupling();
         let mut squares = 0.0;
@@ -304,25 +311,25 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         -0.5 * coupling * squares
     }
 
-    /// How far a mobile disk is from its site, to the rounding of that distance; 0 for a law without sites \[length\].
+    /// Displacement of a mobile disk from its site, rounded relative to itself; 0 for a law without sites \[length\].
     pub fn way_from_site(&self, index: usize) -> Vector<D> {
         self.from_sites
             .get(index)
             .map_or([0.0; D], |from| std::array::from_fn(|d| (from[d].0 + self.displacements[index][d]) + from[d].1))
     }
 
-    /// The longest way of a mobile disk from its site \[length\].
+    /// The largest displacement of a mobile disk from its site \[length\].
     pub fn longest_way_from_site(&self) -> f64 {
         let squared = (0..self.from_sites.len()).map(|index| dot(self.way_from_site(index), self.way_from_site(index)));
         squared.fold(0.0, |most, value| if value > most { value } else { most }).sqrt()
     }
 
-    /// Remembers where the disks are, for [`Assembly::restore`].
+    /// Stores the present positions, for [`Assembly::restore`].
     pub fn set_checkpoint(&mut self) {
         self.checkpoint.clone_from(&self.displacements);
     }
 
-    /// Puts the disks back where the last checkpoint found them; nothing happens without one.
+    /// Restores the positions of the last checkpoint; without one, nothing changes.
     ///
     /// # Errors
     /// Two disks with the same centre.
@@ -334,13 +341,13 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.keep_listed(f64::INFINITY).map(|_| ())
     }
 
-    /// Longest displacement of a disk from its anchor \[length\]: what the rounding of overlaps is relative to.
+    /// Largest displacement of a disk from its anchor \[length\]. The rounding of overlaps is relative to it.
     pub fn longest_displacement(&self) -> f64 {
         let squared = self.displacements[..self.mobile_count].iter().map(|&u| dot(u, u));
         squared.fold(0.0, |most, value| if value > most { value } else { most }).sqrt()
     }
 
-    /// Lets the anchors take over the displacements and makes the list anew; the disks stay where they are.
+    /// Moves the anchors to the present positions and rebuilds the list; the disks do not move.
     ///
     /// # Errors
     /// Two disks with the same centre.
@@ -351,7 +358,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     fn rebuild(&mut self) -> Result<(), PackingError> {
         let anchors = self.anchors[..self.mobile_count].chunks_mut(PIECE);
         let displacements = self.displacements[..self.mobile_count].chunks_mut(PIECE);
-        // Empty for what this assembly does not have.
+        // Arrays are empty where the assembly does not need them.
         let checkpoint = self.checkpoint.chunks_mut(PIECE).chain(repeat_with(Default::default));
         let from_sites = self.from_sites.chunks_mut(PIECE).chain(repeat_with(Default::default));
         let pieces = anchors.zip(displacements).zip(checkpoint.zip(from_sites));
@@ -363,7 +370,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
                     let (high, low) = two_sum(anchor[d], displacement[d]);
                     saved[d] += anchor[d] - high;
                     if let Some(from) = from_sites.get_mut(index) {
-                        // What the anchor takes over, without rounding.
+                        // The part that the anchor absorbs, without rounding.
                         from[d] = extended_sum(extended_sum(from[d], displacement[d]), -low);
                     }
                     (anchor[d], displacement[d]) = (high, low);
@@ -381,12 +388,12 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             }
             other => other,
         })?;
-        self.begin_all();
+        self.begin_outer_list();
         self.rebuild_count += 1;
         Ok(())
     }
 
-    /// The disks as the list builder sees them.
+    /// The disks as seen by the list builder.
     fn disks(&self) -> Disks<'_, D> {
         Disks {
             domain: &self.domain,
@@ -397,15 +404,17 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         }
     }
 
-    /// Upper bound on the largest eigenvalue of the stiffness matrix (masses 1), by Gershgorin's rows \[1 / time²\].
+    /// Upper bound on the largest eigenvalue of the stiffness matrix (masses 1), by Gershgorin's theorem \[1 / time²\].
     ///
-    /// Sites shift every eigenvalue by −Γ; |Γ| is added for either sign, so that disks that run away do so in small steps.
+    /// Sites shift every eigenvalue by −Γ. The bound adds |Γ| for either sign, so that unstable disks also move in
+    /// small steps.
     pub fn stiffness_bound(&self, row: &mut Vec<f64>) -> f64 {
         let bound = self.row_bound(row, None);
         bound + self.law.on_site_coupling().abs()
     }
 
-    /// Upper bound on the largest eigenvalue of a contact matrix with this weight a contact, or with the stiffness of each.
+    /// Upper bound on the largest eigenvalue of a contact matrix with this weight per contact, or with the stiffness of
+    /// each contact.
     pub fn row_bound(&self, row: &mut Vec<f64>, weight: Option<&Weight<'_>>) -> f64 {
         row.resize(self.len(), 0.0);
         stiffness_rows(&self.law, self.pairs(), &self.displacements, self.mobile_count, weight, row);
@@ -413,14 +422,14 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     }
 }
 
-/// Near pairs while there is a skin of theirs, or all.
+/// The inner list if its skin is set, otherwise the outer list.
 fn in_use<'a, const D: usize>(inner_skin: Option<f64>, near: &'a PairList<D>, all: &'a PairList<D>) -> &'a PairList<D> {
     if inner_skin.is_some() { near } else { all }
 }
 
-/// What anchors are counted from, and the domain seen from there: the corner of a periodic box; in the open plane the
-/// plane's own origin, or a corner of the disks if they all lie so far on one side of it that their distances would be
-/// rounded like their positions.
+/// Origin of the anchors, and the domain relative to it. In a periodic box it is the corner. In the open plane it is
+/// the origin of the plane. If all disks lie far on one side of that origin, it is a corner of the disks, so that
+/// distances keep their accuracy.
 fn origin_and_domain<const D: usize>(packing: &Packing<D>) -> (Vector<D>, Domain<D>) {
     match packing.domain() {
         Domain::Periodic { corner, lengths } => (*corner, Domain::Periodic { corner: [0.0; D], lengths: *lengths }),

@@ -1,7 +1,9 @@
-//! One block of pairs, column by column: how far apart its disks are and how much they overlap; the formulas are those of [`crate::forces::elastic`].
+//! One block of pairs, column by column: separations, overlaps and forces, by the formulas of
+//! [`crate::forces::elastic`].
 //!
-//! The arithmetic goes through the block several times, a few operations each: those of one vector of pairs wait for each other, and
-//! a processor has few of the next ones in view if they are many. Meanwhile it asks for what the list has of a later block.
+//! The arithmetic passes through the block several times, with a few operations each. The operations on one vector of
+//! pairs depend on each other, and the processor must overlap those of many vectors. Short passes let it do so.
+//! Meanwhile a later block of the list is prefetched.
 
 use pulp::Simd;
 
@@ -15,8 +17,8 @@ use crate::simd::prefetch::Cache;
 use crate::simd::roots::{positive_part, reciprocal, square_roots};
 use crate::vector::Vector;
 
-/// How far ahead the list is asked for: its memory is so many blocks of arithmetic away; the first cache has no room for more than one
-/// \[blocks\].
+/// Distance of the list prefetch \[blocks\]. The latency of the memory is about this many blocks of arithmetic. The
+/// first-level cache has space for one block only.
 fn blocks_ahead(cache: Cache) -> usize {
     match cache {
         Cache::Second => 2,
@@ -24,7 +26,7 @@ fn blocks_ahead(cache: Cache) -> usize {
     }
 }
 
-/// The same in numbers of a column.
+/// The same distance as a number of entries of a column.
 fn places_ahead<const D: usize>(cache: Cache) -> usize {
     blocks_ahead(cache) * size_of::<PairBlock<D>>() / size_of::<f64>()
 }
@@ -32,18 +34,18 @@ fn places_ahead<const D: usize>(cache: Cache) -> usize {
 /// One block of pairs, column by column.
 #[repr(align(64))]
 pub(crate) struct Columns<const D: usize> {
-    /// Relative displacement of the pair, then the force on its first disk: vectors one after the other.
+    /// Relative displacement of each pair, then the force on its first disk; stored as consecutive vectors.
     pub pull: [Vector<D>; BLOCK],
     /// Separation.
     pub apart: [[f64; BLOCK]; D],
-    /// Overlap, 0 of disks apart.
+    /// Overlap; 0 without contact.
     pub overlap: [f64; BLOCK],
     pub force: [f64; BLOCK],
-    /// One over the distance.
+    /// Reciprocal of the distance.
     pub inverse: [f64; BLOCK],
 }
 
-/// What the list has of a block, and how many pairs that are.
+/// The stored columns of a block, and its number of pairs.
 pub(crate) struct Anchors<'a, const D: usize> {
     pair_count: usize,
     block: &'a PairBlock<D>,
@@ -55,7 +57,7 @@ impl<'a, const D: usize> Anchors<'a, D> {
         Anchors { pair_count: block.pair_count, block: &pairs.pair_blocks[block.pairs / BLOCK] }
     }
 
-    /// Vectors of pairs, an even number of them.
+    /// Number of vectors of pairs, always even.
     #[inline(always)]
     fn vector_count<S: Simd>(&self) -> usize {
         (2 * self.pair_count.div_ceil(2 * S::F64_LANES)).min(BLOCK / S::F64_LANES)
@@ -74,7 +76,7 @@ impl<const D: usize> Columns<D> {
         }
     }
 
-    /// From the relative displacements: separations, overlaps and one over the distances.
+    /// Computes separations, overlaps and reciprocal distances from the relative displacements.
     #[inline(always)]
     pub fn measure<S: Simd>(&mut self, simd: S, anchors: &Anchors<'_, D>) {
         let (count, block) = (anchors.vector_count::<S>(), anchors.block);
@@ -100,7 +102,7 @@ impl<const D: usize> Columns<D> {
                     let along = simd.add_f64s(anchored, moved[d]);
                     let squared = simd.mul_f64s(along, along);
                     let changed = simd.mul_f64s(moved[d], simd.add_f64s(anchored, along));
-                    // Nothing is added to zero: the compiler may not leave that out.
+                    // The first term is not added to zero, because the compiler may not omit that addition.
                     (*square, change) = match d {
                         0 => (squared, changed),
                         _ => (simd.add_f64s(*square, squared), simd.add_f64s(change, changed)),
@@ -115,7 +117,8 @@ impl<const D: usize> Columns<D> {
         for k in 0..count {
             let distance = inverse[k];
             let both = simd.add_f64s(distance, anchor_distance[k]);
-            // One reciprocal for change / both and 1 / distance: divisions and roots are what the loop waits for.
+            // One reciprocal serves for change / both and 1 / distance, because divisions and roots limit the speed of
+            // the loop.
             let of_both = reciprocal(simd, roots, simd.mul_f64s(distance, both));
             let change = simd.mul_f64s(overlap[k], simd.mul_f64s(distance, of_both));
             overlap[k] = positive_part(simd, simd.sub_f64s(anchor_overlap[k], change));
@@ -125,7 +128,7 @@ impl<const D: usize> Columns<D> {
         }
     }
 
-    /// From the overlaps: the forces of a law, and if it is to `RESOLVE` them, what [`Columns::resolve`] makes of these.
+    /// Computes the forces from the overlaps. With `RESOLVE`, it also does the work of [`Columns::resolve`].
     #[inline(always)]
     pub fn press<S: Simd, L: PairLaw, const RESOLVE: bool>(&mut self, simd: S, law: &L, anchors: &Anchors<'_, D>) {
         let (count, block) = (anchors.vector_count::<S>(), anchors.block);
@@ -157,10 +160,10 @@ impl<const D: usize> Columns<D> {
         }
     }
 
-    /// From the forces: the force on each first disk in `pull`.
+    /// Computes the force on each first disk from the magnitudes, into `pull`.
     ///
-    /// Nothing else is stored: force over distance would lie a page away from the separation read next, and this processor looks at the last
-    /// twelve bits of addresses first.
+    /// No other result is stored. Force over distance would have an address 4096 bytes from the separation that is read
+    /// next. Processors that compare only the low 12 bits of addresses would then delay that read.
     #[inline(always)]
     pub fn resolve<S: Simd>(&mut self, simd: S) {
         let count = BLOCK / S::F64_LANES;

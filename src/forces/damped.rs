@@ -4,7 +4,7 @@
 //! f_i += (F(δ) − c v_n) n,  f_j −= the same        n = r_ij/|r_ij|,  v_n = n·(v_i − v_j),  c = 0 where δ ≤ 0
 //! ```
 //!
-//! Blocks, rows and columns as in [`crate::forces::elastic`]; tiles play no part.
+//! Blocks, rows and columns as in [`crate::forces::elastic`]; tiles are not used.
 
 use crate::forces::block_arithmetic::{Anchors, Columns};
 use crate::law::damping::DampingLaw;
@@ -17,14 +17,14 @@ use crate::neighbours::rows::{gather, scatter};
 use crate::simd::lanes;
 use crate::vector::Vector;
 
-/// Net forces of elastic and damping contacts on all disks; the power damping takes, Σ c v_n², is returned. `forces` is
-/// overwritten, whatever it held.
+/// Net forces of elastic and damping contacts on all disks; `forces` is overwritten. Returns the power of damping, Σ c
+/// v_n².
 ///
 /// # Shape
-/// `damping_coefficient` has one entry a pair; `displacements`, `velocities` and `forces` one a disk.
+/// `damping_coefficient` has one entry per pair; `displacements`, `velocities` and `forces` have one per disk.
 ///
 /// # Accuracy
-/// That of [`forces`](crate::forces::elastic::forces) with [`add_damping`], but for the order of sums.
+/// Equal to [`forces`](crate::forces::elastic::forces) with [`add_damping`], except for the order of sums.
 pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
     (law, damping): (&L, &C),
     pairs: &PairList<D>,
@@ -48,7 +48,7 @@ pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
     power
 }
 
-/// The arithmetic of a block, which returns the power.
+/// The arithmetic of a block; it returns the power.
 struct Arithmetic<'a, const D: usize, C> {
     damping: Damping<'a, D, C>,
     columns: &'a mut Columns<D>,
@@ -79,7 +79,7 @@ impl<const D: usize, C: DampingLaw> LawKernel for Arithmetic<'_, D, C> {
 }
 
 impl<const D: usize, C: DampingLaw> Damping<'_, D, C> {
-    /// Takes the damping from the forces of a block that is measured.
+    /// Subtracts the damping from the forces of a block whose geometry is computed.
     #[inline(always)]
     fn resist(&self, columns: &mut Columns<D>, power: &mut [f64]) {
         let count = power.len();
@@ -101,10 +101,10 @@ impl<const D: usize, C: DampingLaw> Damping<'_, D, C> {
     }
 }
 
-/// Adds the damping forces −c_ij v_n of all contacts to `forces`; the power they take, Σ c_ij v_n², is returned.
+/// Adds the damping forces −c_ij v_n of all contacts to `forces`. Returns their power, Σ c_ij v_n².
 ///
 /// # Shape
-/// `damping_coefficient` has one entry a pair, `velocities` one a disk.
+/// `damping_coefficient` has one entry per pair, `velocities` one per disk.
 pub fn add_damping<const D: usize, C: DampingLaw>(
     law: &C,
     pairs: &PairList<D>,
@@ -144,7 +144,7 @@ mod tests {
     use crate::law::power_laws::Hertzian;
     use crate::vector::{difference, norm};
 
-    /// Both passes give the same sums, of terms of up to 10⁴ and 10⁶, to their rounding.
+    /// Both methods give the same sums, of terms of up to 10⁴ and 10⁶, up to rounding.
     fn agree<C: DampingLaw>(damping: &C) {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz");
         let packing = read_packing::<2>(file).expect("a stored packing");

@@ -5,14 +5,16 @@
 //! f_i += F(δ) r_ij/|r_ij|,  f_j −= the same
 //! ```
 //!
-//! D_ij is the separation of the anchors, u a displacement from them, δ⁰_ij the overlap at the anchors, known to full
-//! relative accuracy. The overlap follows from its change, so it carries the rounding of the displacements (10⁻¹⁶ w) and of
-//! itself, not that of the distance (10⁻¹⁶), nor that of positions in a box (10⁻¹⁴ and more).
+//! D_ij is the separation of the anchors, u a displacement from them. The overlap at the anchors δ⁰_ij is known to full
+//! relative accuracy. The overlap follows from its change. Its error is the rounding of the displacements (10⁻¹⁶ w) and
+//! of the overlap itself. It does not contain the rounding of the distance (10⁻¹⁶), nor that of positions in a box
+//! (10⁻¹⁴ and more).
 //!
-//! Pairs are taken in blocks of [`BLOCK`]: first the relative displacements are gathered, then all arithmetic is done on whole vectors
-//! of pairs, column by column (`columns.rs`), and puts the force of each pair in the place of its displacement, then the forces are
-//! scattered. So gathering and scattering, which know no vectors, move as little as they can. The order of every sum is fixed and every
-//! operation rounded as IEEE 754 has it (`src/simd`), so the bits do not depend on the width of the machine's vectors.
+//! Pairs are processed in blocks of [`BLOCK`]. First the relative displacements are gathered. Then all arithmetic is
+//! done on whole vectors of pairs, column by column (`block_arithmetic`). It replaces the displacement of each pair by
+//! its force. Finally the forces are scattered. Gathering and scattering use no vector instructions, so they move as
+//! little data as possible. The order of every sum is fixed, and every operation is rounded as in IEEE 754
+//! (`crate::simd`). So the bits do not depend on the vector width of the machine.
 
 use std::ops::Range;
 
@@ -27,8 +29,8 @@ use crate::neighbours::tiles::Tile;
 use crate::parallel;
 use crate::vector::{Number, Vector, difference, sum};
 
-/// Forces of pairs across the border of a tile, for each tile: those on the first disks. Room that is kept between two
-/// evaluations; what it holds before one does not matter.
+/// Forces of border pairs on their first disks, for each tile. The buffer is reused between evaluations; its content
+/// before an evaluation is irrelevant.
 #[derive(Debug, Clone, Default)]
 pub struct Across<T, const D: usize>(pub(crate) Vec<Vec<[T; D]>>);
 
@@ -41,13 +43,13 @@ impl<T: Number, const D: usize> Across<T, D> {
     }
 }
 
-/// Forces on all disks; `forces` is overwritten, whatever it held.
+/// Forces on all disks; `forces` is overwritten.
 ///
 /// # Shape
 /// `displacements` and `forces` have one entry a disk.
 ///
 /// # Accuracy
-/// An overlap is known to a few units in the last place of itself and of the relative displacement w.
+/// The error of an overlap is a few units in the last place of itself and of the relative displacement w.
 pub fn forces<const D: usize, L: PairLaw>(
     law: &L,
     pairs: &PairList<D>,
@@ -58,7 +60,7 @@ pub fn forces<const D: usize, L: PairLaw>(
     let _ = all_tiles(&Plain { law, pairs }, pairs, displacements, across, forces);
 }
 
-/// Forces as by [`forces`], with energy, virial, contact count and mean force in the same pass.
+/// Forces as in [`forces`], with energy, virial, contact count and mean force in the same pass.
 pub fn forces_and_totals<const D: usize, L: PairLaw>(
     law: &L,
     pairs: &PairList<D>,
@@ -73,19 +75,19 @@ pub fn forces_and_totals<const D: usize, L: PairLaw>(
     totals
 }
 
-/// What the loop does with a block of pairs.
+/// The operation of the loop on a block of pairs.
 pub(crate) trait Kernel<const D: usize>: Sync {
-    /// What it reckons with.
+    /// Number type of the arithmetic.
     type Number: Number;
-    /// Room for a block.
+    /// Work space of a block.
     type Columns;
-    /// What is summed over a tile beside the forces.
+    /// Sums over a tile beside the forces.
     type Sums: Send;
 
-    /// Room and sums to begin a tile with.
+    /// Work space and sums at the start of a tile.
     fn begin(&self) -> (Self::Columns, Self::Sums);
 
-    /// The force of each pair of a block, from displacements that begin with those of a disk.
+    /// The force of each pair of a block. The array of displacements begins with the given disk.
     fn pull<'a>(
         &self,
         block: usize,
@@ -94,7 +96,7 @@ pub(crate) trait Kernel<const D: usize>: Sync {
     ) -> &'a [[Self::Number; D]; BLOCK];
 }
 
-/// Forces alone.
+/// Kernel for forces only.
 pub(crate) struct Plain<'a, const D: usize, L> {
     pub law: &'a L,
     pub pairs: &'a PairList<D>,
@@ -120,7 +122,7 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Plain<'_, D, L> {
     }
 }
 
-/// Forces and totals.
+/// Kernel for forces and totals.
 struct Summed<'a, const D: usize, L> {
     law: &'a L,
     pairs: &'a PairList<D>,
@@ -148,7 +150,7 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Summed<'_, D, L> {
     }
 }
 
-/// Forces on all disks; the sums of each tile.
+/// Forces on all disks; returns the sums of each tile.
 pub(crate) fn all_tiles<const D: usize, K: Kernel<D>>(
     kernel: &K,
     pairs: &PairList<D>,
@@ -176,18 +178,18 @@ pub(crate) fn all_tiles<const D: usize, K: Kernel<D>>(
     sums
 }
 
-/// What the loop over a tile reads.
+/// Input of the loop over a tile.
 pub(crate) struct Task<'a, const D: usize, K: Kernel<D>> {
     pub kernel: &'a K,
     pub pairs: &'a PairList<D>,
-    /// Displacements from this disk on.
+    /// Displacements, beginning with this disk.
     pub displacements: (&'a [[K::Number; D]], u32),
     pub tile: &'a Tile,
     /// First disk of the tile.
     pub offset: u32,
 }
 
-/// Those of these blocks that have pairs.
+/// The blocks of this range that have pairs.
 fn filled<'a, const D: usize>(
     pairs: &'a PairList<D>,
     blocks: &Range<usize>,
@@ -206,7 +208,7 @@ pub(crate) fn sweep_inner<const D: usize, K: Kernel<D>>(
     room
 }
 
-/// Adds the forces of the pairs of blocks within a tile to its disks.
+/// Adds the forces of pairs within a tile, for these blocks, to its disks.
 pub(crate) fn sweep<const D: usize, K: Kernel<D>>(
     task: &Task<'_, D, K>,
     blocks: Range<usize>,
@@ -219,7 +221,8 @@ pub(crate) fn sweep<const D: usize, K: Kernel<D>>(
     }
 }
 
-/// Adds the forces of the pairs across the border of a tile to its disks; those on the first disks are kept for the others.
+/// Adds the forces of the border pairs of a tile to its disks. The forces on the first disks are stored for the other
+/// tiles.
 pub(crate) fn sweep_border<const D: usize, K: Kernel<D>>(
     task: &Task<'_, D, K>,
     forces: &mut [[K::Number; D]],
@@ -248,7 +251,7 @@ pub(crate) fn add_incoming<T: Number, const D: usize>(
     }
 }
 
-/// Fills the columns of a block from displacements that begin with those of a disk.
+/// Fills the columns of a block. The array of displacements begins with the given disk.
 pub(crate) fn fill<const D: usize, L: PairLaw>(
     law: &L,
     pairs: &PairList<D>,
@@ -261,7 +264,8 @@ pub(crate) fn fill<const D: usize, L: PairLaw>(
     dispatch(law, Arithmetic { columns, anchors: Anchors::of(pairs, block) });
 }
 
-/// The arithmetic of a block, compiled for each law and each vector width the machine may have. What only moves numbers is compiled once.
+/// The arithmetic of a block, compiled for each law and each vector width. Code that only moves numbers is compiled
+/// once.
 struct Arithmetic<'a, const D: usize> {
     columns: &'a mut Columns<D>,
     anchors: Anchors<'a, D>,
@@ -277,7 +281,7 @@ impl<const D: usize> LawKernel for Arithmetic<'_, D> {
     }
 }
 
-/// Few pairs: no rows of fixed length here.
+/// Scatters forces of border pairs. There are few, so rows of fixed length are not used.
 fn scatter_to_border<T: Number, const D: usize>(
     pull: &[[T; D]; BLOCK],
     (first, offset): (&[u32], u32),
@@ -291,7 +295,7 @@ fn scatter_to_border<T: Number, const D: usize>(
     }
 }
 
-/// Separation, distance and overlap of one listed pair, by the same formula as the loop; a negative overlap is a gap.
+/// Separation, distance and overlap of one listed pair, by the formula of the loop; a negative overlap is a gap.
 #[inline(always)]
 pub fn geometry<const D: usize>(
     pairs: &PairList<D>,

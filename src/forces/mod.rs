@@ -1,4 +1,4 @@
-//! Positions and forces of a packing that moves: [`Assembly`], and the loop over contacts in double and in single precision.
+//! Positions and forces of a moving packing: [`Assembly`], and the loop over contacts in double and single precision.
 
 pub mod advance;
 pub mod assembly;

@@ -1,16 +1,17 @@
-//! The hot loop in single precision, for disks that are far from rest.
+//! The hot loop in single precision, for packings far from equilibrium.
 //!
 //! ```text
 //! u = b + m      r = D_b + (m_i − m_j)      δ = δ_b − (m_i − m_j)·(D_b + r) / (|r| + |D_b|)
 //! ```
 //!
-//! b, the base, are displacements in double precision; D_b and δ_b, separations and overlaps there, are found in double precision and then
-//! rounded. Only the offsets m from the base, small ones, and what follows from them have 24 bits: a force is known to 2⁻²⁴ of itself and of what
-//! a relative offset m_i − m_j changes it by. A net force is so much less exact than a contact force, so this
-//! is for residuals well above 10⁻⁷. Half of the bytes are moved, and twice as many pairs fit in a vector; the formulas are those of [`crate::forces::elastic`].
+//! The base b holds displacements in double precision. D_b and δ_b are separations and overlaps at the base, computed
+//! in double precision and then rounded. Only the small offsets m from the base, and results derived from them, have 24
+//! bits. A contact force has a relative error of 2⁻²⁴, plus the error of its change by the relative offset m_i − m_j. A
+//! net force has a larger relative error, so this loop serves for residuals well above 10⁻⁷. It moves half of the
+//! bytes, and twice as many pairs fit in a vector. The formulas are those of [`crate::forces::elastic`].
 //!
-//! Units are powers of two near a radius and the force of its overlap, so that no number leaves the range of single precision, whatever
-//! units the packing has. Every operation is rounded as IEEE 754 has it, the same on any vectors.
+//! Units are powers of two near a radius and the force of such an overlap. No number leaves the range of single
+//! precision, in any units of the packing. Every operation is rounded as in IEEE 754, for every vector width.
 
 use std::ops::Range;
 
@@ -31,8 +32,8 @@ use crate::simd::prefetch::Cache;
 use crate::simd::roots::positive_part_in_single;
 use crate::vector::{Vector, larger, longest_difference_squared};
 
-/// How far ahead the list is asked for: its memory is so many blocks of arithmetic away, and the first cache has no room for more than
-/// one, beside what else it holds \[blocks\].
+/// Distance of the list prefetch \[blocks\]. The latency of the memory is about this many blocks of arithmetic. The
+/// first-level cache has space for one block only.
 fn blocks_ahead(cache: Cache) -> usize {
     match cache {
         Cache::Second => 4,
@@ -40,19 +41,20 @@ fn blocks_ahead(cache: Cache) -> usize {
     }
 }
 
-/// Units of numbers in single precision, powers of two.
+/// Units of single-precision numbers, powers of two.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Units {
-    /// Of lengths; the power is even, so that its root is one too \[length\].
+    /// Length; the exponent is even, so the square root is also a power of two \[length\].
     pub length: f64,
-    /// Of forces \[force\].
+    /// Force \[force\].
     pub force: f64,
-    /// Of times, for masses 1 \[time\].
+    /// Time, for masses 1 \[time\].
     pub time: f64,
 }
 
 impl Units {
-    /// Those of disks of this radius, which press on each other with this force; none if these are out of all proportion.
+    /// The units for disks of this radius that press on each other with this force; none if these are far out of
+    /// proportion.
     fn of(radius: f64, force: f64) -> Option<Self> {
         let (length, force) = (exponent(radius)? & !1, exponent(force)?);
         Some(Units {
@@ -62,13 +64,13 @@ impl Units {
         })
     }
 
-    /// Of velocities \[length / time\].
+    /// Unit of velocity \[length / time\].
     pub fn speed(&self) -> f64 {
         self.length / self.time
     }
 }
 
-/// The exponent of two in a number whose square has one too.
+/// Binary exponent of a number; none if its square could overflow or underflow.
 fn exponent(value: f64) -> Option<i32> {
     let exponent = ((value.abs().to_bits() >> 52) & 0x7ff) as i32 - 1023;
     (exponent.abs() < 500).then_some(exponent)
@@ -78,8 +80,8 @@ fn power_of_two(exponent: i32) -> f64 {
     2f64.powi(exponent)
 }
 
-/// Disks in single precision, beside an [`Assembly`] that keeps their base. Holds as long as its displacements are
-/// not changed by others; who does that calls [`Single::forget`].
+/// Disks in single precision, beside an [`Assembly`] that keeps their base. It is valid as long as only this type
+/// changes the displacements. A caller that changes them must call [`Single::forget`].
 #[derive(Debug, Clone)]
 pub struct Single<const D: usize> {
     units: Units,
@@ -89,12 +91,13 @@ pub struct Single<const D: usize> {
     /// Forces of the last evaluation, all disks \[`Units::force`\].
     pub forces: Vec<[f32; D]>,
     across: Across<f32, D>,
-    /// The list whose pairs are in `blocks`, as [`Assembly::listing_number`] has it; none if the base is not good any more.
+    /// The list whose pairs are in `blocks`, by [`Assembly::listing_number`]; none if the base is no longer valid.
     listing: Option<(usize, usize)>,
 }
 
 impl<const D: usize> Single<D> {
-    /// For the disks of an assembly; none for a law with sites, and for numbers near the ends of what double precision has.
+    /// Single-precision state for the disks of an assembly. None for a law with sites, or for numbers near the limits
+    /// of double precision.
     pub fn new<L: PairLaw>(assembly: &Assembly<D, L>) -> Option<Self> {
         if assembly.law().has_sites() {
             return None;
@@ -116,12 +119,13 @@ impl<const D: usize> Single<D> {
         self.units
     }
 
-    /// The displacements of the assembly are to be the base of the next step: they are settled, or were changed by others.
+    /// Marks the base as outdated. The next step takes the assembly's displacements as its base, because they were
+    /// settled or changed by others.
     pub fn forget(&mut self) {
         self.listing = None;
     }
 
-    /// Takes the forces of the assembly's last evaluation.
+    /// Copies the forces of the assembly's last evaluation.
     pub fn take_forces<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
         let unit = 1.0 / self.units.force;
         let pieces = self.forces.chunks_mut(PIECE).zip(assembly.forces.chunks(PIECE));
@@ -132,10 +136,10 @@ impl<const D: usize> Single<D> {
         });
     }
 
-    /// Puts the disks of the assembly where these are.
+    /// Writes the present positions into the assembly.
     pub fn settle<L: PairLaw>(&self, assembly: &mut Assembly<D, L>) {
         if self.listing.is_none_or(|(list, _)| list != assembly.listing_number().0) {
-            // Where another list was made the disks were settled, and may have other anchors since.
+            // Before a new list was built, the disks were settled. Their anchors may have changed since.
             return;
         }
         let places =
@@ -144,14 +148,14 @@ impl<const D: usize> Single<D> {
         parallel::each(places, |((to, base), offsets)| place(unit, (base, offsets), to));
     }
 
-    /// The same for these disks.
+    /// The same for some of the disks.
     fn settle_some<L: PairLaw>(&self, assembly: &mut Assembly<D, L>, disks: Range<usize>) {
         let from = (&self.base[disks.clone()], &self.offsets[disks.clone()]);
         place(self.units.length, from, &mut assembly.displacements[disks]);
     }
 
-    /// Makes the displacements of the assembly the base, if they are not and have to be, and rounds what its list has. Pairs that a long list
-    /// was amended by are rounded from the base there is.
+    /// Makes the assembly's displacements the base if the base is outdated, and rounds the pairs of the list. Pairs
+    /// inserted into a long list are rounded at the present base.
     fn prepare<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
         let (list, amendments) = assembly.listing_number();
         let known = self.listing.replace((list, amendments));
@@ -171,8 +175,8 @@ impl<const D: usize> Single<D> {
         self.blocks.round_all(pairs, &self.base, factors);
     }
 
-    /// Moves all mobile disks and evaluates the forces where they then are, as [`Assembly::advance`] does; `kick` gets (forces, velocities,
-    /// offsets) of some of them and returns a bound on how far it moved any \[length\].
+    /// Moves all mobile disks and evaluates the forces at their new positions, like [`Assembly::advance`]. `kick` takes
+    /// (forces, velocities, offsets) of some disks and returns a bound on their displacements \[length\].
     pub fn advance<L: PairLaw, P: Send>(
         &mut self,
         assembly: &mut Assembly<D, L>,
@@ -194,18 +198,18 @@ impl<const D: usize> Single<D> {
         let movers = Movers { velocities, displacements: &mut self.offsets, forces: &mut self.forces };
         let reach = Reach { limit, bounds, longest };
         let advanced = Advanced::of(advance(&kernel, pairs, (movers, &mut self.across), reach, kick, look));
-        if matches!(advanced, Advanced::Moved) || assembly.looks_next() {
-            // The assembly looks at its disks.
+        if matches!(advanced, Advanced::Moved) || assembly.checks_next() {
+            // The assembly checks its displacements.
             self.settle(assembly);
         } else {
-            for disks in assembly.disks_to_see() {
+            for disks in assembly.disks_to_check() {
                 self.settle_some(assembly, disks);
             }
         }
         advanced
     }
 
-    /// Forces where the disks are.
+    /// Evaluates the forces at the present positions.
     pub fn evaluate<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
         self.prepare(assembly);
         let pairs = assembly.pairs();
@@ -213,7 +217,7 @@ impl<const D: usize> Single<D> {
         let _ = all_tiles(&kernel, pairs, &self.offsets, &mut self.across, &mut self.forces);
     }
 
-    /// Moves all mobile disks by `kick` alone.
+    /// Moves all mobile disks by `kick`, without an evaluation of forces.
     pub fn kick<L: PairLaw, K>(
         &mut self,
         assembly: &Assembly<D, L>,
@@ -226,7 +230,7 @@ impl<const D: usize> Single<D> {
     }
 }
 
-/// Where disks at base + offset are.
+/// Positions of disks at base + offset.
 fn place<const D: usize>(unit: f64, (base, offsets): (&[Vector<D>], &[[f32; D]]), places: &mut [Vector<D>]) {
     let from = base.as_flattened().iter().zip(offsets.as_flattened());
     for (place, (base, offset)) in places.as_flattened_mut().iter_mut().zip(from) {
@@ -234,7 +238,8 @@ fn place<const D: usize>(unit: f64, (base, offsets): (&[Vector<D>], &[[f32; D]])
     }
 }
 
-/// The longest offset from where disks were listed, of those at base + offset, as they are settled.
+/// The largest displacement since the list was built, for disks at base + offset, with the rounding of settled
+/// positions.
 fn longest_offset<const D: usize>(
     unit: f64,
     (base, offsets): (&[Vector<D>], &[[f32; D]]),
@@ -250,7 +255,7 @@ fn longest_offset<const D: usize>(
     squares.fold(0.0, larger).sqrt()
 }
 
-/// The force of each pair of a block.
+/// Kernel for the force of each pair of a block.
 struct Pressed<'a, const D: usize, L> {
     law: &'a L,
     pairs: &'a PairList<D>,
@@ -299,7 +304,7 @@ struct Arithmetic<'a, const D: usize> {
     block: &'a SingleBlock<D>,
     columns: &'a mut Columns<D>,
     pair_count: usize,
-    /// Where a later block is asked to meanwhile, if the list is long.
+    /// Cache for the prefetch of a later block, if the list is long.
     prefetches: Option<Cache>,
 }
 
@@ -361,7 +366,7 @@ mod tests {
     use crate::law::power_laws::Hertzian;
     use crate::processor::Processor;
 
-    /// The forces of a block, with every width of vectors, prefetched or not.
+    /// Computes the forces of a block with every vector width, with and without prefetch.
     #[test]
     fn the_bits_of_a_block_do_not_depend_on_the_width_of_vectors() {
         let wave = |by: f32, from: f32, size: f32| -> [f32; BLOCK] {

@@ -1,4 +1,4 @@
-//! Sums of stiffness over the contacts of each disk, by the blocks and tiles of the hot loop.
+//! Sums of stiffness over the contacts of each disk, with the blocks and tiles of the hot loop.
 
 use crate::forces::block_arithmetic::{Anchors, Columns};
 use crate::law::kernel::{LawKernel, dispatch};
@@ -13,13 +13,13 @@ use crate::vector::{Vector, sum};
 /// Weight of a contact: a function of (pair, overlap, stiffness).
 pub type Weight<'a> = dyn Fn(usize, f64, f64) -> f64 + Sync + 'a;
 
-/// Sums over the contacts of each disk: of the stiffness, or of a weight.
+/// Sums over the contacts of each disk, of the stiffness or of a weight.
 ///
-/// The largest row sum bounds the largest eigenvalue of the stiffness matrix from above (Gershgorin): with masses 1,
-/// `λ ≤ max_i Σ_j 2 F'(δ_ij)`, the prestress part being negative. A contact with a held disk counts once.
+/// The largest row sum is an upper bound on the largest eigenvalue of the stiffness matrix (Gershgorin). With masses 1,
+/// `λ ≤ max_i Σ_j 2 F'(δ_ij)`, because the prestress part is negative. A contact with a held disk counts once.
 ///
 /// # Shape
-/// `row` has one entry a disk and is overwritten.
+/// `row` has one entry per disk and is overwritten.
 pub fn stiffness_rows<const D: usize, L: PairLaw>(
     law: &L,
     pairs: &PairList<D>,
@@ -50,8 +50,8 @@ struct Task<'a, const D: usize, L> {
 }
 
 impl<const D: usize, L: PairLaw> Task<'_, D, L> {
-    /// The rows of the disks of a tile, which begins with disk `offset`, from its own pairs; what the second disk of each pair
-    /// across its border is due is returned.
+    /// Sums the rows of the disks of a tile, which begins with disk `offset`, over the pairs of the tile. Returns the
+    /// terms for the second disks of its border pairs.
     fn of_tile(&self, tile: &Tile, offset: usize, row: &mut [f64]) -> Vec<f64> {
         let (pairs, mobile) = (self.pairs, self.mobile_count);
         row.fill(0.0);

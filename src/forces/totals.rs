@@ -1,4 +1,4 @@
-//! [`Totals`]: energy, virial and contact forces, summed block by block in the pass that finds the forces.
+//! [`Totals`]: energy, virial and contact forces, summed block by block in the pass that computes the forces.
 
 use crate::forces::block_arithmetic::Columns;
 use crate::law::kernel::LawKernel;
@@ -6,12 +6,12 @@ use crate::law::pair_law::PairLaw;
 use crate::neighbours::block::BLOCK;
 use crate::simd::lanes;
 
-/// What the loop sums beside the forces.
+/// The sums of the loop beside the forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Totals<const D: usize> {
-    /// Energy Σ u(δ), with that of the sites where the law has one \[energy\].
+    /// Energy Σ u(δ), plus the site energy if the law has sites \[energy\].
     pub energy: f64,
-    /// The part of it that sites have, −(Γ/2) Σ u²; 0 without them \[energy\].
+    /// Site energy, −(Γ/2) Σ u²; 0 without sites \[energy\].
     pub on_site_energy: f64,
     /// Virial tensor Σ F r_a r_b / |r| \[energy\]; its trace over D V is the pressure.
     pub virial: [[f64; D]; D],
@@ -37,12 +37,12 @@ impl<const D: usize> Totals<D> {
         }
     }
 
-    /// Mean contact force, 0 where there is no contact \[force\].
+    /// Mean contact force; 0 without contacts \[force\].
     pub fn mean_contact_force(&self) -> f64 {
         if self.contact_count == 0 { 0.0 } else { self.force_sum / self.contact_count as f64 }
     }
 
-    /// Contact energy plus the size of that of the sites: what the rounding of the energy is relative to \[energy\].
+    /// Contact energy plus the absolute site energy \[energy\]. The rounding of the energy is relative to it.
     pub fn energy_scale(&self) -> f64 {
         (self.energy - self.on_site_energy).abs() + self.on_site_energy.abs()
     }
@@ -78,7 +78,7 @@ fn tally<S: pulp::Simd, const D: usize, L: PairLaw>(
     totals: &mut Totals<D>,
 ) {
     let Columns { apart, overlap, force, inverse, .. } = columns;
-    // Each sum first term by term, as many as a column has places, then the terms that count.
+    // First all terms of a column are computed, then those of its pairs are summed.
     let mut terms = [0.0; BLOCK];
     for k in 0..BLOCK {
         terms[k] = law.energy(force[k], overlap[k]);

@@ -1,14 +1,14 @@
-//! Blocks of pairs: how many pairs, and where their rows begin.
+//! Blocks of pairs: the number of pairs, and where their rows begin.
 
 use std::ops::Range;
 
-/// Most pairs of a block; its columns stay in the nearest cache.
+/// Largest number of pairs in a block. The columns of one block stay in the first-level cache.
 pub const BLOCK: usize = 128;
 
-/// Most pairs of a row; a disk with more has several rows.
+/// Largest number of pairs in a row. A disk with more pairs has several rows.
 pub const LONGEST_ROW: usize = 8;
 
-/// Where the pairs and rows of a block begin, how many rows it has, and how many pairs each of them.
+/// Position of a block in the list: its first pair and first row, and the number and length of its rows.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Block {
     pub pairs: usize,
@@ -16,12 +16,13 @@ pub(crate) struct Block {
     pub rows: usize,
     pub row_count: usize,
     pub row_length: usize,
-    /// Disk from which rows and ends are counted: the first of the tile if all of them are in one, so that the loop subtracts nothing.
+    /// Disk from which rows and ends are counted. It is the first disk of the tile if all disks are in one tile, so the
+    /// loop subtracts nothing.
     pub origin: u32,
 }
 
 impl Block {
-    /// Its pairs.
+    /// The pairs of the block.
     pub fn pairs(&self) -> Range<usize> {
         self.pairs..self.pairs + self.pair_count
     }

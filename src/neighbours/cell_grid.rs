@@ -1,4 +1,4 @@
-//! Cells of a length, and which disks are in them.
+//! Cell grid: cells of equal size, and the disks in each.
 
 use std::ops::Range;
 
@@ -6,12 +6,12 @@ use crate::packing::Domain;
 use crate::parallel::{self, PIECE};
 use crate::vector::Vector;
 
-/// Cells no smaller than the range, and the disks in each, in ascending order.
+/// Cells no smaller than the range of the list, and the disks in each cell in ascending order.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct CellGrid {
-    /// Cells along each axis.
+    /// Number of cells along each axis.
     counts: Vec<usize>,
-    /// Where the first cell begins, and cells a length, along each axis.
+    /// Lower corner of the first cell, and number of cells per length, along each axis.
     corner: Vec<f64>,
     scale: Vec<f64>,
     pub cell_of: Vec<u32>,
@@ -19,7 +19,7 @@ pub(crate) struct CellGrid {
     pub members: Vec<u32>,
 }
 
-/// A run of cells along the first axis next to a cell, and the shift that brings its disks next to those of the cell.
+/// Neighbouring cells that are consecutive along the first axis, and the shift that maps their disks next to the cell.
 #[derive(Debug, Clone)]
 pub(crate) struct Run<const D: usize> {
     pub cells: Range<usize>,
@@ -27,13 +27,14 @@ pub(crate) struct Run<const D: usize> {
 }
 
 impl CellGrid {
-    /// Sorts the points into cells; whatever the grid held is overwritten, its room used again.
+    /// Sorts the points into cells. The previous content is overwritten; its memory is reused.
     pub fn fill<const D: usize>(&mut self, domain: &Domain<D>, points: &[Vector<D>], range: f64) {
         let (corner, lengths) = match domain {
             Domain::Periodic { corner, lengths } => (*corner, *lengths),
             Domain::Open => bounding_box(points),
         };
-        // No more cells than disks: an open plane with one disk far away must not ask for the memory of its box.
+        // The cell count is bounded by the disk count, so one distant disk in an open plane does not exhaust the
+        // memory.
         let most = libm::pow(points.len() as f64, 1.0 / D as f64).ceil().max(1.0);
         let counts: [usize; D] = std::array::from_fn(|d| (lengths[d] / range).floor().clamp(1.0, 4.0 * most) as usize);
         let cell_count: usize = counts.iter().product();
@@ -50,7 +51,7 @@ impl CellGrid {
                 *cell_of = cell_at(point, (corner, scale, counts)) as u32;
             }
         });
-        // Counted one cell further on, so that filling a cell moves its start to where it belongs.
+        // The counts are stored one cell further on. Filling a cell then moves its start to the right place.
         self.starts.clear();
         self.starts.resize(cell_count + 2, 0);
         for &cell in &self.cell_of {
@@ -74,15 +75,15 @@ impl CellGrid {
         cell_at(point, (corner, scale, std::array::from_fn(|d| self.counts[d])))
     }
 
-    /// The last of the disks of a cell.
+    /// The last disk of a cell.
     pub fn last_of(&self, cell: usize) -> Option<usize> {
         let (start, end) = (self.starts[cell] as usize, self.starts[cell + 1] as usize);
         self.members[start..end].last().map(|&disk| disk as usize)
     }
 
-    /// The cell and its neighbours as runs along the first axis, each cell once with each shift that can matter.
+    /// The cell and its neighbours as runs along the first axis. Each cell occurs once for each shift that can matter.
     pub fn neighbourhood<const D: usize>(&self, cell: usize, lengths: Option<Vector<D>>, runs: &mut Vec<Run<D>>) {
-        // Along each axis the cell before, the cell and the cell after: where they begin, and their shift.
+        // The cell before, the cell itself and the cell after along each axis: start index and shift.
         let mut sides = [[None; 3]; D];
         let (mut rest, mut stride) = (cell, 1);
         for d in 0..D {
@@ -103,9 +104,9 @@ impl CellGrid {
             let (mut neighbour, mut shift, mut inside) = (0, [0.0; D], true);
             for d in 0..D {
                 match sides[d][digits % 3] {
-                    Some((start, way)) => {
+                    Some((start, offset)) => {
                         neighbour += start;
-                        shift[d] = way;
+                        shift[d] = offset;
                     }
                     None => inside = false,
                 }
@@ -122,7 +123,7 @@ impl CellGrid {
     }
 }
 
-/// The cell of a point, or the nearest one.
+/// The cell of a point; for a point outside the grid, the nearest cell.
 #[inline(always)]
 fn cell_at<const D: usize>(point: Vector<D>, (corner, scale, counts): (Vector<D>, Vector<D>, [usize; D])) -> usize {
     let mut cell = 0;
@@ -142,6 +143,6 @@ fn bounding_box<const D: usize>(points: &[Vector<D>]) -> (Vector<D>, Vector<D>) 
             high[d] = high[d].max(point[d]);
         }
     }
-    // A box of no extent (one disk, or all on a line) still needs a side to divide by.
+    // A box without extent (one disk, or all disks on a line) still needs a positive side length.
     (low, std::array::from_fn(|d| (high[d] - low[d]).max(f64::MIN_POSITIVE)))
 }

@@ -1,4 +1,4 @@
-//! Lists of tiles put one after the other, and room for them.
+//! Concatenation of the pair lists of several tiles, and reservation of memory.
 
 use std::ops::Range;
 
@@ -8,9 +8,10 @@ use crate::neighbours::tiles::Tile;
 use crate::parallel;
 
 impl<const D: usize> PairList<D> {
-    /// Asks for room for so many tiles more, like those that are done: a column that grows by and by is copied again and again.
+    /// Reserves memory for `tiles` further tiles, estimated from the `done` tiles. Without it a growing column is
+    /// copied repeatedly.
     pub(crate) fn reserve(&mut self, tiles: usize, done: usize) {
-        // A sixteenth more, for tiles that have more.
+        // A reserve of 1/16, for tiles with more pairs than the others.
         let more = |count: usize| (count + count / 16) * tiles / done;
         let (pairs, rows, blocks) = (more(self.place_count()), more(self.rows.len()), more(self.blocks.len()));
         for column in [&mut self.first, &mut self.second, &mut self.ends] {
@@ -21,7 +22,7 @@ impl<const D: usize> PairList<D> {
         self.pair_blocks.reserve(blocks);
     }
 
-    /// Overwrites the list by lists of one tile each, one after the other.
+    /// Overwrites the list by the concatenation of lists of one tile each.
     pub(crate) fn concatenate(&mut self, parts: &[PairList<D>], tiles: &mut [Tile]) {
         self.rows.clear();
         self.blocks.clear();
@@ -51,7 +52,7 @@ impl<const D: usize> PairList<D> {
     }
 }
 
-/// Overwrites a column by that of every part, one after the other.
+/// Overwrites a column by the concatenated columns of all parts.
 fn concatenate_column<const D: usize, T: Copy + Default + Send + Sync>(
     column: &mut Vec<T>,
     parts: &[PairList<D>],
@@ -59,7 +60,8 @@ fn concatenate_column<const D: usize, T: Copy + Default + Send + Sync>(
 ) {
     let count = parts.iter().map(PairList::place_count).sum();
     if column.capacity() < count {
-        // Zeros come untouched from the system, so the threads that copy are the first to touch them; a quarter more, for the next list.
+        // The operating system supplies zero pages on first access, so each copying thread is the first to access its
+        // part. The reserve of a quarter is for the next list.
         *column = vec![T::default(); count + count / 4];
     }
     column.resize(count, T::default());

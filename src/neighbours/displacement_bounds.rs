@@ -1,41 +1,44 @@
-//! How far disks may have gone since they were listed: a bound for each portion of them.
+//! Displacement bounds: how far disks may have moved since the list was built, one bound for each portion of disks.
 //!
-//! Few disks are fast, so the bounds of most portions stay short, and a way itself is taken only of a portion whose bound does not do.
+//! Few disks are fast, so the bounds of most portions stay small. Exact displacements are computed only for portions
+//! whose bound exceeds the limit.
 
 use std::ops::Range;
 
 use crate::vector::larger;
 
-/// How far a disk may move after a list was built, over the width of the skin: half of it, less the rounding of the comparison.
-pub(crate) const LISTED: f64 = 0.4999;
+/// Displacement up to which a list is complete, over the width of the skin: one half, less the rounding of the
+/// comparison.
+pub(crate) const SKIN_FRACTION: f64 = 0.4999;
 
-/// Disks of a portion.
+/// Number of disks in a portion.
 pub(crate) const PORTION: usize = 1024;
 
-/// The way of a step over that of the one before, at most \[1\]: where it is longer a list is spent a step too early.
+/// Largest expected ratio of the displacement in a step to that in the step before \[1\]. If it is exceeded, the list
+/// expires one step too early.
 const STEP_GROWTH: f64 = 1.25;
 
-/// Bounds on how far the disks of a portion have gone \[length\].
+/// Bounds on the displacements of the disks of a portion \[length\].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Bound {
-    /// Since they were listed.
+    /// Since the list was built, or since the disk was updated.
     pub total: f64,
     /// In the last step.
     pub step: f64,
 }
 
-/// A bound for each portion of the mobile disks, tile by tile.
+/// One bound for each portion of the mobile disks, tile by tile.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct DisplacementBounds {
     pub portions: Vec<Bound>,
-    /// Portions of a tile.
+    /// Number of portions in a tile.
     pub of_tile: usize,
     mobile_count: usize,
     tile_size: usize,
 }
 
 impl DisplacementBounds {
-    /// None has moved.
+    /// Resets all bounds to zero.
     pub fn begin(&mut self, mobile_count: usize, tile_size: usize) {
         self.of_tile = tile_size.min(mobile_count).div_ceil(PORTION).max(1);
         (self.mobile_count, self.tile_size) = (mobile_count, tile_size);
@@ -51,26 +54,26 @@ impl DisplacementBounds {
         first..self.mobile_count.min(tile + self.tile_size).min(first + PORTION)
     }
 
-    /// No disk has moved by more than this in one step more \[length\].
+    /// Adds a step in which no disk moved by more than `step` \[length\].
     pub fn add(&mut self, step: f64) {
         self.portions.iter_mut().for_each(|bound| *bound = Bound { total: bound.total + step, step });
     }
 
-    /// The longest of them; NaN if one is.
+    /// The largest bound; NaN if any bound is NaN.
     pub fn longest(&self) -> f64 {
         self.portions.iter().fold(0.0, |longest, bound| larger(longest, bound.total))
     }
 
-    /// The portions whose bound may be longer than this after one step more.
-    pub fn nearly_spent(&self, limit: f64) -> impl Iterator<Item = usize> {
+    /// The portions whose bound may exceed the limit after one more step.
+    pub fn nearly_expired(&self, limit: f64) -> impl Iterator<Item = usize> {
         let portions = self.portions.iter().enumerate();
         portions.filter(move |(_, bound)| bound.total + STEP_GROWTH * bound.step > limit).map(|(portion, _)| portion)
     }
 }
 
-/// Whether a disk that went no farther has listed all it may touch; not for NaN.
-pub(crate) fn is_within(way: f64, limit: f64) -> bool {
-    way <= limit
+/// Whether a displacement is within the limit; false for NaN.
+pub(crate) fn is_within(displacement: f64, limit: f64) -> bool {
+    displacement <= limit
 }
 
 #[cfg(test)]
@@ -105,9 +108,9 @@ mod tests {
         bounds.begin(3000, 8192);
         bounds.portions =
             vec![Bound { total: 0.5, step: 0.2 }, Bound { total: 0.5, step: 0.1 }, Bound { total: 0.9, step: 0.0 }];
-        assert_eq!(bounds.nearly_spent(0.74).collect::<Vec<_>>(), [0, 2]);
-        assert_eq!(bounds.nearly_spent(0.95).count(), 0);
+        assert_eq!(bounds.nearly_expired(0.74).collect::<Vec<_>>(), [0, 2]);
+        assert_eq!(bounds.nearly_expired(0.95).count(), 0);
         bounds.portions[0].step = f64::NAN;
-        assert_eq!(bounds.nearly_spent(0.74).collect::<Vec<_>>(), [2], "that is not known");
+        assert_eq!(bounds.nearly_expired(0.74).collect::<Vec<_>>(), [2], "that is not known");
     }
 }

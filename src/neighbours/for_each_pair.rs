@@ -1,4 +1,4 @@
-//! Every pair of a list where its disks are, one after the other, for what is not worth a loop of its own over blocks.
+//! Iteration over every pair of a list at the present positions, for tasks that do not need a block loop of their own.
 
 use crate::neighbours::block::BLOCK;
 use crate::neighbours::pair_block::PairBlock;
@@ -7,24 +7,24 @@ use crate::neighbours::rows::gather;
 use crate::processor;
 use crate::vector::Vector;
 
-/// A listed pair where its disks are, by the formula of [`geometry`](crate::forces::elastic::geometry).
+/// A listed pair at the present positions, by the formula of [`geometry`](crate::forces::elastic::geometry).
 #[derive(Debug, Clone, Copy)]
 pub struct Walked<const D: usize> {
-    /// Its number.
+    /// Index of the pair.
     pub pair: usize,
-    /// Its disks.
+    /// The two disks.
     pub ends: (u32, u32),
     /// Separation, from the second disk to the first \[length\].
     pub apart: Vector<D>,
-    /// Its length \[length\].
+    /// Length of the separation \[length\].
     pub distance: f64,
-    /// Negative for a gap \[length\].
+    /// Overlap; negative for a gap \[length\].
     pub overlap: f64,
     /// Coefficient of the contact law \[force / length^(α−1)\].
     pub coefficient: f64,
 }
 
-/// Shows every listed pair to `look`, in the order of their numbers.
+/// Calls `look` for every listed pair, in the order of their indices.
 pub fn walk<const D: usize>(pairs: &PairList<D>, displacements: &[Vector<D>], look: &mut dyn FnMut(&Walked<D>)) {
     let mut moved = [[0.0; D]; BLOCK];
     let mut at = At { apart: [[0.0; BLOCK]; D], distance: [0.0; BLOCK], overlap: [0.0; BLOCK] };
@@ -45,7 +45,7 @@ pub fn walk<const D: usize>(pairs: &PairList<D>, displacements: &[Vector<D>], lo
     }
 }
 
-/// Where the pairs of a block are.
+/// Geometry of the pairs of a block at the present positions.
 struct At<const D: usize> {
     apart: [[f64; BLOCK]; D],
     distance: [f64; BLOCK],

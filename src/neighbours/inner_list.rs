@@ -1,17 +1,17 @@
-//! The near pairs of a list as a list of its own, and how near they are to be.
+//! Inner list: the nearest pairs of a Verlet list, stored as a second list with a narrower skin (dual pair list).
 //!
 //! ```text
-//! |r_ij| < R_i + R_j + s        time of a step ∼ 1 + a s/R + P/n,  n = s/(2 v) steps until some disk has gone s/2
+//! |r_ij| < R_i + R_j + s        time per step ∼ 1 + a s/R + P/n,  n = s/(2 v) steps until some disk has moved by s/2
 //! s = √(2 P v R/a)
 //! ```
 //!
-//! A list with a wide skin lasts long and holds many pairs apart. While disks move little (v a step, the fastest), those nearer
-//! than a narrow skin s are all that can touch: they are copied out, anchors and all, in a few evaluations' time, and the
-//! loop runs over them until a disk has moved by s/2. Then they are picked again, and the wide list is made anew only when
-//! it is spent itself.
+//! A list with a wide skin lasts long, but holds many pairs without contact. While disks move slowly, only the pairs
+//! within a narrow skin s can touch. v is the displacement of the fastest disk per step. These pairs are copied, with
+//! their geometry at the anchors, at the cost of a few force evaluations. The loop runs over them until a disk has
+//! moved by s/2; then they are selected again. The outer list is rebuilt only when it expires itself.
 //!
 //! # Source
-//! Pruned pair lists: Páll et al. (2020), J. Chem. Phys. 153, 134110, §IV.
+//! Dual pair list with dynamic pruning: Páll et al. (2020), J. Chem. Phys. 153, 134110, §IV.
 
 use crate::neighbours::block::{BLOCK, Block, LONGEST_ROW};
 use crate::neighbours::pair_block::PairBlock;
@@ -20,50 +20,52 @@ use crate::neighbours::rows::{gather, rows_of};
 use crate::processor;
 use crate::vector::Vector;
 
-/// Pairs that a skin of one radius adds, over those that touch: 8 in 100 for a tenth of a radius, 15 for a quarter \[1\].
-const PAIRS_A_RADIUS: f64 = 0.75;
+/// Relative number of pairs that a skin of one radius adds to those in contact \[1\]. A tenth of a radius adds 8 %, a
+/// quarter 15 %.
+const PAIRS_PER_RADIUS: f64 = 0.75;
 
-/// Time of picking near pairs over that of an evaluation of the loop \[1\].
-const PICKING: f64 = 4.0;
+/// Time to prune a list over the time of one force evaluation \[1\].
+const PRUNING_COST: f64 = 4.0;
 
-/// Time of making a list over that \[1\].
-const MAKING: f64 = 25.0;
+/// Time to build a list over the time of one force evaluation \[1\].
+const BUILD_COST: f64 = 25.0;
 
-/// Narrowest skin over the smallest radius: it adds 4 pairs in 1000, and rounding is far below it \[1\].
+/// Narrowest skin over the smallest radius \[1\]. It adds 0.4 % of pairs and is far above rounding.
 const NARROWEST: f64 = 1e-3;
 
-/// The skin of near pairs for which steps cost least when the fastest disk moves by `way` a step \[length\].
-pub(crate) fn best_skin(radius: f64, way: f64) -> f64 {
-    best_for(PICKING, radius, way).max(NARROWEST * radius)
+/// The inner skin with the lowest cost per step, if the fastest disk moves by `displacement` per step \[length\].
+pub(crate) fn best_inner_skin(radius: f64, displacement: f64) -> f64 {
+    best_for(PRUNING_COST, radius, displacement).max(NARROWEST * radius)
 }
 
-/// The same for the list of all pairs, when most disks move by `way` a step and it can be amended for the others \[length\].
-pub(crate) fn best_skin_of_all(radius: f64, way: f64) -> f64 {
-    best_for(MAKING, radius, way)
+/// The outer skin with the lowest cost per step, if most disks move by `displacement` per step. The list can be updated
+/// for the others \[length\].
+pub(crate) fn best_outer_skin(radius: f64, displacement: f64) -> f64 {
+    best_for(BUILD_COST, radius, displacement)
 }
 
-fn best_for(cost: f64, radius: f64, way: f64) -> f64 {
-    (2.0 * cost / PAIRS_A_RADIUS * way * radius).sqrt()
+fn best_for(cost: f64, radius: f64, displacement: f64) -> f64 {
+    (2.0 * cost / PAIRS_PER_RADIUS * displacement * radius).sqrt()
 }
 
 impl<const D: usize> PairList<D> {
-    /// Empties the list and fills it with the pairs of another one whose disks are nearer than reach + `skin`.
+    /// Overwrites the list by the pairs of another one closer than R_i + R_j + `skin`.
     pub(crate) fn prune(&mut self, whole: &PairList<D>, displacements: &[Vector<D>], skin: f64) {
         self.first_count = whole.first_count;
-        self.keeps_places = whole.keeps_places;
+        self.reserves_blocks = whole.reserves_blocks;
         self.fill_tiles(whole.tiles.len(), whole.tile_size, |list, place, tile| {
             let blocks = &whole.tiles[place];
             list.add_blocks(
                 (tile, place * whole.tile_size),
                 &mut Pruned { whole, displacements, skin },
-                |list, arranger, near| near.line_up(&whole.blocks[blocks.inner.clone()], list, arranger),
-                |list, arranger, near| near.line_up(&whole.blocks[blocks.border.clone()], list, arranger),
+                |list, arranger, near| near.select_pairs(&whole.blocks[blocks.inner.clone()], list, arranger),
+                |list, arranger, near| near.select_pairs(&whole.blocks[blocks.border.clone()], list, arranger),
             );
         });
     }
 }
 
-/// Near pairs of `whole`, numbered as there.
+/// Pruning of the list `whole`; pairs keep their indices.
 struct Pruned<'a, const D: usize> {
     whole: &'a PairList<D>,
     displacements: &'a [Vector<D>],
@@ -71,8 +73,8 @@ struct Pruned<'a, const D: usize> {
 }
 
 impl<const D: usize> Pruned<'_, D> {
-    /// Puts the near pairs of blocks in line, row by row.
-    fn line_up(&mut self, blocks: &[Block], list: &mut PairList<D>, arranger: &mut Arranger<D>) {
+    /// Adds the pairs of these blocks within the skin to the arranger, row by row.
+    fn select_pairs(&mut self, blocks: &[Block], list: &mut PairList<D>, arranger: &mut Arranger<D>) {
         let mut moved = [[0.0; D]; BLOCK];
         let mut excess = [0.0; BLOCK];
         for block in blocks {
@@ -83,12 +85,12 @@ impl<const D: usize> Pruned<'_, D> {
             processor::dispatch(Excess { listed, skin: self.skin, moved: &moved, excess });
             let mut pair = first_pair as u32;
             for (&row, excess) in rows_of(self.whole, block).iter().zip(excess.chunks_exact(block.row_length)) {
-                // Which are near cannot be guessed: they are picked without a branch. NaN counts as near.
+                // The outcome is unpredictable, so pairs are selected without a branch. NaN counts as near.
                 let (mut near, mut near_count) = ([0; LONGEST_ROW], 0);
                 for &excess in excess {
                     near[near_count % LONGEST_ROW] = pair;
-                    let far = excess > 0.0;
-                    near_count += usize::from(!far);
+                    let outside = excess > 0.0;
+                    near_count += usize::from(!outside);
                     pair += 1;
                 }
                 let begin = arranger.group.pairs.len();
@@ -104,9 +106,9 @@ impl<const D: usize> Source<D> for Pruned<'_, D> {
         self.whole.second[pair as usize]
     }
 
-    fn measure(&mut self, _first: &[u32], pairs: &[u32], measured: &mut PairBlock<D>) {
+    fn measure(&mut self, _first: &[u32], pairs: &[u32], pair_block: &mut PairBlock<D>) {
         for (place, &pair) in pairs.iter().enumerate() {
-            measured.copy(place, (&self.whole.pair_blocks[pair as usize / BLOCK], pair as usize % BLOCK));
+            pair_block.copy(place, (&self.whole.pair_blocks[pair as usize / BLOCK], pair as usize % BLOCK));
         }
     }
 }
@@ -135,7 +137,7 @@ impl<const D: usize> pulp::WithSimd for Excess<'_, D> {
                 let apart = separation[d][k] + moved[k][d];
                 squared += apart * apart;
             }
-            // R_i + R_j = |D| + δ⁰, to rounding: far less than a skin can spare.
+            // R_i + R_j = |D| + δ⁰ up to rounding, which is far below the tolerance of a skin.
             let range = distance[k] + overlap[k] + skin;
             self.excess[k] = squared - range * range;
         }
@@ -150,18 +152,19 @@ mod tests {
     use crate::law::power_laws::Hertzian;
     use crate::vector::{difference, norm};
 
-    /// Every disk goes its own way, `way` long, for so many steps; after each, energy, contacts and forces are those of a list
-    /// made on the spot. The shares of steps with near pairs and with a list of all pairs made anew.
-    fn walk(assembly: &mut Assembly<2, Hertzian>, way: f64, steps: usize) -> (f64, f64) {
+    /// Moves every disk by `displacement` per step, each in its own direction. Every tenth step compares energy,
+    /// contacts and forces with those of a rebuilt list. Returns the fraction of steps with the inner list and the
+    /// fraction with a rebuild of the outer list.
+    fn move_disks(assembly: &mut Assembly<2, Hertzian>, displacement: f64, steps: usize) -> (f64, f64) {
         let mobile = assembly.mobile_count();
         let (mut near, made) = (0, assembly.rebuild_count());
         for step in 0..steps {
             for disk in 0..mobile {
                 let angle = (disk * (step / 40 + 1)) as f64;
-                assembly.displacements[disk][0] += way * angle.cos();
-                assembly.displacements[disk][1] += way * angle.sin();
+                assembly.displacements[disk][0] += displacement * angle.cos();
+                assembly.displacements[disk][1] += displacement * angle.sin();
             }
-            assembly.keep_listed(way).expect("no coincidence");
+            assembly.keep_listed(displacement).expect("no coincidence");
             near += usize::from(assembly.inner_list_is_used());
             let found = assembly.evaluate_totals();
             let forces = assembly.forces.clone();
@@ -170,10 +173,10 @@ mod tests {
                 other.reanchor().expect("no coincidence");
                 let expected = other.evaluate_totals();
                 assert_eq!(found.contact_count, expected.contact_count, "step {step}");
-                // Sums of some 2200 terms in another order.
+                // Sums of some 2200 terms in different orders.
                 assert!((found.energy - expected.energy).abs() < 1e-12 * expected.energy, "step {step}");
                 for (one, two) in forces.iter().zip(&other.forces) {
-                    // Forces up to 10⁴ of overlaps known to 10⁻¹⁶ of a radius, stiffness 10⁵.
+                    // Forces up to 10⁴ from overlaps known to 10⁻¹⁶ of a radius, stiffness 10⁵.
                     assert!(norm(difference(*one, *two)) < 1e-9, "step {step}: {one:?} {two:?}");
                 }
             }
@@ -188,23 +191,23 @@ mod tests {
         let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("no coincidence");
         assembly.prune_lists(true);
         let radius = 0.5;
-        let (near, made) = walk(&mut assembly, 1e-4 * radius, 400);
+        let (near, made) = move_disks(&mut assembly, 1e-4 * radius, 400);
         assert!(near > 0.9 && made == 0.0, "slowly: {near} {made}");
         assert!(assembly.pairs().len() * 10 < assembly.all_pairs().len() * 9, "a tenth of the pairs and more left out");
-        let (near, made) = walk(&mut assembly, 2e-2 * radius, 200);
+        let (near, made) = move_disks(&mut assembly, 2e-2 * radius, 200);
         assert!(near < 0.5 && made > 0.02, "fast: {near} {made}");
-        let (near, _) = walk(&mut assembly, 1e-4 * radius, 400);
+        let (near, _) = move_disks(&mut assembly, 1e-4 * radius, 400);
         assert!(near > 0.7, "slowly again: {near}");
         assembly.prune_lists(false);
-        let (near, _) = walk(&mut assembly, 1e-2 * radius, 100);
+        let (near, _) = move_disks(&mut assembly, 1e-2 * radius, 100);
         assert!(near < 0.3, "not any more: {near}");
     }
 
     #[test]
     fn the_best_skin_is_where_a_step_costs_least() {
-        let cost = |skin: f64| PAIRS_A_RADIUS * skin / 0.5 + PICKING * 2.0 * 1e-4 / skin;
-        let best = best_skin(0.5, 1e-4);
+        let cost = |skin: f64| PAIRS_PER_RADIUS * skin / 0.5 + PRUNING_COST * 2.0 * 1e-4 / skin;
+        let best = best_inner_skin(0.5, 1e-4);
         assert!(cost(best) < cost(0.9 * best) && cost(best) < cost(1.1 * best));
-        assert_eq!(best_skin(0.5, 0.0), 0.5 * NARROWEST, "disks at rest");
+        assert_eq!(best_inner_skin(0.5, 0.0), 0.5 * NARROWEST, "disks at rest");
     }
 }

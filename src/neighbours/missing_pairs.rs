@@ -6,19 +6,21 @@ use crate::neighbours::pair_list::PairList;
 use crate::neighbours::verlet_list::{Anchored, Disks, ListRoom};
 use crate::vector::{Vector, difference, dot, sum};
 
-/// A pair that is nearer than the range of a list by this share of the skin is in it, whatever the rounding of coordinates \[1\].
-const UNSURE: f64 = 1e-3;
+/// Margin of the search over the skin \[1\]. A pair closer than the range by this margin is certainly in the list,
+/// despite rounding.
+const ROUNDING_MARGIN: f64 = 1e-3;
 
 impl<const D: usize> ListRoom<D> {
-    /// Takes note that these disks are listed anew where they are. False if they would be more than so many.
-    pub(crate) fn note_updated(&mut self, disks: &Disks<'_, D>, far: &FastDisks, most: usize) -> bool {
+    /// Records that these disks have been updated to their present positions. Returns false if more than `most` disks
+    /// would be recorded.
+    pub(crate) fn note_updated(&mut self, disks: &Disks<'_, D>, fast: &FastDisks, most: usize) -> bool {
         let UpdatedDisks { of_cells, disks: updated } = &mut self.updated;
-        let others = far.disks().iter().filter(|&disk| !updated.contains(disk)).count();
+        let others = fast.disks().iter().filter(|&disk| !updated.contains(disk)).count();
         if updated.len() + others > most {
             return false;
         }
-        updated.extend(far.disks());
-        for &disk in far.disks() {
+        updated.extend(fast.disks());
+        for &disk in fast.disks() {
             let cell = self.grid.cell_at(disks.domain.wrapped(disks.centre(disk as usize)));
             let of_cell = of_cells.entry(cell).or_default();
             if !of_cell.contains(&disk) {
@@ -29,28 +31,28 @@ impl<const D: usize> ListRoom<D> {
     }
 }
 
-/// Adds the pairs that a list lacks once some disks are listed where they are. Nothing is done, and false returned, where there are
-/// not places enough.
+/// Inserts the pairs that a list is missing after some fast disks have been updated to their present positions. Returns
+/// false, without any change, if the reserved blocks have too little space.
 ///
 /// # Shape
-/// The list is complete for where each disk was `listed`, from its anchor, or is the near pairs of such a list, with a skin of their own;
-/// `far` are those to be listed anew. Disks that were listed anew in the list of all pairs before, and those that are now, are in `room`.
+/// The list is complete for disks at anchor + `listed`, or is an inner list with a skin of its own. `fast` are the
+/// disks to update. `room` holds all disks updated in the outer list, including those of this call.
 pub(crate) fn insert_missing_pairs<const D: usize>(
     disks: &Disks<'_, D>,
     (listed, skin): (&[Vector<D>], f64),
-    far: &FastDisks,
+    fast: &FastDisks,
     coefficient: impl Fn(f64, f64) -> f64 + Sync,
     room: &mut ListRoom<D>,
     pairs: &mut PairList<D>,
 ) -> bool {
     let lengths = disks.domain.lengths();
     let before = |disk: u32| sum(disks.anchors[disk as usize], listed[disk as usize]);
-    let now = |disk: u32| if far.contains(disk) { disks.centre(disk as usize) } else { before(disk) };
+    let now = |disk: u32| if fast.contains(disk) { disks.centre(disk as usize) } else { before(disk) };
     let apart = |a, b| {
         let mut apart: Vector<D> = difference(a, b);
         if let Some(lengths) = lengths {
             for d in 0..D {
-                // Most are near as they are.
+                // Most pairs need no periodic image.
                 if 2.0 * apart[d].abs() > lengths[d] {
                     apart[d] -= (apart[d] / lengths[d]).round_ties_even() * lengths[d];
                 }
@@ -58,9 +60,9 @@ pub(crate) fn insert_missing_pairs<const D: usize>(
         }
         dot(apart, apart)
     };
-    let ListRoom { grid, updated, asked, .. } = room;
+    let ListRoom { grid, updated, queried, .. } = room;
     let (mut missing, mut runs) = (Vec::new(), Vec::new());
-    for &disk in far.disks() {
+    for &disk in fast.disks() {
         let (there, here) = (before(disk), disks.centre(disk as usize));
         let reach = disks.radii[disk as usize] + skin;
         let mut offer = |other: u32| {
@@ -69,13 +71,13 @@ pub(crate) fn insert_missing_pairs<const D: usize>(
             if disk == other || apart(here, now(other)) >= range * range || first as usize >= disks.mobile_count {
                 return;
             }
-            // Those that were near before are listed; where rounding might decide that is looked up.
-            let surely = range - UNSURE * skin;
+            // Pairs that were near before are in the list. Pairs within the rounding margin are looked up below.
+            let surely = range - ROUNDING_MARGIN * skin;
             if apart(there, before(other)) >= surely * surely {
                 missing.push((first, second));
             }
         };
-        // Others are in the cells they were in; those that were listed anew are in others as well.
+        // Other disks are in their cells of the last build; updated disks are also in the cells of their updates.
         grid.neighbourhood(grid.cell_at(disks.domain.wrapped(here)), lengths, &mut runs);
         for Run { cells, .. } in &runs {
             let (start, end) = (grid.starts[cells.start] as usize, grid.starts[cells.end] as usize);
@@ -85,9 +87,9 @@ pub(crate) fn insert_missing_pairs<const D: usize>(
     }
     missing.sort_unstable();
     missing.dedup();
-    asked.set(missing.iter().map(|&(first, _)| first).collect(), disks.radii.len());
-    let mut had = pairs.pairs_of(asked);
+    queried.set(missing.iter().map(|&(first, _)| first).collect(), disks.radii.len());
+    let mut had = pairs.pairs_of(queried);
     had.sort_unstable();
     missing.retain(|pair| had.binary_search(pair).is_err());
-    pairs.amend(&missing, &mut Anchored::new(disks, &coefficient))
+    pairs.insert_pairs(&missing, &mut Anchored::new(disks, &coefficient))
 }

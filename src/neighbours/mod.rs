@@ -1,7 +1,8 @@
-//! Which pairs may touch: a grid of cells, a Verlet list with a skin, and how its pairs are stored for the loop over contacts.
+//! Pairs of disks that may touch: cell grid, Verlet list with a skin, and the storage of its pairs for the loop over
+//! contacts.
 //!
-//! Start from [`PairList`], the list, and [`verlet_list`], which builds it. An inner list has the near pairs of a list; pairs of a few fast
-//! disks are inserted without building it again.
+//! Start from [`PairList`], the list, and [`verlet_list`], which builds it. An inner list holds the nearest pairs of a
+//! Verlet list. Pairs of a few fast disks are inserted without a rebuild.
 
 pub mod block;
 pub(crate) mod cell_grid;

@@ -1,15 +1,16 @@
-//! The pairs that may touch, laid out for the hot loop: columns, cut into rows, blocks and tiles.
+//! Neighbour list, laid out for the hot loop: columns, divided into rows, blocks and tiles.
 //!
 //! ```text
-//! row    the pairs of one first disk, at most LONGEST_ROW of them
-//! block  at most BLOCK pairs: rows of one length
-//! tile   a fixed number of disks in working order; first the blocks within it, then those across its border
+//! row    pairs with the same first disk, at most LONGEST_ROW
+//! block  at most BLOCK pairs, in rows of equal length
+//! tile   a fixed number of disks in working order; blocks within it first, then the blocks across its border
 //! ```
 //!
-//! Rows are sorted by length over groups of up to GROUP pairs, so the loop over the rows of a block has a fixed number of schedule: the
-//! first disk is read and written once a row, and no branch is guessed wrong. A tile writes forces on its own disks only; what pairs across its
-//! border do to the disks of other tiles is kept apart and added afterwards, tile by tile. So tiles can be
-//! worked on side by side, and the order of every sum is that of one thread.
+//! Rows are sorted by length within groups of up to GROUP pairs. So all rows of a block have equal length, and the
+//! inner loop has a constant trip count. The first disk is read and written once per row, and no branch is
+//! mispredicted. A tile writes forces only on its own disks. Forces of border pairs on disks of other tiles are stored
+//! separately and added afterwards, tile by tile. So tiles can be processed in parallel, and every sum has the order of
+//! one thread.
 
 use std::ops::Range;
 
@@ -22,23 +23,26 @@ use crate::parallel;
 use crate::simd::prefetch::Cache;
 use crate::vector::Vector;
 
-/// Most pairs of a group: few blocks are not full, and its disks stay in the second cache.
+/// Largest number of pairs in a group: few blocks are partly filled, and the disks of a group stay in the second-level
+/// cache.
 const GROUP: usize = 8192;
 
-/// Fewest disks of a tile: packings of up to so many have no border.
+/// Fewest disks of a tile. Packings of up to this size have no border.
 const LEAST_TILE: usize = 8192;
 
-/// Layers of disks in a tile of a large packing: few pairs cross its border, and there is a tile for each of many threads.
+/// Layers of disks in a tile of a large packing. Few pairs cross its border, and there are enough tiles for many
+/// threads.
 const fn layers(dimension: usize) -> usize {
     if dimension == 2 { 32 } else { 16 }
 }
 
-/// Pairs that may touch. A pair bears the number of its place: block after block has [`BLOCK`] of them, the last of which may be vacant.
+/// Pairs that may touch. The index of a pair is its place: each block has [`BLOCK`] places, of which the last may be
+/// vacant.
 #[derive(Debug, Clone, Default)]
 pub struct PairList<const D: usize> {
-    /// First disk of each pair; the first of all in a vacant place.
+    /// First disk of each pair; disk 0 in a vacant place.
     pub first: Vec<u32>,
-    /// Second disk of each pair; the first of all in a vacant place.
+    /// Second disk of each pair; disk 0 in a vacant place.
     pub second: Vec<u32>,
     /// The pairs of each block at their anchors.
     pub(crate) pair_blocks: Vec<PairBlock<D>>,
@@ -47,49 +51,49 @@ pub struct PairList<const D: usize> {
     pub(crate) ends: Vec<u32>,
     pub(crate) blocks: Vec<Block>,
     pub(crate) tiles: Vec<Tile>,
-    /// Disks of a tile.
+    /// Number of disks in a tile.
     pub(crate) tile_size: usize,
-    /// Disks from this one on are never first: they do not move.
+    /// Number of disks that can be first in a pair; later disks are held.
     pub(crate) first_count: usize,
-    /// Whether tiles have places for pairs to come.
-    pub(crate) keeps_places: bool,
-    /// What one thread does with the tiles in a step.
+    /// Whether tiles reserve blocks for inserted pairs.
+    pub(crate) reserves_blocks: bool,
+    /// The order in which one thread processes the tiles in a step.
     pub(crate) schedule: TileSchedule,
     arranger: Box<Arranger<D>>,
-    /// Tiles made side by side, until they are put one after the other.
+    /// Lists of single tiles built in parallel, before they are concatenated.
     parts: Vec<PairList<D>>,
 }
 
-/// Where pairs come from, each under a number of its own.
+/// A source of pairs, each identified by an index of its own.
 pub(crate) trait Source<const D: usize> {
     /// Second disk of a pair.
     fn second(&self, pair: u32) -> u32;
 
-    /// Measures the pairs of a block; columns beyond them are not used.
-    fn measure(&mut self, first: &[u32], pairs: &[u32], measured: &mut PairBlock<D>);
+    /// Computes the geometry of the pairs of a block; places beyond them are not used.
+    fn measure(&mut self, first: &[u32], pairs: &[u32], pair_block: &mut PairBlock<D>);
 }
 
-/// What finds the pairs of a tile, disk by disk.
+/// Search for the pairs of a tile, disk by disk.
 pub(crate) trait Search<const D: usize>: Source<D> {
-    /// Adds the pairs of a first disk.
+    /// Appends the pairs of a first disk.
     fn find(&mut self, first: usize, pairs: &mut Vec<u32>);
 }
 
-/// Rows waiting for the end of their group or of their tile.
+/// Rows that are not stored yet, until their group or tile is complete.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Arranger<const D: usize> {
     pub group: Waiting,
     border: Waiting,
-    /// Room for the rows of the group that is being closed, and for its block.
+    /// Work space for the rows of the group that is closed, and for its block.
     by_length: Vec<Row>,
-    measured: PairBlock<D>,
-    /// Origin of the blocks that are made.
+    pair_block: PairBlock<D>,
+    /// Origin of the next blocks.
     origin: u32,
 }
 
 impl<const D: usize> Arranger<D> {
-    /// Of the pairs of a first disk, which wait from `begin` on, sets those apart whose second disk is in another tile.
-    fn set_border_apart(&mut self, first: u32, begin: usize, inside: impl Fn(u32) -> bool) {
+    /// Separates, from the pairs of a first disk at `begin` and after, those whose second disk is in another tile.
+    fn separate_border_pairs(&mut self, first: u32, begin: usize, inside: impl Fn(u32) -> bool) {
         let Arranger { group: Waiting { pairs, .. }, border, .. } = self;
         if pairs[begin..].iter().all(|&pair| inside(pair)) {
             return;
@@ -108,18 +112,18 @@ impl<const D: usize> Arranger<D> {
     }
 }
 
-/// A row that waits.
+/// A row that is not stored yet.
 #[derive(Debug, Clone, Copy, Default)]
 struct Row {
     first: u32,
-    /// Where its pairs wait.
+    /// Index of its first pair among the waiting pairs.
     begin: usize,
     length: usize,
 }
 
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Waiting {
-    /// As their source numbers them.
+    /// Indices of the pairs in their source.
     pub pairs: Vec<u32>,
     rows: Vec<Row>,
 }
@@ -132,7 +136,7 @@ impl Waiting {
 }
 
 impl<const D: usize> PairList<D> {
-    /// Number of places; a column with one entry a pair is as long.
+    /// Number of places, which is the length of a column with one entry per place.
     pub fn place_count(&self) -> usize {
         self.first.len()
     }
@@ -142,12 +146,12 @@ impl<const D: usize> PairList<D> {
         self.blocks.iter().map(|block| block.pair_count).sum()
     }
 
-    /// Whether there is no pair.
+    /// Whether the list has no pair.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// What the loop reads of a pair, its second disk included \[bytes\].
+    /// Memory that the loop reads per pair, including its second disk \[bytes\].
     pub fn pair_size(&self) -> usize {
         size_of::<PairBlock<D>>() / BLOCK + size_of::<u32>()
     }
@@ -164,7 +168,7 @@ impl<const D: usize> PairList<D> {
         self.pair_blocks[pair / BLOCK].distance[pair % BLOCK]
     }
 
-    /// Overlap at the anchors, R_i + R_j − |D|, rounded once only; negative for a pair apart \[length\].
+    /// Overlap at the anchors, R_i + R_j − |D|, with a single rounding; negative for a gap \[length\].
     #[inline(always)]
     pub fn overlap(&self, pair: usize) -> f64 {
         self.pair_blocks[pair / BLOCK].overlap[pair % BLOCK]
@@ -176,42 +180,43 @@ impl<const D: usize> PairList<D> {
         self.pair_blocks[pair / BLOCK].coefficient[pair % BLOCK]
     }
 
-    /// The places that have a pair.
+    /// The places that hold a pair.
     pub fn numbers(&self) -> impl Iterator<Item = usize> + use<'_, D> {
         self.blocks.iter().flat_map(Block::pairs)
     }
 
-    /// Whether it has several tiles: then it is far from the processor, and read once a step.
+    /// Whether the list has several tiles. Such a list exceeds the cache and is read from memory once per step.
     #[inline(always)]
     pub(crate) fn is_long(&self) -> bool {
         self.tiles.len() > 1
     }
 
-    /// Where a later block is asked to while one is worked on, if the list is long.
+    /// The cache into which a later block is prefetched, if the list is long.
     #[inline(always)]
     pub(crate) fn prefetches(&self) -> Option<Cache> {
         self.is_long().then(Cache::here)
     }
 
-    /// Empties the list and fills it with what `search`, made anew for each tile, finds: each pair is named by one of its disks only.
-    /// Disks from `first_count` on are never first. A list that `keeps_places` may be amended.
+    /// Overwrites the list by the pairs that a search finds; `search` makes a new one for each tile. Each pair is found
+    /// from one of its disks only. Disks from `first_count` on are never first. With `reserves_blocks`, pairs can be
+    /// inserted later.
     ///
     /// # Errors
     /// Two disks with the same centre.
     pub(crate) fn fill<S: Search<D>>(
         &mut self,
         (disk_count, first_count): (usize, usize),
-        keeps_places: bool,
+        reserves_blocks: bool,
         search: impl Fn() -> S + Sync,
     ) -> Result<(), PackingError> {
         self.first_count = first_count;
-        self.keeps_places = keeps_places;
+        self.reserves_blocks = reserves_blocks;
         let tile_size = Self::tile_size(disk_count);
         let disks = |place: usize| place * tile_size..disk_count.min((place + 1) * tile_size);
         self.fill_tiles(disk_count.div_ceil(tile_size), tile_size, |list, place, tile| {
             list.add_tile(disks(place), first_count, search(), tile);
         });
-        // The first two in the order of the disks, wherever they lie in the list.
+        // The first coincident pair in the order of the disks, independent of the storage order.
         let blocks = self.pair_blocks.iter().enumerate();
         let coincident = blocks.flat_map(|(block, pairs)| pairs.coincident().map(move |place| BLOCK * block + place));
         if let Some((first, second)) = coincident.map(|pair| (self.first[pair], self.second[pair])).min() {
@@ -220,18 +225,18 @@ impl<const D: usize> PairList<D> {
         Ok(())
     }
 
-    /// Whether lists of so many disks are long.
+    /// Whether a list of so many disks has several tiles.
     pub(crate) fn are_long(disk_count: usize) -> bool {
         disk_count > Self::tile_size(disk_count)
     }
 
-    /// Disks of a tile of a list of so many.
+    /// Number of disks in a tile of a list of so many disks.
     fn tile_size(disk_count: usize) -> usize {
         let layer = libm::pow(disk_count as f64, 1.0 - 1.0 / D as f64);
         LEAST_TILE.max(layers(D) * layer as usize)
     }
 
-    /// Empties the list and fills it tile by tile, perhaps side by side: `add` adds the blocks of one to a list.
+    /// Overwrites the list tile by tile, in parallel where possible. `add` appends the blocks of one tile to a list.
     pub(crate) fn fill_tiles(
         &mut self,
         tile_count: usize,
@@ -246,7 +251,7 @@ impl<const D: usize> PairList<D> {
             parts.resize(tiles.len(), PairList::default());
             parallel::each(tiles.iter_mut().zip(&mut parts).enumerate(), |(place, (tile, part))| {
                 part.clear();
-                part.keeps_places = self.keeps_places;
+                part.reserves_blocks = self.reserves_blocks;
                 add(part, place, tile);
             });
             self.concatenate(&parts, &mut tiles);
@@ -262,8 +267,8 @@ impl<const D: usize> PairList<D> {
         self.connect();
     }
 
-    /// Adds the blocks of a tile, which begins with disk `origin`: what `inner` puts in line within it, then what `border` puts in
-    /// line across its border.
+    /// Appends the blocks of a tile, whose first disk is `origin`. `inner` supplies the pairs within the tile, `border`
+    /// the pairs across its border.
     pub(crate) fn add_blocks<S: Source<D>>(
         &mut self,
         (tile, origin): (&mut Tile, usize),
@@ -276,22 +281,22 @@ impl<const D: usize> PairList<D> {
         arranger.origin = origin as u32;
         inner(self, &mut arranger, source);
         self.close_group(&mut arranger, source);
-        if self.keeps_places {
-            self.add_inner_places(arranger.origin);
+        if self.reserves_blocks {
+            self.reserve_inner_blocks(arranger.origin);
         }
         let (middle, border_pairs) = (self.blocks.len(), self.place_count());
         arranger.origin = 0;
         border(self, &mut arranger, source);
         self.close_group(&mut arranger, source);
-        if self.keeps_places {
-            self.add_border_places();
+        if self.reserves_blocks {
+            self.reserve_border_blocks();
         }
         (tile.inner, tile.border) = (begin..middle, middle..self.blocks.len());
         tile.border_pairs = border_pairs..self.place_count();
         self.arranger = arranger;
     }
 
-    /// Adds the blocks of the next tile.
+    /// Appends the blocks of the next tile.
     fn add_tile<S: Search<D>>(&mut self, disks: Range<usize>, first_count: usize, mut search: S, tile: &mut Tile) {
         let firsts = disks.start..disks.end.min(first_count);
         let inner = |list: &mut Self, arranger: &mut Arranger<D>, search: &mut S| {
@@ -299,7 +304,7 @@ impl<const D: usize> PairList<D> {
                 let begin = arranger.group.pairs.len();
                 search.find(first, &mut arranger.group.pairs);
                 let inside = |pair: u32| disks.contains(&(search.second(pair) as usize));
-                arranger.set_border_apart(first as u32, begin, inside);
+                arranger.separate_border_pairs(first as u32, begin, inside);
                 list.add_rows(first as u32, begin, arranger, search);
             }
         };
@@ -327,7 +332,8 @@ impl<const D: usize> PairList<D> {
         self.arranger.border.clear();
     }
 
-    /// Makes rows of the pairs of a first disk, which wait from `begin` on; a group that has no place for one is closed before it.
+    /// Makes rows from the pairs of a first disk, at `begin` and after. A group without space for a further row is
+    /// closed first.
     pub(crate) fn add_rows(
         &mut self,
         first: u32,
@@ -347,9 +353,9 @@ impl<const D: usize> PairList<D> {
         }
     }
 
-    /// Writes the rows that wait as blocks, the short ones first; pairs that are not in a row yet go on waiting.
+    /// Stores the waiting rows as blocks, short rows first. Pairs that are not in a row yet stay waiting.
     fn close_group(&mut self, arranger: &mut Arranger<D>, source: &mut impl Source<D>) {
-        let Arranger { group: Waiting { pairs, rows }, by_length, measured, origin, .. } = arranger;
+        let Arranger { group: Waiting { pairs, rows }, by_length, pair_block, origin, .. } = arranger;
         let Some(&Row { begin, length, .. }) = rows.last() else { return };
         sort_by_length(rows, by_length);
         let mut rest = by_length.as_slice();
@@ -357,19 +363,19 @@ impl<const D: usize> PairList<D> {
             let length = rest[0].length;
             let fits = |row: &&Row| row.length == length;
             let (block, later) = rest.split_at(rest.iter().take(BLOCK / length).take_while(fits).count());
-            self.add_block((block, *origin), pairs, measured, source);
+            self.add_block((block, *origin), pairs, pair_block, source);
             rest = later;
         }
         rows.clear();
         pairs.drain(..begin + length);
     }
 
-    /// Writes rows of one length as a block.
+    /// Stores rows of equal length as a block.
     fn add_block(
         &mut self,
         (rows, origin): (&[Row], u32),
         waiting: &[u32],
-        measured: &mut PairBlock<D>,
+        pair_block: &mut PairBlock<D>,
         source: &mut impl Source<D>,
     ) {
         let row_length = rows[0].length;
@@ -382,23 +388,23 @@ impl<const D: usize> PairList<D> {
         let mut pair = 0;
         for (row, &Row { first: disk, begin, length }) in of_rows.iter_mut().zip(rows) {
             *row = disk - origin;
-            // Three pairs in the mean: a copy by a call takes longer.
+            // A row has three pairs on average, so a loop is faster than a call to copy.
             for place in 0..length {
                 first[pair + place] = disk;
                 second[pair + place] = waiting[begin + place];
             }
             pair += length;
         }
-        source.measure(first, second, measured);
-        measured.vacate(count);
+        source.measure(first, second, pair_block);
+        pair_block.vacate(count);
         for (pair, end) in second.iter_mut().zip(&mut self.ends[begin..]) {
             *pair = source.second(*pair);
             *end = *pair - origin;
         }
-        self.pair_blocks.push(measured.clone());
+        self.pair_blocks.push(pair_block.clone());
     }
 
-    /// Begins a block, all of whose places are vacant; what they have at the anchors is still to be added.
+    /// Begins a block with vacant places only. The caller appends its geometry.
     pub(crate) fn begin_block(&mut self, block: Block) {
         let pairs = self.first.len();
         self.blocks.push(Block { pairs, rows: self.rows.len(), ..block });
@@ -408,7 +414,7 @@ impl<const D: usize> PairList<D> {
     }
 }
 
-/// Rows in the order of their lengths, those of one length as they were.
+/// Stable sort of the rows by length.
 fn sort_by_length(rows: &[Row], sorted: &mut Vec<Row>) {
     let mut places = [0; LONGEST_ROW + 1];
     for row in rows {

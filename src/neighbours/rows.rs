@@ -1,6 +1,7 @@
-//! Rows of pairs of one length: relative displacements are gathered and forces scattered with a fixed number of schedule a row.
+//! Rows of pairs of equal length: relative displacements are gathered and forces scattered with a constant trip count
+//! per row.
 //!
-//! Both know no vectors; a row reads and writes its first disk once.
+//! Neither uses vector instructions. A row reads and writes its first disk once.
 
 use crate::neighbours::block::{BLOCK, Block, LONGEST_ROW};
 use crate::neighbours::pair_list::PairList;
@@ -18,7 +19,7 @@ fn ends_of<'a, const D: usize>(pairs: &'a PairList<D>, block: &Block) -> &'a [u3
     &pairs.ends[block.pairs..block.pairs + block.pair_count]
 }
 
-/// Calls a function of the length of the rows of a block, as a constant.
+/// Calls a function with the row length of a block as a constant.
 macro_rules! with_length {
     ($block:expr, $call:ident($($argument:expr),*)) => {
         match $block.row_length {
@@ -34,10 +35,11 @@ macro_rules! with_length {
     };
 }
 
-/// How far ahead rows and second disks are asked for \[blocks\].
+/// Distance of the prefetch of rows and second disks \[blocks\].
 const AHEAD: usize = 2;
 
-/// Asks for the rows and second disks of a later block, if the list is long: gathering waits for them otherwise.
+/// Prefetches the rows and second disks of a later block, if the list is long; otherwise gathering would wait for
+/// memory.
 #[inline(always)]
 pub(crate) fn prefetch_rows<const D: usize>(pairs: &PairList<D>, block: &Block) {
     if let Some(cache) = pairs.prefetches() {
@@ -46,7 +48,7 @@ pub(crate) fn prefetch_rows<const D: usize>(pairs: &PairList<D>, block: &Block) 
     }
 }
 
-/// Relative displacements of the pairs of a block; the array begins with disk `begin`.
+/// Gathers the relative displacements of the pairs of a block; the array begins with disk `begin`.
 pub(crate) fn gather<T: Number, const D: usize>(
     moved: &mut [[T; D]; BLOCK],
     pairs: &PairList<D>,
@@ -64,7 +66,7 @@ fn gather_rows<T: Number, const D: usize, const LENGTH: usize>(
     (rows, ends): (&[u32], &[u32]),
     displacements: &[[T; D]],
 ) {
-    // Columns of one length and a plain index: of chained iterators some stay calls.
+    // Equal lengths and a plain index, so that the compiler inlines the loop; chained iterators are not always inlined.
     let count = rows.len();
     let moved = &mut moved.as_chunks_mut::<LENGTH>().0[..count];
     let ends = &ends.as_chunks::<LENGTH>().0[..count];
@@ -76,7 +78,8 @@ fn gather_rows<T: Number, const D: usize, const LENGTH: usize>(
     }
 }
 
-/// Adds the force of each pair of a block to its first disk and takes it from the second; the array begins with disk `begin`.
+/// Adds the force of each pair of a block to its first disk and subtracts it from the second; the array begins with
+/// disk `begin`.
 pub(crate) fn scatter<T: Number, const D: usize>(
     pull: &[[T; D]; BLOCK],
     pairs: &PairList<D>,
@@ -86,7 +89,8 @@ pub(crate) fn scatter<T: Number, const D: usize>(
     scatter_with(pull, pairs, block, forces, difference);
 }
 
-/// Adds what each pair of a block has to its first disk, and to the second what `on_second` makes of (there, of the pair).
+/// Adds the value of each pair of a block to its first disk. The second disk gets `on_second`(its value, value of the
+/// pair).
 #[inline(always)]
 pub(crate) fn scatter_with<T: Number, const D: usize, const N: usize>(
     of_pairs: &[[T; N]; BLOCK],

@@ -1,4 +1,4 @@
-//! The pairs of a list in single precision, at a base near the disks.
+//! Single-precision blocks: the pairs of a list at a base near the present positions.
 
 use pulp::Simd;
 
@@ -11,14 +11,14 @@ use crate::processor;
 use crate::simd::prefetch::Cache;
 use crate::vector::Vector;
 
-/// Blocks of pairs rounded by one thread at a time.
+/// Number of blocks that one thread rounds at a time.
 const PORTION: usize = 64;
 
 /// Blocks of pairs in single precision.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SingleBlocks<const D: usize>(Vec<SingleBlock<D>>);
 
-/// A block; a place without a pair is written by none, and read in vain.
+/// A single-precision block. A vacant place is read, but never written to a disk.
 #[derive(Debug, Clone)]
 #[repr(align(64))]
 pub(crate) struct SingleBlock<const D: usize> {
@@ -28,7 +28,7 @@ pub(crate) struct SingleBlock<const D: usize> {
     pub coefficient: [f32; BLOCK],
 }
 
-/// Factors on lengths and on coefficients.
+/// Factors applied to lengths and to coefficients.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Factors {
     pub length: f64,
@@ -36,7 +36,8 @@ pub(crate) struct Factors {
 }
 
 impl<const D: usize> SingleBlock<D> {
-    /// Prefetches the columns of the block as many further on, from this place on; coefficients if all are not the same.
+    /// Prefetches the columns of the block that lies `blocks` ahead, from this place on; coefficients only if they
+    /// differ.
     #[inline(always)]
     pub fn prefetch(&self, cache: Cache, blocks: usize, first: usize, coefficients: bool) {
         let next = blocks * size_of::<SingleBlock<D>>() / size_of::<f32>() + first;
@@ -52,20 +53,20 @@ impl<const D: usize> SingleBlock<D> {
 }
 
 impl<const D: usize> SingleBlocks<D> {
-    /// A block.
+    /// A block by its index.
     #[inline(always)]
     pub fn block(&self, block: usize) -> &SingleBlock<D> {
         &self.0[block]
     }
 
-    /// Rounds all pairs of a list where displacements are `base`.
+    /// Rounds all pairs of a list at the displacements `base`.
     pub fn round_all(&mut self, pairs: &PairList<D>, base: &[Vector<D>], factors: Factors) {
         let task = Task { pairs, base, factors };
         self.0.resize(pairs.blocks.len(), SingleBlock::default());
         in_portions(&mut self.0, |block, rounded| task.round(block, rounded));
     }
 
-    /// Rounds the pairs of some blocks anew.
+    /// Rounds the pairs of some blocks again.
     pub fn round_again(
         &mut self,
         blocks: impl Iterator<Item = usize>,
@@ -78,7 +79,7 @@ impl<const D: usize> SingleBlocks<D> {
     }
 }
 
-/// Overwrites each block by what is made of its number, perhaps side by side.
+/// Overwrites each block by the result of `make` for its index, in parallel where possible.
 fn in_portions<T: Send>(blocks: &mut [T], make: impl Fn(usize, &mut T) + Send + Sync) {
     parallel::each(blocks.chunks_mut(PORTION).enumerate(), |(portion, blocks)| {
         for (place, block) in blocks.iter_mut().enumerate() {
@@ -98,7 +99,7 @@ impl<const D: usize> Default for SingleBlock<D> {
     }
 }
 
-/// What blocks are rounded from.
+/// Data from which blocks are rounded.
 struct Task<'a, const D: usize> {
     pairs: &'a PairList<D>,
     base: &'a [Vector<D>],
@@ -116,7 +117,8 @@ impl<const D: usize> Task<'_, D> {
     }
 }
 
-/// Pairs of a block where the disks are, by the formula of [`geometry`](crate::forces::elastic::geometry), rounded.
+/// Pairs of a block at the present positions, by the formula of [`geometry`](crate::forces::elastic::geometry), rounded
+/// to single precision.
 struct Round<'a, const D: usize> {
     listed: &'a PairBlock<D>,
     count: usize,

@@ -1,18 +1,18 @@
-//! Some pairs of a list as a list of its own, under other numbers.
+//! Subset of the pairs of a list, stored as a list with other disk numbers.
 
 use crate::neighbours::block::BLOCK;
 use crate::neighbours::pair_block::PairBlock;
 use crate::neighbours::pair_list::{PairList, Search, Source};
 
 impl<const D: usize> PairList<D> {
-    /// Empties the list and fills it with pairs of another one under other numbers.
+    /// Overwrites the list by a subset of the pairs of another list, with other disk numbers.
     ///
     /// # Shape
-    /// `starts` has one entry a disk and one more: where its pairs begin in `seconds`, which has the second disk of each with the
-    /// place of the pair in `whole`.
+    /// `starts` has one entry per disk and one more: where its pairs begin in `seconds`. Each entry of `seconds` is the
+    /// second disk of a pair and the place of the pair in `whole`.
     pub(crate) fn select(&mut self, whole: &PairList<D>, starts: &[u32], seconds: &[(u32, u32)]) {
         let disk_count = starts.len() - 1;
-        // No two centres are the same in `whole`.
+        // `whole` has no coincident centres.
         let _ = self.fill((disk_count, disk_count), false, || Selected { whole, starts, seconds });
     }
 }
@@ -31,15 +31,15 @@ impl<const D: usize> Search<D> for Selected<'_, D> {
 }
 
 impl<const D: usize> Source<D> for Selected<'_, D> {
-    /// A pair bears the number of its place in `seconds`.
+    /// The index of a pair is its place in `seconds`.
     fn second(&self, pair: u32) -> u32 {
         self.seconds[pair as usize].0
     }
 
-    fn measure(&mut self, _first: &[u32], pairs: &[u32], measured: &mut PairBlock<D>) {
+    fn measure(&mut self, _first: &[u32], pairs: &[u32], pair_block: &mut PairBlock<D>) {
         for (place, &pair) in pairs.iter().enumerate() {
             let there = self.seconds[pair as usize].1 as usize;
-            measured.copy(place, (&self.whole.pair_blocks[there / BLOCK], there % BLOCK));
+            pair_block.copy(place, (&self.whole.pair_blocks[there / BLOCK], there % BLOCK));
         }
     }
 }
@@ -58,7 +58,8 @@ mod tests {
     #[test]
     fn every_other_pair_under_numbers_from_the_end_pulls_as_it_did() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz");
-        // Sums of forces of up to 10⁴ in other orders; of up to 10⁵, and overlaps at the anchors known to some ulp of a radius.
+        // Sums of forces of up to 10⁴, and of up to 10⁵, in different orders. Overlaps at the anchors are known to a
+        // few units in the last place of a radius.
         check(&read_packing::<2>(file).expect("a stored packing"), 1e-10);
         check(&random_points::<2>(20_000, &Mixture::default(), 0.9, 5).expect("possible"), 1e-8);
     }
@@ -67,7 +68,7 @@ mod tests {
         let law = Hertzian::default();
         let assembly = Assembly::new(packing, law).expect("no coincidence");
         let (whole, count) = (assembly.pairs(), assembly.len());
-        // Every second pair from `begin` on, its disks under these numbers.
+        // Every second pair from `begin` on, with disk numbers mapped by `number`.
         let selected = |begin: usize, number: &dyn Fn(u32) -> u32| {
             let pair = |pair: usize| (number(whole.first[pair]), number(whole.second[pair]), pair as u32);
             let mut found: Vec<(u32, u32, u32)> = whole.numbers().skip(begin).step_by(2).map(pair).collect();
@@ -81,7 +82,7 @@ mod tests {
         };
         let half = selected(0, &|disk| count as u32 - 1 - disk);
         assert_eq!(half.len(), whole.len().div_ceil(2));
-        // What the others pull by is what is missing.
+        // The remaining pairs give the rest of the forces.
         let rest = selected(1, &|disk| disk);
         let of = |pairs: &PairList<2>| {
             let mut pulls = vec![[0.0; 2]; count];
@@ -96,7 +97,7 @@ mod tests {
             largest = largest.max(norm(rest[disk]));
         }
         assert!(largest > 10.0, "{largest}");
-        // Of a packed list, the pairs of its first disks alone are a list that is not.
+        // The pairs of the first disks of a long list make a list with one tile.
         let mut few = PairList::default();
         let numbered = |pair: usize| (whole.first[pair], whole.second[pair], pair as u32);
         let mut found: Vec<(u32, u32, u32)> = whole.numbers().map(numbered).filter(|pair| pair.1 < 500).collect();

@@ -1,19 +1,20 @@
-//! The order in which one thread takes up tiles in a step: what lies at a border is done while both sides are still in a cache.
+//! Tile schedule: the order in which one thread processes the tiles in a step. A border is processed while both sides
+//! are still in cache.
 
 use crate::neighbours::tiles::Tile;
 
-/// What is done with a tile once in a step.
+/// Stage of the work on a tile in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Stage {
-    /// It moves, and the pairs within it are summed.
+    /// The disks of the tile move, and the forces of pairs within it are summed.
     Inside,
-    /// Its pairs across the border are summed: both sides have moved.
+    /// Forces of pairs across the border are summed; both sides have moved.
     Border,
-    /// Forces from other tiles are added: all of them are known.
+    /// Forces from other tiles are added; all of them have been computed.
     Margins,
 }
 
-/// One stage of one tile, when so many tiles have moved.
+/// One stage of one tile, and the last tile that must have moved before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Step {
     last_moved: u32,
@@ -21,12 +22,13 @@ struct Step {
     place: u32,
 }
 
-/// Every stage of every tile, in an order in which each finds what it needs; of a single tile the first stage alone.
+/// Every stage of every tile, ordered by their dependencies; for a single tile only the first stage.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TileSchedule(Vec<Step>);
 
 impl TileSchedule {
-    /// The schedule of these tiles. `moving` tells in which tile the second disk of a pair is, if it moves.
+    /// Computes the schedule of these tiles. `moving` returns the tile of the second disk of a pair, if that disk is
+    /// mobile.
     pub fn take(&mut self, tiles: &[Tile], moving: impl Fn(usize) -> Option<usize>) {
         let TileSchedule(schedule) = self;
         let places = 0..tiles.len() as u32;
@@ -47,9 +49,9 @@ impl TileSchedule {
         schedule.sort_unstable();
     }
 
-    /// Stages and places of the tiles, one after the other.
+    /// Stage and tile index, one after the other.
     pub fn iter(&self) -> impl Iterator<Item = (Stage, usize)> {
-        self.0.iter().map(|turn| (turn.stage, turn.place as usize))
+        self.0.iter().map(|step| (step.stage, step.place as usize))
     }
 }
 
@@ -57,7 +59,8 @@ impl TileSchedule {
 mod tests {
     use super::*;
 
-    /// A ring of tiles, each with pairs to the next, the last one of disks that do not move; pairs of tile t are 10 t to 10 t + 9.
+    /// A ring of tiles, each with pairs to the next one; the last tile has held disks only. Tile t has the pairs 10 t
+    /// to 10 t + 9.
     fn ring(count: usize) -> Vec<Tile> {
         let tile = |place: usize| {
             let before = (place + count - 1) % count;
@@ -77,7 +80,7 @@ mod tests {
         let order: Vec<_> = schedule.iter().collect();
         assert_eq!(order.len(), 3 * count);
         let at =
-            |stage, place| order.iter().position(|&turn| turn == (stage, place)).expect("every stage of every tile");
+            |stage, place| order.iter().position(|&step| step == (stage, place)).expect("every stage of every tile");
         for place in 0..count {
             assert!(at(Stage::Inside, place) < at(Stage::Border, place));
             assert!(at(Stage::Border, place) < at(Stage::Margins, place));

@@ -1,29 +1,29 @@
-//! Tiles of a pair list, and what lies between them.
+//! Tiles of a pair list, and the pairs between them.
 
 use std::ops::Range;
 
 use crate::neighbours::block::Block;
 use crate::parallel;
 
-/// A tile: its blocks, and what comes to its disks from others.
+/// A tile: its blocks, and the border pairs of other tiles that act on its disks.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Tile {
     /// Blocks of pairs within the tile.
     pub inner: Range<usize>,
     /// Blocks of pairs whose second disk is in another tile.
     pub border: Range<usize>,
-    /// Pairs of `border`.
+    /// Places of the pairs in `border`.
     pub border_pairs: Range<usize>,
-    /// Disks of the tile, counted from its first one, that no pair across its border touches: the longest run of them.
+    /// Longest run of disks that no pair across the border touches, counted from the first disk of the tile.
     pub interior: Range<usize>,
-    /// Disk of this tile, the tile that has the pair, and the pair's place among the border pairs there.
+    /// Disk of this tile, tile that stores the pair, and index of the pair among the border pairs there.
     pub incoming: Vec<(u32, u32, u32)>,
 }
 
-/// Finds what comes to each tile from others, and what lies inside of it.
+/// Finds, for each tile, the border pairs of other tiles that act on it, and its interior.
 ///
 /// # Shape
-/// `blocks`, `first` and `second` are those of the list; tiles know their own.
+/// `blocks`, `first` and `second` are those of the list; tiles hold their own ranges.
 pub(crate) fn connect(tiles: &mut [Tile], tile_size: usize, blocks: &[Block], (first, second): (&[u32], &[u32])) {
     tiles.iter_mut().for_each(|tile| tile.incoming.clear());
     for tile in 0..tiles.len() {

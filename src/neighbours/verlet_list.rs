@@ -1,8 +1,8 @@
-//! Which pairs may touch: a cell grid, a list with a skin, and when the list must be made anew.
+//! Verlet list: a list of all pairs within a skin, built with a cell grid.
 //!
-//! The list holds every pair closer than `R_i + R_j + skin`, held–held pairs left out. It stays complete until some
-//! disk has moved by half the skin. Each pair carries its separation at the anchors, so the box and its images are
-//! looked at only while the list is built.
+//! The list holds every pair closer than `R_i + R_j + skin`, except pairs of two held disks. It stays complete until
+//! some disk has moved by half the skin. Each pair stores its separation at the anchors, so the periodic box matters
+//! only during the build.
 
 use crate::neighbours::block::BLOCK;
 use crate::neighbours::cell_grid::{CellGrid, Run};
@@ -15,41 +15,41 @@ use crate::parallel::{self, PIECE};
 use crate::processor;
 use crate::vector::{Vector, difference, dot, extended_norm, extended_sum, sum, two_sum};
 
-/// The disks as the list builder sees them: mobile ones first, then the held ones.
+/// The disks as seen by the list builder: mobile disks first, then held disks.
 pub struct Disks<'a, const D: usize> {
     /// The domain.
     pub domain: &'a Domain<D>,
-    /// Positions, rounded to one number a coordinate \[length\].
+    /// Positions, one double-precision number per coordinate \[length\].
     pub anchors: &'a [Vector<D>],
     /// Centre minus position \[length\].
     pub displacements: &'a [Vector<D>],
     /// Radii \[length\].
     pub radii: &'a [f64],
-    /// How many of them, from the front, are mobile.
+    /// Number of mobile disks; they come first.
     pub mobile_count: usize,
 }
 
 impl<const D: usize> Disks<'_, D> {
-    /// Where a disk is, rounded \[length\].
+    /// Rounded position of a disk \[length\].
     pub(crate) fn centre(&self, disk: usize) -> Vector<D> {
         sum(self.anchors[disk], self.displacements[disk])
     }
 }
 
-/// Room for making a list, kept between two: only the first one asks for memory.
+/// Work space for building a list. It is reused, so only the first build allocates memory.
 #[derive(Debug, Clone, Default)]
 pub struct ListRoom<const D: usize> {
     pub(crate) grid: CellGrid,
     points: Vec<Vector<D>>,
-    /// Centres and radii in the order of the cells, so that the disks of a run lie side by side.
+    /// Centres and radii in the order of the cells, so the disks of a run are contiguous in memory.
     sorted: Vec<(Vector<D>, f64)>,
-    /// Disks that were listed anew since.
+    /// Disks updated since the last build.
     pub(crate) updated: UpdatedDisks,
-    /// First disks of pairs that are looked up.
-    pub(crate) asked: FastDisks,
+    /// First disks of the pairs that are looked up.
+    pub(crate) queried: FastDisks,
 }
 
-/// Order of the disks cell by cell in rows, mobile ones before held ones: neighbours in space are neighbours in memory.
+/// Order of the disks cell by cell, mobile disks before held ones. Neighbours in space are neighbours in memory.
 pub fn spatial_order<const D: usize>(
     domain: &Domain<D>,
     points: &[Vector<D>],
@@ -63,10 +63,10 @@ pub fn spatial_order<const D: usize>(
     [mobile, held].concat()
 }
 
-/// Makes the list: every pair closer than reach + `skin`, ordered by the first disk.
+/// Builds the list: every pair closer than R_i + R_j + `skin`, ordered by the first disk.
 ///
 /// # Errors
-/// A box too small for one image a pair, or two disks with the same centre.
+/// A box too small for the minimum-image convention, or two disks with the same centre.
 ///
 /// # Cost
 /// Linear in the number of disks; about 25 steps of FIRE.
@@ -80,7 +80,7 @@ pub fn build_pairs<const D: usize>(
     let largest = disks.radii.iter().copied().fold(0.0, f64::max);
     let lengths = disks.domain.lengths();
     if let Some(lengths) = lengths {
-        // Two images of one disk are a side apart, so both can lie within the range only below this side.
+        // Two images of a disk are one side apart. Both can be in range only if the side is shorter than this.
         if let Some(axis) = lengths.iter().position(|&length| length < 4.0 * largest) {
             return Err(PackingError::BoxTooSmall { axis, length: lengths[axis], range: 2.0 * largest });
         }
@@ -103,8 +103,8 @@ pub fn build_pairs<const D: usize>(
     });
     let (grid, points, sorted) = (&*grid, &*points, &*sorted);
     let nearby = Nearby { disks, skin, lengths, grid, points, sorted };
-    let (counts, keeps_places) = ((points.len(), disks.mobile_count), PairList::<D>::keeps_places(points.len()));
-    pairs.fill(counts, keeps_places, || TileSearch {
+    let (counts, reserves_blocks) = ((points.len(), disks.mobile_count), PairList::<D>::reserves_blocks(points.len()));
+    pairs.fill(counts, reserves_blocks, || TileSearch {
         nearby,
         cell: usize::MAX,
         runs: Vec::new(),
@@ -112,7 +112,7 @@ pub fn build_pairs<const D: usize>(
     })
 }
 
-/// What every tile is searched in.
+/// Data shared by the searches of all tiles.
 #[derive(Clone, Copy)]
 struct Nearby<'a, const D: usize> {
     disks: &'a Disks<'a, D>,
@@ -123,7 +123,7 @@ struct Nearby<'a, const D: usize> {
     sorted: &'a [(Vector<D>, f64)],
 }
 
-/// The search of one tile: the cell of the last disk looked at, and the cells around it.
+/// Search of one tile, with the cell of the last disk searched and the cells around it.
 struct TileSearch<'a, const D: usize, C> {
     nearby: Nearby<'a, D>,
     cell: usize,
@@ -131,7 +131,7 @@ struct TileSearch<'a, const D: usize, C> {
     anchored: Anchored<'a, D, C>,
 }
 
-/// Pairs of disks as they are at their anchors.
+/// Pairs of disks at their anchors.
 pub(crate) struct Anchored<'a, const D: usize, C> {
     disks: &'a Disks<'a, D>,
     coefficient: &'a C,
@@ -157,21 +157,23 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Search<D> for TileSearch<'_, D, C> 
         for run in &self.runs {
             let from: Vector<D> = difference(point, run.shift);
             let mut cells = run.cells.clone();
-            // The disks of a cell are in ascending order: a cell with none after the first disk has no second one.
+            // Disks of a cell are in ascending order. A cell whose last disk is not after the first disk has no second
+            // disk.
             while cells.start < cells.end && grid.last_of(cells.start).is_none_or(|last| last <= first) {
                 cells.start += 1;
             }
             let (start, end) = (grid.starts[cells.start] as usize, grid.starts[cells.end] as usize);
-            // Which of the disks of a run are near cannot be guessed: they are picked without a branch.
+            // The outcome is unpredictable, so pairs are selected without a branch.
             let mut count = seconds.len();
             seconds.resize(count + end - start, 0);
             for (&second, &(other, other_radius)) in grid.members[start..end].iter().zip(&sorted[start..end]) {
                 let range = radius + other_radius + skin;
                 let apart = difference(from, other);
                 seconds[count] = second;
-                // Rounding of the coordinates moves this edge by far less than the skin can spare. NaN counts as near.
-                let far = dot(apart, apart) >= range * range;
-                count += usize::from((second as usize > first) & !far);
+                // Rounding of the coordinates moves this limit by far less than the tolerance of the skin. NaN counts
+                // as near.
+                let outside = dot(apart, apart) >= range * range;
+                count += usize::from((second as usize > first) & !outside);
             }
             seconds.truncate(count);
         }
@@ -183,18 +185,18 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for TileSearch<'_, D, C> 
         self.anchored.second(pair)
     }
 
-    fn measure(&mut self, first: &[u32], second: &[u32], measured: &mut PairBlock<D>) {
-        self.anchored.measure(first, second, measured);
+    fn measure(&mut self, first: &[u32], second: &[u32], pair_block: &mut PairBlock<D>) {
+        self.anchored.measure(first, second, pair_block);
     }
 }
 
 impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for Anchored<'_, D, C> {
-    /// A pair of a disk bears the number of the other one.
+    /// The index of a pair of a given first disk is its second disk.
     fn second(&self, pair: u32) -> u32 {
         pair
     }
 
-    fn measure(&mut self, first: &[u32], second: &[u32], measured: &mut PairBlock<D>) {
+    fn measure(&mut self, first: &[u32], second: &[u32], pair_block: &mut PairBlock<D>) {
         let Anchored { disks, coefficient, ends } = self;
         let lengths = disks.domain.lengths();
         for (place, (&first, &second)) in first.iter().zip(second).enumerate() {
@@ -202,24 +204,25 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for Anchored<'_, D, C> {
             ends.anchors[place] = (disks.anchors[first], disks.anchors[second]);
             ends.radii[place] = (disks.radii[first], disks.radii[second]);
         }
-        processor::dispatch(Measure { ends, lengths, coefficient, measured });
+        processor::dispatch(Measure { ends, lengths, coefficient, pair_block });
     }
 }
 
-/// Anchors and radii of both disks of the pairs of a block; as long as one whatever it holds, so that no pair is left over for
-/// a loop without vectors.
+/// Anchors and radii of both disks of the pairs of a block. The length is always BLOCK, so the vectorised loop has no
+/// remainder.
 struct Ends<const D: usize> {
     anchors: [(Vector<D>, Vector<D>); BLOCK],
     radii: [(f64, f64); BLOCK],
 }
 
-/// Separations, distances and overlaps of a block to full accuracy, some eighty operations a pair, in vectors.
+/// Computes separations, distances and overlaps of a block to full accuracy with vector instructions, some eighty
+/// operations per pair.
 struct Measure<'a, const D: usize, C> {
     ends: &'a Ends<D>,
-    /// Sides of a periodic box.
+    /// Sides of the periodic box.
     lengths: Option<Vector<D>>,
     coefficient: &'a C,
-    measured: &'a mut PairBlock<D>,
+    pair_block: &'a mut PairBlock<D>,
 }
 
 impl<const D: usize, C: Fn(f64, f64) -> f64> pulp::WithSimd for Measure<'_, D, C> {
@@ -227,8 +230,8 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> pulp::WithSimd for Measure<'_, D, C
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        let Measure { ends: Ends { anchors, radii }, lengths, coefficient, measured } = self;
-        let PairBlock { separation, distance, overlap, coefficient: coefficients } = measured;
+        let Measure { ends: Ends { anchors, radii }, lengths, coefficient, pair_block } = self;
+        let PairBlock { separation, distance, overlap, coefficient: coefficients } = pair_block;
         for k in 0..BLOCK {
             coefficients[k] = coefficient(radii[k].0, radii[k].1);
         }
@@ -239,10 +242,11 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> pulp::WithSimd for Measure<'_, D, C
             }
         }
         if let Some(lengths) = lengths {
-            // Displacements within half a box keep the image; the caller re-anchors at every rebuild, so they are tiny here.
+            // Displacements within half a box keep the image. The caller moves the anchors at every rebuild, so
+            // displacements are small here.
             for k in 0..BLOCK {
                 for d in 0..D {
-                    // The image is nowhere near halfway: pairs are closer than half a side.
+                    // The image is unambiguous: pairs are closer than half a side.
                     let shift = -(separation[d][k] / lengths[d]).round_ties_even() * lengths[d];
                     (separation[d][k], rest[d][k]) = extended_sum((separation[d][k], rest[d][k]), shift);
                 }

@@ -1,4 +1,4 @@
-//! Vectors of D components that lie one after the other in memory, into columns of components and back.
+//! Conversion between D-component vectors stored consecutively and columns of components.
 
 use std::slice::{from_mut, from_ref};
 
@@ -7,7 +7,7 @@ use pulp::Simd;
 use pulp::bytemuck::cast;
 use pulp::bytemuck::{cast_slice, cast_slice_mut};
 
-/// Components of as many vectors of D components as there are lanes, from the D of the machine's vectors they fill.
+/// Splits consecutive D-component vectors, stored in D machine vectors, into one machine vector per component.
 #[inline(always)]
 pub fn split<S: Simd, const D: usize>(simd: S, together: &[S::f64s]) -> [S::f64s; D] {
     let mut apart = [simd.splat_f64s(0.0); D];
@@ -27,7 +27,7 @@ pub fn split<S: Simd, const D: usize>(simd: S, together: &[S::f64s]) -> [S::f64s
     apart
 }
 
-/// The way back of [`split`].
+/// Inverse of [`split`].
 #[inline(always)]
 pub fn join<S: Simd, const D: usize>(simd: S, apart: &[S::f64s; D], together: &mut [S::f64s]) {
     #[cfg(target_arch = "x86_64")]
@@ -85,7 +85,7 @@ pub fn join_single<S: Simd, const D: usize>(simd: S, apart: &[S::f32s; D], toget
     }
 }
 
-/// Two components in vectors of eight lanes, or sixteen: what the compiler makes of the loops goes through memory.
+/// Two components in vectors of eight or sixteen lanes. For the plain loops the compiler would write to memory.
 #[cfg(target_arch = "x86_64")]
 mod long {
     use std::arch::x86_64::{__m512, __m512d};
@@ -130,7 +130,7 @@ mod tests {
     use super::*;
     use crate::processor::{Processor, dispatch};
 
-    /// Numbers of vectors one after the other, column by column and back.
+    /// Splits and joins the numbers of a column.
     struct ThereAndBack<const D: usize>;
 
     impl<const D: usize> pulp::WithSimd for ThereAndBack<D> {

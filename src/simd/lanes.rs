@@ -1,6 +1,6 @@
-//! Sums in a fixed number of lanes, whatever width the machine's vectors have: the same bits on every machine.
+//! Sums in a fixed number of lanes, independent of the vector width: the same bits on every machine.
 //!
-//! Written with vectors: of sums over arrays of lanes the compiler makes a patchwork, five times slower.
+//! The loops use vectors explicitly, because the compiler does not vectorise sums over arrays of lanes well.
 
 use crate::simd::real::Real;
 
@@ -43,15 +43,15 @@ pub fn dot_product<S: pulp::Simd>(simd: S, a: &[f64], b: &[f64]) -> f64 {
     with_rest(lanes_of::<S>(&sums), a_rest, b_rest)
 }
 
-/// A number whose products are summed in so many lanes.
+/// A number type whose products are summed in a fixed number of lanes.
 pub trait Summed: Real {
-    /// Lanes of a sum.
+    /// Number of lanes of a sum.
     const LANES: usize;
 
-    /// Numbers that are summed in this precision, those of a part; sums of parts are added in double.
+    /// Length of the parts that are summed in this precision. The sums of parts are added in double precision.
     const PART: usize;
 
-    /// What a sum has in its lanes, and the products of what is left of two columns, added up.
+    /// The sum of the lanes, plus the products of the remaining numbers of two columns.
     fn total(lanes: &[Self], a: &[Self], b: &[Self]) -> f64;
 }
 
@@ -78,13 +78,14 @@ impl Summed for f32 {
     }
 }
 
-/// Σ a_k b_k, Σ a_k² and Σ b_k², and the largest |a_k| in one pass over a part; 0 of none, and a NaN may get lost in the last.
+/// Computes Σ a_k b_k, Σ a_k², Σ b_k² and the largest |a_k| in one pass over a part. They are 0 for an empty part; the
+/// largest |a_k| may lose a NaN.
 #[inline(always)]
 pub fn products<S: pulp::Simd, T: Summed>(simd: S, a: &[T], b: &[T]) -> ([f64; 3], f64) {
     let whole = a.len() / T::LANES * T::LANES;
     let ((a, a_rest), (b, b_rest)) = (a.split_at(whole), b.split_at(whole));
     let (a, b) = (T::vectors::<S>(a).0, T::vectors::<S>(b).0);
-    // Vectors that hold the lanes, at most as many as there are lanes.
+    // Number of vectors that hold the lanes; it does not exceed the number of lanes.
     let each = T::LANES / T::numbers::<S>(&[T::splat(simd, T::default())]).len();
     let zero = [T::splat(simd, T::default()); SINGLE_LANES];
     let (mut both, mut a_squared, mut b_squared, mut most) = (zero, zero, zero, zero[0]);
@@ -102,7 +103,7 @@ pub fn products<S: pulp::Simd, T: Summed>(simd: S, a: &[T], b: &[T]) -> ([f64; 3
     (sums, a_rest.iter().fold(most, |most, a| most.max(a.widened().abs())))
 }
 
-/// The lanes of vectors, however many a vector has.
+/// The lanes of vectors of any width.
 #[inline(always)]
 fn lanes_of<S: pulp::Simd>(vectors: &[S::f64s; LANES]) -> [f64; LANES] {
     let all: &[f64] = pulp::bytemuck::cast_slice(&vectors[..LANES / S::F64_LANES]);
@@ -111,7 +112,7 @@ fn lanes_of<S: pulp::Simd>(vectors: &[S::f64s; LANES]) -> [f64; LANES] {
     lanes
 }
 
-/// The lanes and what is left of two columns, added up.
+/// The sum of the lanes and of the products of the remaining numbers.
 fn with_rest(mut lanes: [f64; LANES], a: &[f64], b: &[f64]) -> f64 {
     for ((lane, x), y) in lanes.iter_mut().zip(a).zip(b) {
         *lane += x * y;
@@ -124,7 +125,7 @@ mod tests {
     use super::*;
     use crate::processor::{Processor, dispatch};
 
-    /// Sums in eight lanes, one number after the other.
+    /// Sum in eight lanes with scalar operations.
     fn plain(terms: impl Iterator<Item = f64>) -> f64 {
         let mut lanes = [0.0; LANES];
         terms.enumerate().for_each(|(k, term)| lanes[k % LANES] += term);

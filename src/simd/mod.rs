@@ -1,4 +1,4 @@
-//! The machine's vectors: what [`pulp`] leaves to be done, with the same bits whatever width they have.
+//! Vector operations that [`pulp`] lacks, with the same bits for every vector width.
 
 pub mod components;
 pub mod lanes;
@@ -8,7 +8,7 @@ pub mod roots;
 
 use pulp::Simd;
 
-/// Vectors of 512 bits, if that is what `simd` stands for: known when the code is made.
+/// 512-bit vectors, if `simd` stands for them; this is known at compile time.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn of_512_bits<S: Simd>(simd: S) -> Option<pulp::x86::V4> {

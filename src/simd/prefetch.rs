@@ -1,21 +1,22 @@
-//! Software prefetch: memory is loaded into a cache while other work is done.
+//! Software prefetch: data is loaded into a cache while other work is done.
 
 use crate::processor::{Processor, Roots};
 
 /// Length of a cache line \[bytes\].
 const LINE: usize = 64;
 
-/// The cache that memory is prefetched into.
+/// The cache into which data is prefetched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cache {
-    /// The second cache: the first one can wait for few lines at a time.
+    /// The second-level cache. The first-level cache can wait for only a few lines at a time.
     Second,
-    /// The first cache alone: pairs are used once a step, and would take the place of the disks in the second cache.
+    /// The first-level cache only. Pairs are used once per step and would displace the disks from the second-level
+    /// cache.
     First,
 }
 
 impl Cache {
-    /// The cache of this machine. The first one serves on AMD's fifth generation; on the fourth it gains nothing.
+    /// The cache for the present processor, chosen by its type of root instructions.
     #[inline(always)]
     pub fn here() -> Cache {
         match Processor::here().roots() {
@@ -24,7 +25,7 @@ impl Cache {
         }
     }
 
-    /// Prefetches the line that has this place of a column. The place may lie beyond the column.
+    /// Prefetches the cache line of this place of a column. The place may lie beyond the column.
     #[inline(always)]
     pub fn prefetch<T>(self, column: &[T], place: usize) {
         #[cfg(target_arch = "x86_64")]
@@ -42,7 +43,7 @@ impl Cache {
         let _ = (self, column, place);
     }
 
-    /// Prefetches so many places of a column, line by line.
+    /// Prefetches consecutive places of a column, line by line.
     #[inline(always)]
     pub fn prefetch_all<T>(self, column: &[T], first: usize, count: usize) {
         for place in (0..count).step_by(LINE / size_of::<T>()) {

@@ -1,4 +1,4 @@
-//! [`Real`]: numbers of either precision and the machine's vectors of them, so that a loop is written once.
+//! [`Real`]: numbers of either precision and their vectors, so that one loop serves both.
 
 use pulp::Simd;
 
@@ -9,19 +9,19 @@ pub trait Real: Number {
     /// A vector of the machine.
     type Lanes<S: Simd>: Copy;
 
-    /// The number nearest to this one.
+    /// The nearest number of this precision.
     fn rounded(value: f64) -> Self;
 
-    /// The same number.
+    /// The same number in double precision.
     fn widened(self) -> f64;
 
-    /// A column as vectors, and what is left of it.
+    /// A column as vectors, and the remaining numbers.
     fn vectors<S: Simd>(column: &[Self]) -> (&[Self::Lanes<S>], &[Self]);
 
-    /// A column that is written as vectors, and what is left of it.
+    /// A mutable column as vectors, and the remaining numbers.
     fn vectors_mut<S: Simd>(column: &mut [Self]) -> (&mut [Self::Lanes<S>], &mut [Self]);
 
-    /// The numbers of vectors, one after the other.
+    /// The numbers of consecutive vectors.
     fn numbers<S: Simd>(vectors: &[Self::Lanes<S>]) -> &[Self];
 
     /// A number in every lane.
@@ -33,14 +33,14 @@ pub trait Real: Number {
     /// a · b.
     fn times<S: Simd>(simd: S, a: Self::Lanes<S>, b: Self::Lanes<S>) -> Self::Lanes<S>;
 
-    /// The larger of a and |b|; a NaN may get lost.
+    /// The larger of a and |b|; a NaN may be lost.
     fn larger_size<S: Simd>(simd: S, a: Self::Lanes<S>, b: Self::Lanes<S>) -> Self::Lanes<S>;
 
-    /// The largest lane; a NaN may get lost.
+    /// The largest lane; a NaN may be lost.
     fn largest<S: Simd>(simd: S, a: Self::Lanes<S>) -> Self;
 }
 
-/// A precision, by pulp's names for it.
+/// Implements [`Real`] for a precision, by pulp's names of its operations.
 macro_rules! real {
     ($number:ty, $lanes:ident, $vectors:ident, $vectors_mut:ident, $splat:ident, $add:ident, $multiply:ident, $max:ident, $abs:ident, $reduce_max:ident) => {
         impl Real for $number {

@@ -1,22 +1,25 @@
-//! Square roots and reciprocals of vectors with the bits of the machine's own instructions, and faster where these are slow.
+//! Square roots and reciprocals of vectors with the bits of the machine's own instructions, but faster where those are
+//! slow.
 //!
-//! Many processors with vectors of 512 bits have an instruction for eight square roots and one for eight quotients that take 16 to 30
-//! cycles, one at a time, and begin two fused products each cycle. There a first guess of 14 bits is refined by products, and every
-//! other root left to the unit for roots, which works beside them ([`Roots`]):
+//! Many processors with 512-bit vectors need 16 to 30 cycles for eight square roots or quotients, without pipelining.
+//! They can start two fused multiply–adds in each cycle. There, an estimate of 14 bits is refined by multiplications.
+//! Every second root is left to the hardware instruction, which runs in parallel ([`Roots`]):
 //!
 //! ```text
-//! √a    g = a y, h = y/2, y ≈ 1/√a      twice: e = 1/2 − g h, g ← g + g e, h ← h + h e      at last: g + (a − g²) h
-//! 1/a   y ≈ 1/a                         twice: e = 1 − a y, y ← y + y e      at last: y + y (e + e²)
+//! √a    g = a y, h = y/2, y ≈ 1/√a      twice: e = 1/2 − g h, g ← g + g e, h ← h + h e      finally: g + (a − g²) h
+//! 1/a   y ≈ 1/a                         twice: e = 1 − a y, y ← y + y e      finally: y + y (e + e²)
 //! ```
 //!
-//! The last e and a − g² are exact; what is added then is right to 2⁻⁵² of itself and no more than 2⁻⁵² of the result. So before it
-//! is rounded the result is off by 2⁻¹⁰⁴ of itself, and after it the correctly rounded one, unless the exact result lies so near
-//! to the middle between two numbers. The tests try those that lie nearest.
+//! The last e and a − g² are exact. The final correction has a relative error of 2⁻⁵², and is at most 2⁻⁵² of the
+//! result. So the result before rounding has a relative error of 2⁻¹⁰⁴. Rounding then gives the correctly rounded
+//! result, unless the exact one is too close to the midpoint of two numbers. The tests cover the closest cases.
 //!
-//! Without e² one reciprocal would be wrong, that of the last number below a power of two: 1/a is 2⁻¹⁰⁶ of itself above a middle m, and
-//! y (1 + e) = (1 − e²)/a is m, which is rounded down. So e + e² is rounded up, and what is rounded last is above 1/a, by less than the last place
-//! of e + e². That is enough: a m is a whole number of units and no power of two, so 1/a is at least 2⁻¹⁰⁶ of itself from any m. Where it is near
-//! one, y is one of the numbers beside it, so |e| < 2⁻⁵³ and the last place is 2⁻¹⁰⁶ at most; the one number with e = 2⁻⁵³ lies above its m.
+//! Without e² one reciprocal would be wrong: that of the largest number below a power of two. There 1/a lies above a
+//! midpoint m, at a relative distance of 2⁻¹⁰⁶. The value y (1 + e) = (1 − e²)/a equals m, and would be rounded down.
+//! Therefore e + e² is rounded up. The value before the last rounding then exceeds 1/a by less than one unit in the
+//! last place of e + e². This is sufficient. The product a m is an integer number of units and no power of two, so the
+//! relative distance of 1/a from any m is at least 2⁻¹⁰⁶. If 1/a is close to some m, y is a number next to m. Then |e|
+//! < 2⁻⁵³, and the last place of e + e² is at most 2⁻¹⁰⁶. The only number with e = 2⁻⁵³ lies above its m.
 //!
 //! # Source
 //! Markstein (2000), IA-64 and Elementary Functions, chapters 8 and 9.
@@ -25,8 +28,9 @@ use pulp::Simd;
 
 use crate::processor::Roots;
 
-/// √a of two vectors of numbers a ≥ 0, the bits of [`f64::sqrt`] for 0 and from 2⁻⁹⁶⁰ to 2¹⁰⁰⁰; below within a unit in the last place,
-/// above perhaps NaN. The unit for roots takes one of them meanwhile, or both.
+/// √a of two vectors of numbers a ≥ 0. The bits are those of [`f64::sqrt`] for 0 and from 2⁻⁹⁶⁰ to 2¹⁰⁰⁰. Smaller
+/// numbers have an error of at most one unit in the last place; larger ones may give NaN. The hardware instruction
+/// computes one of the vectors in parallel, or both.
 #[inline(always)]
 pub fn square_roots<S: Simd>(simd: S, roots: Roots, [a, b]: [S::f64s; 2]) -> [S::f64s; 2] {
     #[cfg(target_arch = "x86_64")]
@@ -37,7 +41,7 @@ pub fn square_roots<S: Simd>(simd: S, roots: Roots, [a, b]: [S::f64s; 2]) -> [S:
     [simd.sqrt_f64s(a), simd.sqrt_f64s(b)]
 }
 
-/// 1/a, the bits of a division for |a| from 2⁻¹⁰⁰⁰ to 2¹⁰⁰⁰; perhaps NaN beyond.
+/// 1/a, with the bits of a division for |a| from 2⁻¹⁰⁰⁰ to 2¹⁰⁰⁰; beyond, it may be NaN.
 #[inline(always)]
 pub fn reciprocal<S: Simd>(simd: S, roots: Roots, a: S::f64s) -> S::f64s {
     #[cfg(target_arch = "x86_64")]
@@ -48,13 +52,13 @@ pub fn reciprocal<S: Simd>(simd: S, roots: Roots, a: S::f64s) -> S::f64s {
     simd.div_f64s(simd.splat_f64s(1.0), a)
 }
 
-/// a, but 0 where it is negative; NaN stays NaN.
+/// The positive part: a, but 0 where a is negative; NaN stays NaN.
 #[inline(always)]
 pub fn positive_part<S: Simd>(simd: S, a: S::f64s) -> S::f64s {
     let zero = simd.splat_f64s(0.0);
     #[cfg(target_arch = "x86_64")]
     if let Some(simd) = super::of_512_bits(simd) {
-        // Of two numbers of which one is NaN, this instruction takes the second.
+        // If one operand is NaN, this instruction returns the second one.
         let (zero, a) = (pulp::bytemuck::cast(zero), pulp::bytemuck::cast(a));
         return pulp::bytemuck::cast(simd.avx512f._mm512_max_pd(zero, a));
     }
@@ -92,7 +96,7 @@ mod long {
             inverse = simd._mm512_fmadd_pd(inverse, error, inverse);
         }
         let rest = simd._mm512_fnmadd_pd(root, root, a);
-        // The guess for 0 is infinite.
+        // The estimate for 0 is infinite.
         let kept = simd._mm512_cmp_pd_mask::<_CMP_NEQ_UQ>(a, simd._mm512_setzero_pd());
         simd._mm512_maskz_fmadd_pd(kept, rest, inverse, root)
     }
@@ -145,8 +149,8 @@ mod tests {
         processor.run(|| dispatch(Each(column, processor.roots())))
     }
 
-    /// Odd numbers M < 2⁵⁴ whose square is c below a number of 53 bits times a power of two: M/2 is the middle of two doubles
-    /// nearest to a root. M is found bit by bit, M² ≡ c modulo ever higher powers of two.
+    /// Odd numbers M < 2⁵⁴ for which M² − c is a number of 53 bits times a power of two. M/2 is then a midpoint of two
+    /// doubles very close to a root. The bits of M follow from M² ≡ c modulo increasing powers of two.
     fn nearest_to_a_middle(c: i64) -> Vec<f64> {
         let mut found = Vec::new();
         for start in [1u128, 3] {
@@ -161,7 +165,7 @@ mod tests {
                 }
             }
             for m in [m & ((1 << 54) - 1), (1 << 54) - (m & ((1 << 54) - 1))] {
-                // M² − c, whose last 54 bits are zero.
+                // M² − c; its last 54 bits are zero.
                 let near = ((m * m) as i128 - i128::from(c)) as u128;
                 if m > 1 << 53 && near.leading_zeros() + near.trailing_zeros() >= 128 - 53 {
                     found.push(near as f64);
@@ -171,7 +175,7 @@ mod tests {
         found
     }
 
-    /// Numbers of 53 bits whose reciprocals lie nearest to the middle m of two: a m = 2¹⁰⁶ ± 1, from the factors of both.
+    /// Numbers of 53 bits whose reciprocals are closest to a midpoint m: a m = 2¹⁰⁶ ± 1, from the factors of both.
     fn reciprocals_near_a_middle() -> Vec<f64> {
         let below = [3u128, 107, 6361, 69_431, 20_394_401, 28_059_810_762_433];
         let above = [5u128, 15_358_129, 586_477_649, 1_801_439_824_104_653];
@@ -196,7 +200,7 @@ mod tests {
         let mut column: Vec<f64> = (0..400_000)
             .map(|_| f64::from_bits(random.random_range((1023u64 - 960) << 52..(1023u64 + 1000) << 52)))
             .collect();
-        // Neighbours of powers of two and of squares, where roundings are closest to going wrong.
+        // Neighbours of powers of two and of squares, where rounding is most critical.
         for exponent in -900..900 {
             let power = f64::from_bits(((1023 + exponent) as u64) << 52);
             for near in -4i64..=4 {

@@ -1,223 +1,229 @@
-//! The few disks that go far while the others hardly move: they are listed anew, so that a list lasts for the others.
+//! Incremental update: a few fast disks get their present positions as reference, so that a list lasts for the slow
+//! disks.
 //!
-//! What is done for them is done where they are: portions whose bound says that none went far are not looked at.
+//! The cost depends on the number of fast disks: portions whose bound excludes fast disks are not checked.
 
 use std::ops::Range;
 
 use crate::forces::assembly::Assembly;
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::displacement_bounds::LISTED;
+use crate::neighbours::displacement_bounds::SKIN_FRACTION;
 use crate::neighbours::missing_pairs::insert_missing_pairs;
 use crate::neighbours::pair_list::PairList;
 use crate::neighbours::verlet_list::ListRoom;
 use crate::vector::{Vector, difference, dot, longest_difference_squared};
 
-/// Disks of which one may go far at once.
-const ONE_OF: usize = 128;
+/// At most one disk in so many may be fast.
+const FAST_ONE_OF: usize = 128;
 
-/// What is best for lists of one tile, which are near the processor and quickly made, is not for long ones. Changes speed only.
+/// Parameters that differ between lists of one tile, which stay in cache and are built quickly, and long lists. They
+/// change speed only.
 pub(crate) struct Tuning {
-    /// A disk has gone far if it went this share of the way for which its list holds \[1\].
-    far: f64,
-    /// Disks of which one may have been listed anew since a list was made.
+    /// A disk is fast if its displacement exceeds this fraction of the limit of its list \[1\].
+    fast_fraction: f64,
+    /// At most one disk in so many may have been updated since the list was built.
     updated_one_of: usize,
-    /// Time of amending near pairs over that of picking them \[1\].
-    amending: f64,
-    /// Widest skin of near pairs over that of the list in use \[1\]. A twelfth of a radius lasts some 70 steps where it is the best; picking the
-    /// pairs of large packings costs two to three evaluations more than PICKING says.
-    pub widest_near: f64,
+    /// Time of an incremental update over that of pruning \[1\].
+    update_cost: f64,
+    /// Widest inner skin over the skin of the list in use \[1\].
+    pub widest_inner: f64,
 }
 
-const SHORT: Tuning = Tuning { far: 0.5, updated_one_of: 64, amending: 0.4, widest_near: 0.16 };
-const LONG: Tuning = Tuning { far: 0.7, updated_one_of: 8, amending: 0.1, widest_near: 0.3 };
+const SHORT: Tuning = Tuning { fast_fraction: 0.5, updated_one_of: 64, update_cost: 0.4, widest_inner: 0.16 };
+const LONG: Tuning = Tuning { fast_fraction: 0.7, updated_one_of: 8, update_cost: 0.1, widest_inner: 0.3 };
 
-/// Time of picking near pairs of large lists over what it gains, over that of small ones \[1\].
-const PICKING: f64 = 3.5;
+/// Cost of pruning a large list relative to its gain, over the same ratio for small lists \[1\].
+const LARGE_LIST_FACTOR: f64 = 3.5;
 
-/// Disks of which one may go farther than the way that is common to the others.
-const COMMON_BUT_ONE_OF: usize = 512;
+/// One disk in so many may exceed the common displacement.
+const EXCEPTED_ONE_OF: usize = 512;
 
-/// Disks that are asked for that way at least, if there are so many: some 250 of them go farther.
-const ASKED: usize = 1 << 17;
+/// Size of the sample of disks for the common displacement; some 250 of the sample exceed it.
+const SAMPLE_SIZE: usize = 1 << 17;
 
 impl<const D: usize, L: PairLaw> Assembly<D, L> {
     pub(crate) fn tuning(&self) -> &'static Tuning {
         if self.pairs.is_long() { &LONG } else { &SHORT }
     }
 
-    /// Whether lists are amended before they are spent: a step that spends one need not be made without it then.
-    fn looks_ahead(&self) -> bool {
+    /// Whether lists are updated before they expire. A step by tiles is then never interrupted by an expired list.
+    fn updates_ahead(&self) -> bool {
         self.prunes && self.pairs.is_long()
     }
 
-    /// Amends the list in use if a step like the last one may spend it. True if that was done.
-    pub(crate) fn amend_ahead(&mut self) -> bool {
-        let limit = LISTED * self.skin();
-        let nearly: Vec<usize> = self.bounds.nearly_spent(limit).collect();
-        if !self.looks_ahead() || nearly.is_empty() {
+    /// Updates the list in use if a step like the last one may exceed its limit. Returns whether it did.
+    pub(crate) fn update_ahead(&mut self) -> bool {
+        let limit = SKIN_FRACTION * self.skin();
+        let nearly: Vec<usize> = self.bounds.nearly_expired(limit).collect();
+        if !self.updates_ahead() || nearly.is_empty() {
             return false;
         }
-        self.measure_portions(nearly);
-        self.bounds.nearly_spent(limit).next().is_some() && self.amend()
+        self.tighten_bounds(nearly);
+        self.bounds.nearly_expired(limit).next().is_some() && self.update_fast_disks()
     }
 
-    /// The disks that [`Assembly::keep`] looks at after a step that did not spend the list.
-    pub(crate) fn disks_to_see(&self) -> Vec<Range<usize>> {
-        let limit = LISTED * self.skin();
-        if !self.looks_ahead() || self.bounds.nearly_spent(limit).next().is_none() {
+    /// The disks that [`Assembly::keep`] checks after a step for which the list was complete.
+    pub(crate) fn disks_to_check(&self) -> Vec<Range<usize>> {
+        let limit = SKIN_FRACTION * self.skin();
+        if !self.updates_ahead() || self.bounds.nearly_expired(limit).next().is_none() {
             return Vec::new();
         }
-        let mut portions: Vec<usize> = self.bounds.nearly_spent(limit).collect();
-        portions.extend(self.far_portions());
-        portions.extend(self.far_portions_of_all());
+        let mut portions: Vec<usize> = self.bounds.nearly_expired(limit).collect();
+        portions.extend(self.fast_portions());
+        portions.extend(self.fast_portions_of_outer());
         portions.sort_unstable();
         portions.dedup();
         portions.into_iter().map(|portion| self.bounds.disks_of(portion)).collect()
     }
 
-    /// Lists the disks that went far anew, if they are few, and adds the pairs that the list in use lacks then. False if that cannot be: then
-    /// it is as it was, and that of all pairs holds for as far as it did.
-    pub(crate) fn amend(&mut self) -> bool {
-        if !self.pairs.keeps_places {
+    /// Updates the few fast disks to their present positions and inserts the pairs that the list in use is missing.
+    /// Returns false if that is impossible. Then the list in use is unchanged, and the outer list stays valid up to its
+    /// old limit.
+    pub(crate) fn update_fast_disks(&mut self) -> bool {
+        if !self.pairs.reserves_blocks {
             return false;
         }
-        // Disks that go far in near pairs are looked for in the cells of the list of all pairs, and must not be far from there.
-        let of_all = self.amend_all();
-        let amended = match self.inner_skin {
-            None => of_all == Some(true),
-            Some(skin) => of_all.is_some() && self.amend_near(skin),
+        // Disks that are fast in the inner list are searched in the cells of the outer list, so they must not be far
+        // from those cells.
+        let outer_updated = self.update_outer_list();
+        let updated = match self.inner_skin {
+            None => outer_updated == Some(true),
+            Some(skin) => outer_updated.is_some() && self.update_inner_list(skin),
         };
-        if amended {
+        if updated {
             self.listing_number.1 += 1;
             if self.inner_skin.is_none() && !self.pairs.is_long() {
-                // How fast disks are is looked at as for a new list.
+                // The speed of the disks is checked as for a new list.
                 self.prune_lists(self.prunes);
             }
         }
-        amended
+        updated
     }
 
-    /// Lists the disks anew that went far in the list of all pairs. Whether there were any; none if that cannot be.
-    fn amend_all(&mut self) -> Option<bool> {
-        let portions: Vec<usize> = self.far_portions_of_all().collect();
-        let disks = self.far_of(&portions, &self.listed, self.skin)?;
+    /// Updates the disks that are fast in the outer list. Returns whether there were any; none if the update is
+    /// impossible.
+    fn update_outer_list(&mut self) -> Option<bool> {
+        let portions: Vec<usize> = self.fast_portions_of_outer().collect();
+        let disks = self.fast_disks_of(&portions, &self.outer_at_build, self.skin)?;
         if disks.is_empty() {
             return Some(false);
         }
-        self.far.set(disks, self.order.len());
+        self.fast_disks.set(disks, self.order.len());
         let mut room = std::mem::take(&mut self.list_room);
         let mut pairs = std::mem::take(&mut self.pairs);
-        let amended = room.note_updated(&self.disks(), &self.far, self.len() / self.tuning().updated_one_of)
-            && self.amend_list((&self.listed, self.skin), &mut room, &mut pairs);
+        let updated = room.note_updated(&self.disks(), &self.fast_disks, self.len() / self.tuning().updated_one_of)
+            && self.insert_missing((&self.outer_at_build, self.skin), &mut room, &mut pairs);
         (self.pairs, self.list_room) = (pairs, room);
-        if !amended {
+        if !updated {
             return None;
         }
-        for &disk in self.far.disks() {
-            self.listed[disk as usize] = self.displacements[disk as usize];
+        for &disk in self.fast_disks.disks() {
+            self.outer_at_build[disk as usize] = self.displacements[disk as usize];
         }
         match self.inner_skin {
-            Some(_) => self.measure_portions_before(&portions),
-            None => self.measure_portions(portions),
+            Some(_) => self.tighten_bounds_before(&portions),
+            None => self.tighten_bounds(portions),
         }
         Some(true)
     }
 
-    /// The same of near pairs.
-    fn amend_near(&mut self, skin: f64) -> bool {
-        let portions: Vec<usize> = self.far_portions().collect();
-        let Some(disks) = self.far_of(&portions, &self.inner_at_build, skin).filter(|disks| !disks.is_empty()) else {
+    /// The same for the inner list.
+    fn update_inner_list(&mut self, skin: f64) -> bool {
+        let portions: Vec<usize> = self.fast_portions().collect();
+        let Some(disks) = self.fast_disks_of(&portions, &self.inner_at_build, skin).filter(|disks| !disks.is_empty())
+        else {
             return false;
         };
-        self.far.set(disks, self.order.len());
+        self.fast_disks.set(disks, self.order.len());
         let mut room = std::mem::take(&mut self.list_room);
         let mut pairs = std::mem::take(&mut self.inner_pairs);
-        let amended = self.amend_list((&self.inner_at_build, skin), &mut room, &mut pairs);
+        let updated = self.insert_missing((&self.inner_at_build, skin), &mut room, &mut pairs);
         (self.inner_pairs, self.list_room) = (pairs, room);
-        if amended {
-            for &disk in self.far.disks() {
+        if updated {
+            for &disk in self.fast_disks.disks() {
                 self.inner_at_build[disk as usize] = self.displacements[disk as usize];
             }
-            self.measure_portions_before(&portions);
-            self.measure_portions(portions);
+            self.tighten_bounds_before(&portions);
+            self.tighten_bounds(portions);
         }
-        amended
+        updated
     }
 
-    fn amend_list(&self, listing: (&[Vector<D>], f64), room: &mut ListRoom<D>, pairs: &mut PairList<D>) -> bool {
+    fn insert_missing(&self, listing: (&[Vector<D>], f64), room: &mut ListRoom<D>, pairs: &mut PairList<D>) -> bool {
         let law = self.law;
-        insert_missing_pairs(&self.disks(), listing, &self.far, |a, b| law.coefficient(a, b), room, pairs)
+        insert_missing_pairs(&self.disks(), listing, &self.fast_disks, |a, b| law.coefficient(a, b), room, pairs)
     }
 
-    /// Portions of which a disk may have gone far in the list in use.
-    fn far_portions(&self) -> impl Iterator<Item = usize> {
-        let limit = self.tuning().far * LISTED * self.skin();
+    /// Portions that may contain disks that are fast in the list in use.
+    fn fast_portions(&self) -> impl Iterator<Item = usize> {
+        let limit = self.tuning().fast_fraction * SKIN_FRACTION * self.skin();
         let bounds = self.bounds.portions.iter().enumerate();
         bounds.filter(move |(_, bound)| bound.total > limit).map(|(portion, _)| portion)
     }
 
-    /// The same in the list of all pairs.
-    fn far_portions_of_all(&self) -> impl Iterator<Item = usize> {
-        let limit = self.tuning().far * LISTED * self.skin;
+    /// The same for the outer list.
+    fn fast_portions_of_outer(&self) -> impl Iterator<Item = usize> {
+        let limit = self.tuning().fast_fraction * SKIN_FRACTION * self.skin;
         let before = self.bounds_before.iter().copied().chain(std::iter::repeat(0.0));
         let bounds = self.bounds.portions.iter().zip(before).map(|(bound, before)| before + bound.total);
-        bounds.enumerate().filter(move |(_, way)| *way > limit).map(|(portion, _)| portion)
+        bounds.enumerate().filter(move |(_, displacement)| *displacement > limit).map(|(portion, _)| portion)
     }
 
-    /// The disks of some portions that went far from where they were listed, if they are few.
-    fn far_of(&self, portions: &[usize], listed: &[Vector<D>], skin: f64) -> Option<Vec<u32>> {
-        let limit = self.tuning().far * LISTED * skin;
+    /// The disks of some portions that are far from their reference positions; none if they are too many.
+    fn fast_disks_of(&self, portions: &[usize], listed: &[Vector<D>], skin: f64) -> Option<Vec<u32>> {
+        let limit = self.tuning().fast_fraction * SKIN_FRACTION * skin;
         let disks = portions.iter().flat_map(|&portion| self.bounds.disks_of(portion));
-        let is_far = |disk: &usize| {
-            let way = difference(self.displacements[*disk], listed[*disk]);
-            dot(way, way) > limit * limit
+        let is_fast = |disk: &usize| {
+            let displacement = difference(self.displacements[*disk], listed[*disk]);
+            dot(displacement, displacement) > limit * limit
         };
-        let far: Vec<u32> = disks.filter(is_far).map(|disk| disk as u32).collect();
-        (far.len() <= self.len() / ONE_OF).then_some(far)
+        let fast: Vec<u32> = disks.filter(is_fast).map(|disk| disk as u32).collect();
+        (fast.len() <= self.len() / FAST_ONE_OF).then_some(fast)
     }
 
-    /// Takes how far the disks of some portions have gone since they were listed, in place of bounds on it.
-    pub(crate) fn measure_portions(&mut self, portions: Vec<usize>) {
+    /// Computes the displacements of the disks of some portions, in place of their bounds.
+    pub(crate) fn tighten_bounds(&mut self, portions: Vec<usize>) {
         for portion in portions {
             let disks = self.bounds.disks_of(portion);
             self.bounds.portions[portion].total =
-                longest(&self.displacements[disks.clone()], &self.listed_in_use()[disks]);
+                longest(&self.displacements[disks.clone()], &self.reference_displacements()[disks]);
         }
     }
 
-    /// The same for how far they had gone in the list of all pairs when they were listed in near pairs.
-    fn measure_portions_before(&mut self, portions: &[usize]) {
+    /// The same for the displacements in the outer list up to the build of the inner list.
+    fn tighten_bounds_before(&mut self, portions: &[usize]) {
         for &portion in portions {
             let disks = self.bounds.disks_of(portion);
-            self.bounds_before[portion] = longest(&self.inner_at_build[disks.clone()], &self.listed[disks]);
+            self.bounds_before[portion] = longest(&self.inner_at_build[disks.clone()], &self.outer_at_build[disks]);
         }
     }
 
-    /// The way from where they were by which disks wear near pairs out: as much less by those that note_updated as amending takes less than
-    /// picking; for large lists more, as picking takes longer there.
+    /// Effective displacement since `from` that wears out the inner list. Displacements of fast disks count less, by
+    /// the ratio of the costs of an update and of pruning. For large lists all count more, because pruning takes longer
+    /// there.
     pub(crate) fn effective_displacement(&self, from: &[Vector<D>]) -> f64 {
-        let longest = self.longest_way(from);
-        if self.pairs.keeps_places {
-            PICKING * (self.common_displacement(from) + self.tuning().amending * longest)
+        let longest = self.largest_displacement_since(from);
+        if self.pairs.reserves_blocks {
+            LARGE_LIST_FACTOR * (self.common_displacement(from) + self.tuning().update_cost * longest)
         } else {
             longest
         }
     }
 
-    /// The way from where they were that all mobile disks but a few, which may note_updated, did not exceed \[length\].
+    /// The displacement since `from` that all mobile disks but a few, which can be updated, do not exceed \[length\].
     pub(crate) fn common_displacement(&self, from: &[Vector<D>]) -> f64 {
-        if !self.pairs.keeps_places || self.mobile_count == 0 {
-            return self.longest_way(from);
+        if !self.pairs.reserves_blocks || self.mobile_count == 0 {
+            return self.largest_displacement_since(from);
         }
         let mobile = self.displacements[..self.mobile_count].iter().zip(from);
         let mut squares: Vec<f64> = mobile
-            .step_by((self.mobile_count / ASKED).max(1))
+            .step_by((self.mobile_count / SAMPLE_SIZE).max(1))
             .map(|(&now, &before)| {
-                let way = difference(now, before);
-                dot(way, way)
+                let displacement = difference(now, before);
+                dot(displacement, displacement)
             })
             .collect();
-        let place = squares.len() - 1 - squares.len() / COMMON_BUT_ONE_OF;
+        let place = squares.len() - 1 - squares.len() / EXCEPTED_ONE_OF;
         squares.select_nth_unstable_by(place, f64::total_cmp).1.sqrt()
     }
 }

@@ -1,16 +1,17 @@
-//! Keeping the neighbour list good while disks move: when it is looked at, pruned and made anew.
+//! Maintenance of the neighbour list while disks move: checks, pruning and rebuilds.
 
 use crate::forces::assembly::Assembly;
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::displacement_bounds::{DisplacementBounds, LISTED, PORTION, is_within};
-use crate::neighbours::inner_list::{best_skin, best_skin_of_all};
+use crate::neighbours::displacement_bounds::{DisplacementBounds, PORTION, SKIN_FRACTION, is_within};
+use crate::neighbours::inner_list::{best_inner_skin, best_outer_skin};
 use crate::neighbours::pair_list::PairList;
 use crate::packing::PackingError;
 use crate::parallel;
 use crate::vector::{Vector, larger, longest_difference_squared};
 
-/// Calls of [`Assembly::keep_listed`] after which the way of the disks is looked at for the first time; then at twice as many.
-const FIRST_LOOK: usize = 16;
+/// Number of calls of [`Assembly::keep_listed`] before the first check of the disks' speed. The number doubles for each
+/// further check.
+const FIRST_CHECK: usize = 16;
 
 impl<const D: usize, L: PairLaw> Assembly<D, L> {
     #[cfg(test)]
@@ -23,44 +24,44 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         &self.pairs
     }
 
-    /// Whether, from now on, only near pairs are listed while disks move little. For who calls [`Assembly::keep_listed`] once an
-    /// evaluation; what it keeps for each pair it must make anew whenever that says so.
+    /// Sets whether an inner list is used while disks move slowly. The caller must call [`Assembly::keep_listed`] once
+    /// per evaluation. Data that the caller keeps for each pair must be rebuilt whenever that call returns true.
     pub fn prune_lists(&mut self, prunes: bool) {
         self.prunes = prunes;
         if prunes {
-            self.seen.clone_from(&self.displacements);
+            self.checked_displacements.clone_from(&self.displacements);
         }
-        (self.age, self.seen_at, self.look_at) = (0, 0, FIRST_LOOK);
+        (self.age, self.checked_at, self.next_check) = (0, 0, FIRST_CHECK);
     }
 
-    /// Whether [`Assembly::advance`] does anything. Before a look at a short list it does not: should near pairs be picked then, forces are
-    /// summed in their order.
+    /// Whether [`Assembly::advance`] does anything. It does not before a speed check of a short list: if the list is
+    /// pruned then, the order of the force sums changes.
     pub(crate) fn may_advance(&self) -> bool {
-        !self.law.has_sites() && (self.pairs().is_long() || !self.looks_next())
+        !self.law.has_sites() && (self.pairs().is_long() || !self.checks_next())
     }
 
-    /// Tells lists apart: the number of the one in use, and how often it was amended.
+    /// Identifies the list in use: its number, and the number of its incremental updates.
     pub(crate) fn listing_number(&self) -> (usize, usize) {
         self.listing_number
     }
 
-    /// The list in use, where it has the disks, the way it holds for, and what they have gone of it.
+    /// The list in use, the reference displacements of its disks, its limit, and the displacement bounds.
     pub(crate) fn listing(&mut self) -> (&PairList<D>, &[Vector<D>], f64, &mut DisplacementBounds) {
-        let limit = LISTED * self.skin();
+        let limit = SKIN_FRACTION * self.skin();
         let (pairs, listed) = match self.inner_skin {
             Some(_) => (&self.inner_pairs, &self.inner_at_build),
-            None => (&self.pairs, &self.listed),
+            None => (&self.pairs, &self.outer_at_build),
         };
         (pairs, listed, limit, &mut self.bounds)
     }
 
-    /// Takes how far disks have moved since they were listed, in place of bounds on it.
-    fn measure_all_portions(&mut self) {
-        let bounds = self.longest_displacements_from(self.listed_in_use());
-        self.bounds.portions.iter_mut().zip(bounds).for_each(|(bound, way)| bound.total = way);
+    /// Computes the displacements since the list was built, in place of their bounds.
+    fn tighten_all_bounds(&mut self) {
+        let bounds = self.longest_displacements_from(self.reference_displacements());
+        self.bounds.portions.iter_mut().zip(bounds).for_each(|(bound, displacement)| bound.total = displacement);
     }
 
-    /// How far the disks of each portion have moved from where they were, at most \[length\].
+    /// Upper bound on the displacement since `before` for each portion of disks \[length\].
     fn longest_displacements_from(&self, before: &[Vector<D>]) -> Vec<f64> {
         let mobile = self.mobile_count;
         let tiles = self.displacements[..mobile].chunks(self.pairs.tile_size);
@@ -72,13 +73,14 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         bounds.concat()
     }
 
-    /// Whether the way of the disks is looked at in the next call of [`Assembly::keep_listed`], however short it is.
-    pub(crate) fn looks_next(&self) -> bool {
-        self.prunes && self.age + 1 == self.look_at
+    /// Whether the next call of [`Assembly::keep_listed`] checks the speed of the disks, however small their
+    /// displacements are.
+    pub(crate) fn checks_next(&self) -> bool {
+        self.prunes && self.age + 1 == self.next_check
     }
 
-    /// Tells that no disk has moved by more than `bound` since the last call, and changes the list if it must be. True if it is
-    /// another one.
+    /// Records that no disk has moved by more than `bound` since the last call, and changes the list if necessary.
+    /// Returns whether the list has changed.
     ///
     /// # Errors
     /// Two disks with the same centre.
@@ -87,89 +89,96 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.change()
     }
 
-    /// Changes the list if it must be after a step of which [`Assembly::advance`] knows how far it went, or if the next one may spend it and it
-    /// can be amended. True if it is another one.
+    /// Changes the list if necessary, after a step whose displacements [`Assembly::advance`] has recorded. It also
+    /// updates a list that the next step may exceed. Returns whether the list has changed.
     ///
     /// # Errors
     /// Two disks with the same centre.
     pub fn keep(&mut self) -> Result<bool, PackingError> {
-        Ok(self.change()? || self.amend_ahead())
+        Ok(self.change()? || self.update_ahead())
     }
 
     fn change(&mut self) -> Result<bool, PackingError> {
         self.age += 1;
-        let looks = self.prunes && self.age == self.look_at;
-        let limit = LISTED * self.skin();
-        if is_within(self.bounds.longest(), limit) && !looks {
+        let checks = self.prunes && self.age == self.next_check;
+        let limit = SKIN_FRACTION * self.skin();
+        if is_within(self.bounds.longest(), limit) && !checks {
             return Ok(false);
         }
         let bounds = self.bounds.portions.iter().enumerate();
-        self.measure_portions(
+        self.tighten_bounds(
             bounds.filter(|(_, bound)| !is_within(bound.total, limit)).map(|(portion, _)| portion).collect(),
         );
         let longest = self.bounds.longest();
         if longest.is_nan() {
-            // Not a position any more: the forces are NaN too, and the relaxer stops on them.
+            // The displacement is NaN, so the forces are NaN too, and the relaxer stops.
             return Ok(false);
         }
         if longest > limit {
-            return self.renew().map(|()| true);
+            return self.replace_list().map(|()| true);
         }
-        Ok(looks && self.look())
+        Ok(checks && self.check_speed())
     }
 
-    /// Looks at how fast disks are, and picks near pairs if they are slow. True if that was done.
-    fn look(&mut self) -> bool {
-        let way = self.effective_displacement(&self.seen) / (self.age - self.seen_at) as f64;
-        self.seen.clone_from(&self.displacements);
-        (self.seen_at, self.look_at) = (self.age, 2 * self.age);
-        self.picks(best_skin(self.smallest_radius, way), self.skin())
+    /// Checks the speed of the disks, and prunes the list if they are slow. Returns whether it did.
+    fn check_speed(&mut self) -> bool {
+        let displacement =
+            self.effective_displacement(&self.checked_displacements) / (self.age - self.checked_at) as f64;
+        self.checked_displacements.clone_from(&self.displacements);
+        (self.checked_at, self.next_check) = (self.age, 2 * self.age);
+        self.try_prune(best_inner_skin(self.smallest_radius, displacement), self.skin())
     }
 
-    /// Another list for one that is spent.
-    fn renew(&mut self) -> Result<(), PackingError> {
-        if self.prunes && self.amend() {
+    /// Replaces an expired list.
+    fn replace_list(&mut self) -> Result<(), PackingError> {
+        if self.prunes && self.update_fast_disks() {
             return Ok(());
         }
-        let way = if self.prunes {
-            self.effective_displacement(self.listed_in_use()) / self.age as f64
+        let displacement = if self.prunes {
+            self.effective_displacement(self.reference_displacements()) / self.age as f64
         } else {
             f64::INFINITY
         };
-        let best = best_skin(self.smallest_radius, way);
-        if self.inner_skin.is_none() || self.longest_way(&self.listed) > LISTED * self.skin {
+        let best = best_inner_skin(self.smallest_radius, displacement);
+        if self.inner_skin.is_none()
+            || self.largest_displacement_since(&self.outer_at_build) > SKIN_FRACTION * self.skin
+        {
             self.choose_skin();
             self.rebuild()?;
-            self.picks(best, self.skin);
-        } else if !self.picks(best, self.skin) {
-            // As long as the list of all pairs lasts it is used itself.
+            self.try_prune(best, self.skin);
+        } else if !self.try_prune(best, self.skin) {
+            // While the outer list is still complete, it is used itself.
             self.inner_skin = None;
             self.bounds_before.clear();
             self.listing_number = (self.listing_number.0 + 1, 0);
-            self.measure_all_portions();
+            self.tighten_all_bounds();
         }
         Ok(())
     }
 
-    /// The skin for which the next list of all pairs lasts, if most disks go on as fast as they went in this one.
+    /// Chooses the skin of the next outer list, if most disks keep their speed.
     fn choose_skin(&mut self) {
         let (narrowest, widest) = (*self.skins.start(), *self.skins.end());
         if narrowest < widest {
-            // Disks whose near pairs are in use are slow.
-            let way =
-                if self.inner_skin.is_none() { self.common_displacement(&self.listed) / self.age as f64 } else { 0.0 };
-            self.skin = best_skin_of_all(self.smallest_radius, way).clamp(narrowest, widest);
+            // If the inner list is in use, the disks are slow.
+            let displacement = if self.inner_skin.is_none() {
+                self.common_displacement(&self.outer_at_build) / self.age as f64
+            } else {
+                0.0
+            };
+            self.skin = best_outer_skin(self.smallest_radius, displacement).clamp(narrowest, widest);
         }
     }
 
-    /// Picks the pairs nearer than this skin, or than one for which the list of all pairs has them, in place of a list with that other
-    /// skin, if it pays. True if that was done.
-    fn picks(&mut self, best: f64, other: f64) -> bool {
-        if best >= self.tuning().widest_near * other {
+    /// Prunes the outer list to this skin, or to the widest skin for which the outer list is complete, if that costs
+    /// less than a list with the skin `other`. Returns whether it did.
+    fn try_prune(&mut self, best: f64, other: f64) -> bool {
+        if best >= self.tuning().widest_inner * other {
             return false;
         }
-        // Where disks have gone a way w since they were listed, all pairs nearer than S - 2 w are in the list of all pairs, of width S.
-        let longest = self.skin - self.longest_way(&self.listed) / LISTED;
+        // If disks have moved by at most w since the list was built, the outer list of skin S contains all pairs within
+        // S − 2 w.
+        let longest = self.skin - self.largest_displacement_since(&self.outer_at_build) / SKIN_FRACTION;
         if best >= 2.0 * longest {
             return false;
         }
@@ -177,35 +186,35 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.inner_pairs.prune(&self.pairs, &self.displacements, skin);
         self.inner_skin = Some(skin);
         self.inner_at_build.clone_from(&self.displacements);
-        self.bounds_before = self.longest_displacements_from(&self.listed);
+        self.bounds_before = self.longest_displacements_from(&self.outer_at_build);
         self.listing_number = (self.listing_number.0 + 1, 0);
         self.begin_list();
         true
     }
 
-    /// The longest way of a mobile disk from where it was \[length\]; NaN if one is.
-    pub(crate) fn longest_way(&self, from: &[Vector<D>]) -> f64 {
+    /// The largest displacement of a mobile disk since `from` \[length\]; NaN if any is NaN.
+    pub(crate) fn largest_displacement_since(&self, from: &[Vector<D>]) -> f64 {
         self.longest_displacements_from(from).into_iter().fold(0.0, larger)
     }
 
-    /// The list of all pairs is new.
-    pub(crate) fn begin_all(&mut self) {
+    /// Resets the state after a build of the outer list.
+    pub(crate) fn begin_outer_list(&mut self) {
         self.inner_skin = None;
         self.bounds_before.clear();
-        self.listed.clone_from(&self.displacements);
+        self.outer_at_build.clone_from(&self.displacements);
         self.listing_number = (self.listing_number.0 + 1, 0);
         self.begin_list();
     }
 
-    /// The list in use is new.
+    /// Resets the state after a change of the list in use.
     pub(crate) fn begin_list(&mut self) {
         self.bounds.begin(self.mobile_count, self.pairs().tile_size);
         self.prune_lists(self.prunes);
     }
 
-    /// Where the disks were when the list in use was made, or listed anew.
-    pub(crate) fn listed_in_use(&self) -> &[Vector<D>] {
-        if self.inner_skin.is_some() { &self.inner_at_build } else { &self.listed }
+    /// Reference displacements of the list in use: those at its build, or at the last update of a disk.
+    pub(crate) fn reference_displacements(&self) -> &[Vector<D>] {
+        if self.inner_skin.is_some() { &self.inner_at_build } else { &self.outer_at_build }
     }
 
     /// Width of the skin of the list in use \[length\].
@@ -213,8 +222,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.inner_skin.unwrap_or(self.skin)
     }
 
-    /// How far every disk may go before the list must be made anew, at least \[length\].
+    /// Displacement that every disk can still make, at least, before the list expires \[length\].
     pub fn listed_way(&self) -> f64 {
-        LISTED * self.skin() - self.bounds.longest()
+        SKIN_FRACTION * self.skin() - self.bounds.longest()
     }
 }

@@ -1,7 +1,7 @@
-//! Explicit damped dynamics: Newton's equations with contact damping, until everything is at rest.
+//! Explicit damped dynamics: Newton's equations with contact damping, until mechanical equilibrium.
 //!
-//! The disks move by velocity Verlet, see [`Motion`]. The step is a share of the bound on a stable one. A motion that still gains
-//! energy, as with a fixed step that is too long, ends as [`Stop::Unstable`].
+//! The disks move by velocity Verlet, see [`Motion`]. The step is a fraction of the stability bound. A motion that
+//! gains energy, for example with a fixed step that is too long, ends as [`Stop::Unstable`].
 
 use std::time::Instant;
 
@@ -19,19 +19,19 @@ use crate::relax::outcome::{Cost, Outcome, Stop};
 use crate::relax::relaxer::Relaxer;
 use crate::relax::trace::{Look, Trace};
 
-/// Explicit damped dynamics.
+/// Settings of explicit damped dynamics.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DampedDynamics {
-    /// How contacts dissipate. Changes results.
+    /// Damping law of contacts. Changes results.
     pub damping: DampingChoice,
-    /// When the packing counts as at rest. Changes results.
+    /// Criterion of mechanical equilibrium. Changes results.
     pub limit: ForceLimit,
-    /// Which net force the limit is on. Changes results.
+    /// Net force to which the limit applies. Changes results.
     pub net_force: NetForce,
     /// The time step.
     pub time_step: TimeStep,
-    /// Steps allowed.
+    /// Largest number of steps.
     pub step_limit: usize,
 }
 
@@ -42,7 +42,7 @@ impl Default for DampedDynamics {
             limit: ForceLimit::default(),
             net_force: NetForce::default(),
             time_step: TimeStep::default(),
-            // 10⁴ steps at p > 500, 10⁶ near jamming.
+            // About 10⁴ steps are needed at p > 500, 10⁶ near jamming.
             step_limit: 20_000_000,
         }
     }
@@ -52,10 +52,10 @@ impl Default for DampedDynamics {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NetForce {
-    /// Elastic forces only: the state is at rest in the energy landscape.
+    /// Elastic forces only: mechanical equilibrium of the elastic energy.
     #[default]
     Elastic,
-    /// Elastic and damping forces. A slow creep, in which the two cancel, also meets the limit.
+    /// Elastic and damping forces. A slow creep in which both cancel also meets the limit.
     Total,
 }
 
@@ -65,26 +65,26 @@ pub enum NetForce {
 pub enum TimeStep {
     /// A constant step \[time\].
     Fixed(f64),
-    /// This share of the bound on a stable step, updated as contacts change \[1\].
+    /// This fraction of the stability bound, updated as contacts change \[1\].
     OfStability(f64),
 }
 
 impl Default for TimeStep {
-    /// 0.9 of the bound: at the bound itself a mode whose row is sharp would oscillate for ever. Gershgorin's rows are about twice
-    /// the eigenvalue of a packing's damping matrix: 12 to 14 against 5.5 to 5.8 at unit damping. So this is about half of the
-    /// longest stable step.
+    /// 0.9 of the bound. At the bound itself, a mode whose Gershgorin row is exact would oscillate for ever.
+    /// Gershgorin's rows are about twice the largest eigenvalue of the damping matrix of a packing, so this is about
+    /// half of the longest stable step.
     fn default() -> Self {
         TimeStep::OfStability(0.9)
     }
 }
 
-/// Share of the bound below which steps that gain energy are not shortened further.
+/// Fraction of the bound below which steps that gain energy are not shortened further.
 const SMALLEST_SHARE: f64 = 1e-3;
 
 /// Ratio of a step to the one before, which gained energy.
 const SHORTER: f64 = 0.5;
 
-/// Growth of the share after steps without a gain.
+/// Growth factor of the fraction after steps without a gain.
 const SHARE_GROWTH: f64 = 1.2;
 
 impl Relaxer for DampedDynamics {
@@ -118,7 +118,7 @@ impl DampedDynamics {
             TimeStep::Fixed(step) => (step, None),
             TimeStep::OfStability(share) => (0.0, Some(ExplicitStep::new(share))),
         };
-        // The evaluation that initialised the motion.
+        // The evaluation at the start of the motion.
         let mut evaluation_count = 1;
         let mut balance: Option<EnergyBalance> = None;
         let mut rejected_count = 0;
@@ -181,7 +181,7 @@ impl DampedDynamics {
             }
         };
         if matches!(stop, Stop::StepLimit | Stop::NoMinimum) {
-            // No check came before: the elastic forces belong to an earlier step.
+            // Without a preceding check the elastic forces belong to an earlier step.
             motion.assembly.evaluate();
             evaluation_count += 1;
         }

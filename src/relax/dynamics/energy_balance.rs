@@ -1,4 +1,4 @@
-//! [`EnergyBalance`]: the account of energy along a motion, which accepts or rejects its steps.
+//! [`EnergyBalance`]: the energy balance along a motion, which accepts or rejects its steps.
 //!
 //! ```text
 //! E + K + W = E_0        E elastic, K kinetic energy, W work of damping, E_0 the elastic energy at the start
@@ -6,22 +6,23 @@
 //! M ← max(max K, M − ΔW/2)        G, L ≤ ε M + η E        after every step; ε = 0.05, η = 10⁻⁷
 //! ```
 //!
-//! G and L are the energies gained or lost by errors, beyond a share ε of the work of damping. They are cumulative sums: a small
-//! gain in every step is detected as well as a large one in a single step. Both are compared with the energy in motion M. It is
-//! exchanged between K and E, and only damping removes it. Half of ΔW is subtracted, so that a motion with errors below half of
-//! the tolerance leaves the limit. E_0 would be too coarse: the initial energy of an inflation is 10⁴ times that of a packing near
-//! jamming. A small relative error could then destroy the packing. The floor η E lies below the energy at which Newton's
-//! method may finish: a long step may remove the rest.
+//! G and L are the energies gained or lost by errors, beyond a fraction ε of the work of damping. They are cumulative
+//! sums, so they detect a small gain in every step as well as a large gain in one step. Both are compared with the
+//! energy in motion M. This energy is exchanged between K and E, and only damping removes it. Half of ΔW is subtracted,
+//! so a motion with errors below half of the tolerance stays within the limit. E_0 would be too coarse a scale: the
+//! initial energy of an inflation is 10⁴ times that of a packing near jamming. A small relative error could then
+//! destroy the packing. The floor η E lies below the energy at which Newton's method may finish, because a long step
+//! may remove the remaining energy.
 //!
 //! # Source
-//! Page (1954), Biometrika 41, 100: cumulative sums that find a drift beneath fluctuations.
+//! Page (1954), Biometrika 41, 100: cumulative sums that detect a drift below the size of fluctuations.
 
 use crate::forces::totals::Totals;
 use crate::relax::energy_account::EnergyAccount;
 use crate::vector::larger;
 
-/// ε. Explicit steps of 0.9 of their bound leave 0.02 to 0.04 of the energy in motion unaccounted for while the front of an
-/// inflation spreads, and less afterwards.
+/// ε. It exceeds the imbalance of explicit steps of 0.9 of their bound, relative to the energy in motion: 0.02 to 0.04
+/// at the start of an inflation, and less later.
 const TOLERANCE: f64 = 0.05;
 
 /// η.
@@ -60,7 +61,7 @@ impl Energies {
     }
 }
 
-/// The account since the start.
+/// The energy balance since the start.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EnergyBalance {
     start: Energies,
@@ -77,7 +78,7 @@ impl EnergyBalance {
         EnergyBalance { start, now: start, gain: 0.0, loss: 0.0, moving: start.kinetic, imbalance: 0.0 }
     }
 
-    /// Adds steps that led to these energies. If they break the balance, returns false and changes nothing.
+    /// Adds steps that led to these energies. If they violate the balance, returns false and changes nothing.
     pub(crate) fn accept(&mut self, next: Energies) -> bool {
         let damped = next.damped - self.now.damped;
         let defect = next.mechanical() - self.now.mechanical() + damped;
@@ -96,8 +97,8 @@ impl EnergyBalance {
         accepted
     }
 
-    /// Like [`EnergyBalance::accept`], for a motion without masses. It must go downhill, at any rate. The work of friction in a long
-    /// step is known only roughly.
+    /// Like [`EnergyBalance::accept`], for a motion without masses. Its energy must decrease. The work of friction in a
+    /// long step is known only approximately.
     #[cfg(feature = "linear")]
     pub(crate) fn accept_descent(&mut self, next: Energies) -> bool {
         // NaN is rejected.
@@ -133,7 +134,7 @@ mod tests {
     fn a_balance_broken_by_more_than_the_tolerance_is_refused_and_changes_nothing() {
         let mut balance = EnergyBalance::new(energies(10.0, 0.0, 0.0));
         assert!(balance.accept(energies(5.0, 4.0, 1.0)));
-        // The largest gain is 5 % of the kinetic energy and of the work of damping: 0.2 + 0.01.
+        // The largest gain allowed is 5 % of the kinetic energy and of the work of damping: 0.2 + 0.01.
         assert!(!balance.accept(energies(5.0, 4.0, 1.0 + 0.22)));
         assert!(!balance.accept(energies(5.0, f64::NAN, 1.0)));
         assert!(!balance.accept(energies(4.7, 4.0, 1.0)));
@@ -145,7 +146,8 @@ mod tests {
 
     #[test]
     fn a_small_gain_in_every_step_is_found() {
-        // 2 % of the kinetic energy a step, of which damping takes a quarter: 0.0195 beyond its share, three times.
+        // A gain of 2 % of the kinetic energy per step, of which damping takes a quarter. The excess of 0.0195 exceeds
+        // the limit in the third step.
         let mut balance = EnergyBalance::new(energies(1.0, 1.0, 0.0));
         let accepted = (1..=10).take_while(|&step| {
             let step = f64::from(step);

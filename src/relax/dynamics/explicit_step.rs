@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! δ'_ij = δ_ij + max(0, −v_n) τ + max(0, −a_n) τ²/2        τ = M h: the time until the next check
-//! h = share × the bound on a stable step at overlaps δ'
+//! h = fraction × stability bound at overlaps δ'
 //! ```
 //!
-//! While the front of an inflation spreads, overlaps grow tenfold within a few steps, and contacts that do not exist yet become the
-//! stiffest of all. So the bound is computed for the predicted overlaps. The number M of steps between two checks is halved if the
-//! step became much shorter, and doubled otherwise.
+//! While the front of an inflation spreads, overlaps grow tenfold within a few steps. Contacts that do not exist yet
+//! then become the stiffest. So the bound is computed for the predicted overlaps. The number M of steps between two
+//! checks is halved if the step has become much shorter, and doubled otherwise.
 
 use crate::law::damping::DampingLaw;
 use crate::law::pair_law::PairLaw;
@@ -16,17 +16,17 @@ use crate::relax::dynamics::verlet::Motion;
 /// Fewest steps between two checks of the bound.
 const SHORTEST_INTERVAL: usize = 2;
 
-/// Most steps between two checks.
+/// Largest number of steps between two checks.
 const LONGEST_INTERVAL: usize = 50;
 
-/// Ratio of a step to the one before, below which checks come twice as often. If the stiffness changes by less between two checks,
-/// the step stays within the margin of [`TimeStep`](crate::relax::TimeStep).
+/// Ratio of a step to the previous one below which the number of steps between checks is halved. For smaller changes of
+/// stiffness, the step stays within the margin of [`TimeStep`](crate::relax::TimeStep).
 const STEADY: f64 = 0.9;
 
 /// Length of explicit steps.
 #[derive(Debug, Clone)]
 pub(crate) struct ExplicitStep {
-    /// Step over the bound on a stable one \[1\].
+    /// Step over its stability bound \[1\].
     share: f64,
     interval: usize,
     /// Steps left before the next check.
@@ -45,7 +45,7 @@ impl ExplicitStep {
         self.time_step
     }
 
-    /// Step over the bound on a stable one \[1\].
+    /// Step over its stability bound \[1\].
     pub(crate) fn share(&self) -> f64 {
         self.share
     }
@@ -56,7 +56,7 @@ impl ExplicitStep {
         (self.left, self.interval, self.time_step) = (0, SHORTEST_INTERVAL, self.time_step * factor);
     }
 
-    /// Lengthens the steps from the next check on by this factor, up to this share of the bound.
+    /// Lengthens the steps after the next check by this factor, up to this fraction of the bound.
     pub(crate) fn lengthen(&mut self, factor: f64, most: f64) {
         self.share = (self.share * factor).min(most);
     }

@@ -5,12 +5,13 @@
 //! a_{n+1} = F(u_{n+1}) − Γ(u_{n+1}) (v_n + h a_n)        v_{n+1} = v_{n+1/2} + (h/2) a_{n+1}      (masses 1)
 //! ```
 //!
-//! The velocity of the damping force is predicted to the end of the step. The scheme is then of second order with one evaluation
-//! of the forces a step, also where forces depend on velocities. With v_{n+1/2} in the damping force, as is usual, it would be of
-//! first order.
+//! The velocity in the damping force is predicted for the end of the step. So the scheme is of second order with one
+//! force evaluation per step, also for velocity-dependent forces. With the usual v_{n+1/2} in the damping force it
+//! would be of first order.
 //!
-//! A mode of stiffness λ_K and damping λ_Γ is stable for `h λ_Γ + h² λ_K / 4 < 1`. Beyond, the scheme multiplies it by less
-//! than −1 each step. [`Motion::stable_step`] takes the largest eigenvalues of the two matrices, bounded by Gershgorin's rows.
+//! A mode of stiffness λ_K and damping λ_Γ is stable for `h λ_Γ + h² λ_K / 4 < 1`. Beyond this limit, the scheme
+//! multiplies it by less than −1 in each step. [`Motion::stable_step`] uses the largest eigenvalues of both matrices,
+//! bounded by Gershgorin's theorem.
 //!
 //! # Source
 //! Groot, Warren (1997), J. Chem. Phys. 107, 4423 (the predicted velocity). The bound: the roots of the scheme's
@@ -46,7 +47,7 @@ pub struct Motion<const D: usize, L, C> {
     before: Before<D>,
 }
 
-/// What [`Motion::take_back`] restores, beside the positions.
+/// State that [`Motion::take_back`] restores, beside the positions.
 #[derive(Debug, Clone, Default)]
 struct Before<const D: usize> {
     velocities: Vec<Vector<D>>,
@@ -85,10 +86,10 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         motion
     }
 
-    /// An assembled packing whose mobile disks have these velocities, in working order.
+    /// An assembled packing with these velocities of its mobile disks, in working order.
     ///
     /// # Panics
-    /// If the number of velocities is not that of the mobile disks.
+    /// If the number of velocities differs from that of the mobile disks.
     pub fn moving(assembly: Assembly<D, L>, velocities: &[Vector<D>], damping: &C) -> Self {
         let mut motion = Self::of(assembly, damping);
         motion.velocities[..motion.assembly.mobile_count()].copy_from_slice(velocities);
@@ -126,7 +127,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         Ok(())
     }
 
-    /// One step of the scheme above.
+    /// One step of the scheme of this module.
     ///
     /// # Errors
     /// Two disks with the same centre.
@@ -188,14 +189,14 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         0.5 * products(v, v).speed_squared
     }
 
-    /// The longest step within the bound: `h λ_Γ + h² λ_K / 4 = 1`, both λ by Gershgorin's rows \[time\].
+    /// The longest step within the bound `h λ_Γ + h² λ_K / 4 = 1`, with both λ by Gershgorin's theorem \[time\].
     pub fn stable_step(&mut self) -> f64 {
         let stiffness = self.assembly.stiffness_bound(&mut self.row);
         let (law, coefficient) = (&self.damping, &self.damping_coefficient);
         let damping =
             self.assembly.row_bound(&mut self.row, Some(&|pair, overlap, _| law.damping(coefficient[pair], overlap)));
         if stiffness == 0.0 {
-            // Without a contact, the stiffness of one with an overlap of a thousandth of a radius.
+            // Without contacts: the stiffness of a contact with an overlap of 0.1 % of a radius.
             let (law, radius) = (self.assembly.law(), self.assembly.radii()[0]);
             let overlap = 1e-3 * radius;
             let bound = 2.0 * law.stiffness(law.force(law.coefficient(radius, radius), overlap), overlap);
@@ -204,8 +205,8 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         longest_stable(stiffness, damping)
     }
 
-    /// The longest step within the bound for the largest overlaps that contacts can reach within this time, with the present velocities
-    /// and forces \[time\].
+    /// The longest step within the bound for the largest overlaps that contacts can reach within this time, for the
+    /// present velocities and forces \[time\].
     pub(crate) fn stable_step_within(&mut self, time: f64) -> f64 {
         let Motion { assembly, velocities, accelerations, damping, damping_coefficient, row, .. } = self;
         let (law, mobile) = (assembly.law(), assembly.mobile_count());

@@ -17,7 +17,8 @@ const BOUND_INTERVAL: usize = 40;
 /// Relative residual down to which steps may be in single precision \[1\]: about ten times the effect of its rounding.
 const SINGLE_LIMIT: f64 = 1e-6;
 
-/// Relative residual below which every check sets a new base \[1\]. The displacements from it change overlaps by rounded amounts.
+/// Relative residual below which every check sets a new base \[1\], because displacements from the base change overlaps
+/// with rounding errors.
 const BASE_LIMIT: f64 = 1e-3;
 
 impl Run<'_> {
@@ -43,7 +44,7 @@ impl Run<'_> {
         (totals, sums)
     }
 
-    /// Checks the residual. Returns why the run ends, if it does.
+    /// Checks the residual. Returns the reason why the run ends, if it does.
     pub(super) fn check<const D: usize, L: PairLaw>(
         &mut self,
         assembly: &mut Assembly<D, L>,

@@ -56,7 +56,7 @@ impl Fire {
         let mut run = Run::new(self, assembly);
         let stop = run.descend(assembly, &mut state, monitor, trace)?;
         if state.is_single() {
-            // The assembly is left with its disks where they are, and with forces in double precision.
+            // The assembly keeps the final positions, with forces in double precision.
             state.settle(assembly);
             assembly.evaluate();
             run.evaluation_count += 1;

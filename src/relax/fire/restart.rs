@@ -1,4 +1,4 @@
-//! The restarts of FIRE: after a step that climbed, the disks rest.
+//! Restarts of FIRE: after an uphill step, all velocities are set to zero.
 
 use crate::forces::assembly::Assembly;
 use crate::forces::totals::Totals;
@@ -14,7 +14,8 @@ use crate::relax::rounding::ENERGY_ROUNDING;
 use crate::relax::trace::{Look, Trace};
 
 impl Run<'_> {
-    /// Stops all disks, at the last restart if the energy is higher here. Returns the products there, or why the run ends.
+    /// Stops all disks; if the energy is higher than at the last restart, returns to that restart. Returns the products
+    /// there, or the reason why the run ends.
     pub(super) fn restart<const D: usize, L: PairLaw>(
         &mut self,
         assembly: &mut Assembly<D, L>,
@@ -43,7 +44,7 @@ impl Run<'_> {
         };
         let higher = self.is_higher(assembly, &totals);
         if totals.energy >= self.rest_energy * (1.0 - ENERGY_ROUNDING) {
-            // The energy has not fallen since the last restart: single precision leads no further.
+            // The energy has not decreased since the last restart: single precision allows no further progress.
             state.switch_to_double();
         }
         if higher {
@@ -65,7 +66,7 @@ impl Run<'_> {
     fn is_higher<const D: usize, L: PairLaw>(&self, assembly: &Assembly<D, L>, totals: &Totals<D>) -> bool {
         let energy = totals.energy;
         if assembly.law().has_sites() {
-            // Energies have either sign: the rounding is relative to the sum of their sizes.
+            // Energies have either sign, so the rounding is relative to the sum of their absolute values.
             energy - self.rest_energy > ENERGY_ROUNDING * (totals.energy_scale() + self.rest_scale)
         } else {
             energy > self.rest_energy * (1.0 + ENERGY_ROUNDING)

@@ -24,14 +24,14 @@ pub(super) struct Run<'a> {
     pub(super) downhill: usize,
     /// Restarts since the last step downhill.
     pub(super) uphill: usize,
-    /// Energy at the last restart, and what its rounding is relative to \[energy\].
+    /// Energy at the last restart, and the scale of its rounding \[energy\].
     pub(super) rest_energy: f64,
     pub(super) rest_scale: f64,
     /// Whether a check of the residual is due.
     pub(super) due: bool,
-    /// The products at the present state, if the step to there has computed them.
+    /// The products at the present state, if the last step has computed them.
     pub(super) taken: Option<Products>,
-    /// Room for the rows of the stiffness bound.
+    /// Work space for the rows of the stiffness bound.
     row: Vec<f64>,
 }
 
@@ -62,7 +62,7 @@ impl<'a> Run<'a> {
     pub(super) fn set_largest_step<const D: usize, L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
         let mut bound = assembly.stiffness_bound(&mut self.row);
         if bound == 0.0 {
-            // Without a contact, the stiffness of one with an overlap of a thousandth of a radius.
+            // Without contacts: the stiffness of a contact with an overlap of 0.1 % of a radius.
             let (law, radius) = (assembly.law(), assembly.radii()[0]);
             let overlap = 1e-3 * radius;
             bound = 2.0 * law.stiffness(law.force(law.coefficient(radius, radius), overlap), overlap);

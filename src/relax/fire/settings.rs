@@ -4,18 +4,19 @@ use serde::{Deserialize, Serialize};
 
 use crate::relax::force_limit::ForceLimit;
 
-/// FIRE. Defaults: Bitzek et al. (2006), Phys. Rev. Lett. 97, 170201, where no other origin is given.
+/// Settings of FIRE. Defaults: Bitzek et al. (2006), Phys. Rev. Lett. 97, 170201, unless another origin is given.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Fire {
-    /// When the packing counts as at rest. Changes results.
+    /// Criterion of mechanical equilibrium. Changes results.
     pub limit: ForceLimit,
-    /// Steps allowed.
+    /// Largest number of steps.
     pub step_limit: usize,
-    /// Largest time step over the stability limit 2/√λ of Gershgorin's bound \[1\]. Changes speed only. The bound lies
-    /// above the largest eigenvalue: values of 0.9 to 1.2 take the fewest steps, and 1.3 does not converge near jamming.
+    /// Largest time step over the stability limit 2/√λ of Gershgorin's bound \[1\]. Changes speed only. The bound
+    /// exceeds the largest eigenvalue, so values slightly above 1 can be stable. Values of 1.3 and more do not converge
+    /// near jamming.
     pub time_step_fraction: f64,
-    /// Steps downhill before the time step grows.
+    /// Number of downhill steps before the time step grows.
     pub delay: usize,
     /// Factor on the time step after a step downhill \[1\].
     pub step_growth: f64,
@@ -25,7 +26,7 @@ pub struct Fire {
     pub mixing: f64,
     /// Factor on the mixing after a step downhill \[1\].
     pub mixing_decay: f64,
-    /// What happens after a step that raised the energy.
+    /// Treatment of a step that increased the energy.
     #[serde(skip_serializing_if = "Uphill::is_restart")]
     pub uphill: Uphill,
     /// Precision of the steps. Changes results where minima lie close together.
@@ -37,34 +38,34 @@ pub struct Fire {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Precision {
-    /// Double throughout.
+    /// Double precision in all steps.
     #[default]
     Double,
-    /// Single while the residual is above 10⁻⁶, then double. Energies, residuals and bounds on the time step are always
-    /// computed in double precision. The same holds for the forces at rest.
+    /// Single precision while the relative residual is above 10⁻⁶, then double. Energies, residuals, bounds on the time
+    /// step and the final forces are always in double precision.
     Mixed,
 }
 
 impl Precision {
-    /// Whether this is the default, which is not written.
+    /// Whether this is the default, which is omitted from files.
     pub(crate) fn is_double(&self) -> bool {
         *self == Precision::Double
     }
 }
 
-/// What FIRE does after a step that raised the energy.
+/// Treatment of a step that increased the energy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Uphill {
-    /// The disks rest where they are.
+    /// The disks stop at their present positions.
     #[default]
     Restart,
-    /// The disks go half a step back and rest there.
+    /// The disks go back by half a step and stop there.
     StepBack(StepBack),
 }
 
 impl Uphill {
-    /// Whether this is the default, which is not written.
+    /// Whether this is the default, which is omitted from files.
     fn is_restart(&self) -> bool {
         *self == Uphill::Restart
     }
@@ -74,9 +75,9 @@ impl Uphill {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct StepBack {
-    /// Number of steps from the start in which a climbing step does not shorten the time step.
+    /// Number of initial steps in which an uphill step does not reduce the time step.
     pub start_delay: usize,
-    /// Number of consecutive climbing steps allowed; one more ends the relaxation.
+    /// Number of consecutive uphill steps allowed; one more ends the relaxation.
     pub uphill_limit: usize,
 }
 
@@ -90,7 +91,7 @@ impl Default for Fire {
     fn default() -> Self {
         Fire {
             limit: ForceLimit::default(),
-            // Random points of 88776 disks close to jamming need about 10⁵.
+            // Random points of 88776 disks close to jamming need about 10⁵ steps.
             step_limit: 2_000_000,
             time_step_fraction: 1.0,
             delay: 5,

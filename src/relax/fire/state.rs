@@ -1,4 +1,4 @@
-//! [`State`]: the velocities of FIRE, in double precision or, while disks are far from rest, in single.
+//! [`State`]: the velocities of FIRE, in double precision, or in single precision while the residual is large.
 
 use crate::forces::advance::Advanced;
 use crate::forces::assembly::Assembly;
@@ -18,7 +18,7 @@ pub(super) enum State<const D: usize> {
 }
 
 impl<const D: usize> State<D> {
-    /// Disks at rest; in single precision if that is wanted and possible.
+    /// Disks at rest; in single precision if requested and possible.
     pub(super) fn new<L: PairLaw>(assembly: &Assembly<D, L>, in_single: bool) -> Self {
         let mobile = assembly.mobile_count();
         match in_single.then(|| Single::new(assembly)).flatten() {
@@ -27,7 +27,7 @@ impl<const D: usize> State<D> {
         }
     }
 
-    /// Whether this is single precision.
+    /// Whether the state is in single precision.
     pub(super) fn is_single(&self) -> bool {
         matches!(self, State::Single(..))
     }
@@ -47,7 +47,8 @@ impl<const D: usize> State<D> {
         }
     }
 
-    /// Takes the displacements of the assembly as the base of the next step: they were settled or moved, or the list is another.
+    /// Marks the base as outdated: the displacements of the assembly become the base of the next step. Needed after
+    /// they were settled or moved, or after a change of the list.
     pub(super) fn forget(&mut self) {
         if let State::Single(disks, _) = self {
             disks.forget();
@@ -87,8 +88,8 @@ impl<const D: usize> State<D> {
         }
     }
 
-    /// Moves the disks, evaluates their forces and computes the products, tile by tile ([`Assembly::advance`]). No displacement
-    /// is longer than `reach` times the largest velocity component \[time\].
+    /// Moves the disks, evaluates their forces and computes the products, tile by tile ([`Assembly::advance`]). No
+    /// displacement is longer than `reach` times the largest velocity component \[time\].
     pub(super) fn advance<L: PairLaw>(
         &mut self,
         assembly: &mut Assembly<D, L>,
@@ -135,7 +136,7 @@ impl<const D: usize> State<D> {
         }
     }
 
-    /// `u ← u − (dt/2) v`: takes back half of the step that climbed.
+    /// `u ← u − (dt/2) v`: takes back half of an uphill step.
     pub(super) fn step_back<L: PairLaw>(&mut self, assembly: &mut Assembly<D, L>, time_step: f64) {
         let mobile = assembly.mobile_count();
         let displacements = assembly.displacements[..mobile].as_flattened_mut();

@@ -1,15 +1,15 @@
-//! [`AllowedError`]: the error that a step of a motion may have.
+//! [`AllowedError`]: the largest error allowed in a step of a motion.
 
 use crate::law::damping::DampingLaw;
 use crate::law::pair_law::PairLaw;
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
 use crate::vector::larger;
 
-/// Allowed error off the backbone over that on it. Where rattlers hit matters little to the backbone. But an error there is an
-/// overlap, and so energy.
+/// Allowed error of rattlers over that of backbone disks. The positions of rattlers hardly affect the backbone, but an
+/// error there changes overlaps, and so the energy.
 const OFF_BACKBONE: f64 = 3.0;
 
-/// The error that a step may have.
+/// The error allowed in a step.
 pub(crate) struct AllowedError<'a> {
     /// Mean overlap \[length\].
     pub(crate) overlap: f64,
@@ -30,7 +30,7 @@ impl AllowedError<'_> {
         (0..motion.assembly.mobile_count()).map(of_disk).fold(0.0, |most, error| larger(error, most))
     }
 
-    /// The ratio of an error to the allowed one is this times the error \[1 / length\].
+    /// Factor from an error to its ratio to the allowed one \[1 / length\].
     pub(crate) fn weight(&self, disk: usize) -> f64 {
         (if self.backbone[disk] { 1.0 } else { 1.0 / OFF_BACKBONE }) / (self.tolerance * self.overlap)
     }

@@ -12,7 +12,7 @@ use crate::relax::dynamics::verlet::Motion;
 use crate::relax::outcome::{Cost, Stop};
 use crate::vector::scaled;
 
-/// A trial phase of explicit steps. The motion it began from is unchanged.
+/// A trial phase of explicit steps. The original motion is unchanged.
 pub(crate) struct ExplicitPhase<const D: usize, L, C> {
     motion: Motion<D, L, C>,
     totals: Totals<D>,
@@ -51,7 +51,8 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         Ok(ExplicitPhase { totals, time, dissipated, peak, motion })
     }
 
-    /// Continues from the end of a phase. `ahead` is the length of the next step, over which contacts may close \[time\].
+    /// Continues from the end of a phase. `ahead` is the length of the next step, over which contacts may close
+    /// \[time\].
     pub(crate) fn accept_phase(&mut self, phase: ExplicitPhase<D, L, C>, ahead: f64) -> Totals<D> {
         let ExplicitPhase { motion, time, dissipated, .. } = phase;
         (self.time, self.dissipated) = (time, dissipated);
@@ -72,7 +73,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     }
 }
 
-/// Takes the explicit steps that [`MethodSelection`] asks for. `time_step` becomes that of the implicit step to try next.
+/// Takes the explicit steps selected by [`MethodSelection`]. `time_step` becomes that of the next implicit trial step.
 pub(crate) fn explicit_phase<const D: usize, L: PairLaw, C: DampingLaw>(
     motion: &mut ImplicitMotion<D, L, C>,
     selection: &mut MethodSelection,

@@ -1,9 +1,10 @@
-//! [`NewtonFinish`]: when Newton's method finishes a motion.
+//! [`NewtonFinish`]: decides when Newton's method finishes a motion.
 //!
-//! Newton's method finds a minimum from almost anywhere; it need not be the one that the motion leads to. It is tried once the
-//! residual and the kinetic energy of the backbone are small. Its minimum is accepted at once if every disk of the backbone is
-//! nearer to it than a tenth of an overlap. Otherwise the motion continues until its kinetic energy has fallen to a quarter. The
-//! minimum is accepted if Newton's method finds it again. Rattlers fly for ever; their energy does not count.
+//! Newton's method finds a minimum from almost any state, but perhaps not the one to which the motion leads. It is
+//! tried once the residual and the kinetic energy of the backbone are small. Its minimum is accepted at once if every
+//! backbone disk is within a tenth of an overlap of it. Otherwise the motion continues until its kinetic energy has
+//! fallen to a quarter. The minimum is accepted if Newton's method finds it again. Rattlers may move for ever; their
+//! energy does not count.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,42 +24,42 @@ use crate::vector::{Vector, difference, larger, norm};
 pub enum Finish {
     /// By its own steps.
     Motion,
-    /// By [`Newton`](crate::relax::Newton) from this relative residual r on \[1\], once the backbone's kinetic energy is r² of the
-    /// elastic one. Its minimum is accepted if it is nearer than a tenth of an overlap. It is also accepted if it is found again after
-    /// the kinetic energy has fallen to a quarter. Until then the motion continues.
+    /// By [`Newton`](crate::relax::Newton) below this relative residual r \[1\], once the kinetic energy of the
+    /// backbone is below r² times the elastic energy. The minimum is accepted if it is within a tenth of an overlap. It
+    /// is also accepted if it is found again after the kinetic energy has fallen to a quarter. Until then the motion
+    /// continues.
     Newton(f64),
 }
 
 impl Default for Finish {
-    /// From 10⁻² on. Nine viscoelastic motions of 5548 disks (p = 0.05 to 1) were finished by Newton's method from 3·10⁻², 10⁻² or
-    /// 10⁻³ on. Each ends in the same minimum; the last takes two to four times the evaluations.
+    /// Below 10⁻². A limit of 10⁻³ leads to the same minima with more evaluations, see the book.
     fn default() -> Self {
         Finish::Newton(1e-2)
     }
 }
 
-/// Distance of a backbone disk from the minimum, over an overlap, up to which the minimum is certain \[1\].
+/// Largest distance of a backbone disk from the minimum, over an overlap, at which the minimum is certain \[1\].
 const NEAR: f64 = 0.1;
 
-/// Distance of two minima over an overlap up to which they are the same \[1\]. Newton's method leaves 10⁻⁸ of an overlap in a
-/// stiff direction; the softest are some 10⁴ times softer.
+/// Largest distance, over an overlap, of two minima that count as the same \[1\]. Newton's method leaves an error of
+/// 10⁻⁸ of an overlap in a stiff direction; the softest directions are about 10⁴ times softer.
 const SAME: f64 = 1e-3;
 
-/// Ratio of the kinetic energy to that at the last trial at which the next trial is made; for gradient flow, of the residual.
+/// Ratio to the kinetic energy of the last trial at which the next trial is made; for gradient flow, to the residual.
 const NEXT_KINETIC: f64 = 0.25;
 const NEXT_RESIDUAL: f64 = 0.1;
 
-/// Factorisations in which Newton must reduce the residual to a tenth.
+/// Number of factorisations within which Newton's method must reduce the residual to a tenth.
 const PATIENCE: usize = 12;
 
-/// Longest displacement of a disk in one of Newton's steps over its radius \[1\]: the default of [`Newton`](crate::relax::Newton), but
-/// at most an overlap.
+/// Largest displacement of a disk in a Newton step over its radius \[1\]. It is the default of
+/// [`Newton`](crate::relax::Newton), but at most an overlap.
 const LONGEST_STEP: f64 = 0.1;
 
 /// Largest number of Newton's factorisations.
 const FACTORISATION_LIMIT: usize = 100;
 
-/// A trace that hides a trial, which may be rejected, and keeps its last check.
+/// A trace that hides a trial, because the trial may be rejected, and keeps its last check.
 struct HiddenTrace<'a, T> {
     trace: &'a mut T,
     last: Option<Look>,
@@ -90,17 +91,17 @@ pub(crate) struct FinishState {
 
 /// Decides when Newton's method can finish.
 pub(crate) struct NewtonFinish<const D: usize> {
-    /// Residual and kinetic energy below which it is tried; the latter is infinite before the first trial.
+    /// Residual and kinetic energy below which Newton's method is tried; the latter is infinite before the first trial.
     residual: f64,
     kinetic: f64,
-    /// (K/E)^(1/2) below which it is tried.
+    /// (K/E)^(1/2) below which Newton's method is tried.
     hand_over: f64,
     /// The minimum of the last trial: the positions of the disks.
     minimum: Option<Vec<Vector<D>>>,
 }
 
 impl<const D: usize> NewtonFinish<D> {
-    /// Below this relative residual and K ≤ `hand_over`² E; never if 0.
+    /// Tries Newton's method below this relative residual and K ≤ `hand_over`² E; never if `hand_over` is 0.
     pub(crate) fn from(hand_over: f64) -> Self {
         NewtonFinish { residual: hand_over, kinetic: f64::INFINITY, hand_over, minimum: None }
     }
@@ -111,7 +112,7 @@ impl<const D: usize> NewtonFinish<D> {
         at.residual <= self.residual && at.kinetic <= slow.min(self.kinetic)
     }
 
-    /// Tries Newton's method. None, and nothing changes, if the minimum of the motion is not certain yet.
+    /// Tries Newton's method. Returns None and changes nothing if the minimum of the motion is not certain yet.
     ///
     /// # Errors
     /// Two disks with the same centre.

@@ -1,8 +1,8 @@
-//! [`Inertia`]: what resists a motion; [`Stepped`] and [`Work`]: the results and the cost of its steps.
+//! [`Inertia`]: the resistance to motion; [`Stepped`] and [`Work`]: results and cost of steps.
 
 use crate::forces::totals::Totals;
 
-/// What resists motion, beside the contacts.
+/// Resistance to motion, beside the contacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Inertia {
     /// Masses 1, no friction: damped dynamics.
@@ -26,9 +26,10 @@ impl Inertia {
 pub enum Stepped<const D: usize> {
     /// The disks are at the end of the step.
     Moved(Totals<D>),
-    /// The factors of its matrix do not fit in memory. Nothing has moved.
+    /// The factors of the matrix do not fit in memory. Nothing has moved.
     OutOfMemory,
-    /// The matrix is not positive definite: so long a step would miss a growing motion away from a saddle. Nothing has moved.
+    /// The matrix is not positive definite: such a long step would miss a growing motion away from a saddle. Nothing
+    /// has moved.
     Indefinite,
     /// A disk would move farther than the smallest radius. The step must be taken back.
     TooFar,

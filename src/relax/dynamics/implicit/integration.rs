@@ -1,4 +1,4 @@
-//! [`Integration`]: a motion from its start to rest, in steps as long as their errors allow.
+//! [`Integration`]: integrates a motion from its start to rest, in steps as long as the allowed error permits.
 
 use std::time::Instant;
 
@@ -35,17 +35,17 @@ pub(crate) struct Integration {
     pub(crate) step_limit: usize,
 }
 
-/// Ratio after a step whose matrix was not positive definite.
+/// Ratio of step lengths after a step whose matrix was not positive definite.
 const INDEFINITE_RATIO: f64 = 0.5;
 
-/// Ratio after a step that broke the balance of energies.
+/// Ratio of step lengths after a step that violated the energy balance.
 const UNBALANCED_RATIO: f64 = 0.5;
 
-/// Overlap over a radius that replaces the mean overlap where no disks overlap \[1\].
+/// Overlap over a radius that replaces the mean overlap in a packing without contacts \[1\].
 const SMALLEST_OVERLAP: f64 = 1e-6;
 
-/// (hγ)² λ, or hγ λ/ζ, of the stiffest contacts at which a step stops growing. Only the mass term holds disks without contacts,
-/// and the pivots of the matrix must stay well above rounding.
+/// Largest (hγ)² λ, or hγ λ/ζ, of the stiffest contacts; a step does not grow beyond it. Disks without contacts have
+/// only the mass term, and the pivots of the matrix must stay well above rounding.
 const LONGEST_STEP: f64 = 1e12;
 
 impl Integration {
@@ -126,7 +126,7 @@ impl Integration {
             if time_step == 0.0 {
                 time_step = first_step(motion, self.tolerance * overlap);
             }
-            // Explicit steps resolve contacts that open and close. Without a backbone, nothing bounds their number.
+            // Explicit steps resolve opening and closing contacts. Without a backbone, their number is not limited.
             let pressed = monitor.backbone()[..motion.assembly.mobile_count()].iter().any(|&member| member);
             let method = if pressed { selection.method(time_step) } else { Method::Implicit };
             if method != Method::Implicit {
@@ -165,8 +165,8 @@ impl Integration {
         }
     }
 
-    /// One implicit step, repeated with shorter ones until its error is small enough. `time_step` becomes that of the next step. None
-    /// if another method is cheaper than so short a step.
+    /// One implicit step, repeated with shorter lengths until its error is small enough. `time_step` becomes that of
+    /// the next step. Returns None if another method is cheaper than such a short step.
     fn advance<const D: usize, L: PairLaw, C: DampingLaw>(
         &self,
         motion: &mut ImplicitMotion<D, L, C>,
@@ -212,7 +212,7 @@ impl Integration {
         }
     }
 
-    /// The net forces the limit is on.
+    /// The net forces to which the limit applies.
     fn net_forces<'a, const D: usize, L: PairLaw, C: DampingLaw>(
         &self,
         motion: &'a ImplicitMotion<D, L, C>,
@@ -224,7 +224,8 @@ impl Integration {
     }
 }
 
-/// The median overlap of all contacts: independent of the few that an inflation presses a thousand times as far \[length\].
+/// The median overlap of all contacts \[length\]. It does not depend on the few overlaps that an inflation makes a
+/// thousand times larger.
 fn typical_overlap<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, overlaps: &mut Vec<f64>) -> f64 {
     let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
     overlaps.clear();
@@ -242,6 +243,6 @@ fn typical_overlap<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, overla
 fn first_step<const D: usize, L: PairLaw, C: DampingLaw>(motion: &ImplicitMotion<D, L, C>, allowed: f64) -> f64 {
     let largest = motion.net_forces().iter().fold(0.0, |most, &force| larger(norm(force), most));
     let step = motion.time_to_move(allowed, largest);
-    // Without forces any step will do, and the next check finds the motion at rest.
+    // Without forces any length serves, because the next check finds mechanical equilibrium.
     if step.is_finite() && step > 0.0 { step } else { 1.0 }
 }

@@ -4,14 +4,15 @@
 //! method        work per unit of time                        limit
 //! implicit      E/h
 //! stabilised    s(h)/h                                       h ≤ 2.25/ρ
-//! explicit      V/h_x                                        h_x = 0.9 of the bound on a stable Verlet step
+//! explicit      V/h_x                                        h_x = 0.9 of the stability bound of a Verlet step
 //! ```
 //!
-//! h is the step that errors allow, s(h) the number of stages of a stabilised step, see [`super::rkc::coefficients`]. Work is
-//! counted in evaluations of all forces. An implicit step of n mobile disks takes the time of E evaluations, a Verlet step that
-//! of V. The method with the least work is selected. While disks collide everywhere, the errors of contacts that open and close
-//! keep h short. Then the stabilised method is cheapest, or the explicit one if oscillations are hardly damped. After a phase of
-//! explicit steps an implicit step of 2 E h_x/V is tried. If it fails at once, the next phase is twice as long.
+//! h is the step that the allowed error permits, s(h) the number of stages of a stabilised step, see
+//! [`super::rkc::coefficients`]. Work is counted in evaluations of all forces. An implicit step takes the time of E
+//! evaluations, a Verlet step that of V. The method with the least work per time is selected. While many disks collide,
+//! errors of opening and closing contacts keep h short. Then the stabilised method is cheapest, or the explicit one if
+//! oscillations are weakly damped. After a phase of explicit steps an implicit step of 2 E h_x/V is tried. If it fails
+//! at once, the next phase is twice as long.
 
 use crate::law::damping::DampingLaw;
 use crate::law::pair_law::PairLaw;
@@ -19,13 +20,13 @@ use crate::relax::dynamics::explicit_step::ExplicitStep;
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
 use crate::relax::dynamics::implicit::rkc::coefficients::Stiffness;
 
-/// E over n^(1/8).
+/// E over n^(1/8), for n mobile disks.
 const IMPLICIT_COST: f64 = 34.0;
 
 /// V.
 const VERLET_COST: f64 = 1.8;
 
-/// An explicit step over the bound on a stable one: about half of the longest stable step, see
+/// Explicit step over its stability bound: about half of the longest stable step, see
 /// [`TimeStep`](crate::relax::TimeStep).
 pub(crate) const SHARE: f64 = 0.9;
 
@@ -35,13 +36,13 @@ const TRIAL_RATIO: f64 = 2.0;
 /// Work of the shortest and of the longest phase of explicit steps over E.
 const PHASE_COSTS: (usize, usize) = (2, 64);
 
-/// Share of the bound below which explicit steps that break the energy balance are not shortened further.
+/// Fraction of the bound below which explicit steps that violate the energy balance are not shortened further.
 const SMALLEST_SHARE: f64 = 1e-3;
 
-/// Growth of that share after a phase that kept the balance.
+/// Growth factor of that fraction after a phase that kept the balance.
 const SHARE_GROWTH: f64 = 1.2;
 
-/// Implicit steps after which the next phase of explicit ones is short again.
+/// Number of implicit steps after which the next explicit phase is short again.
 const SETTLED_STEPS: usize = 4;
 
 /// A method of integration.
@@ -95,14 +96,15 @@ impl MethodSelection {
         self.explicit_step = if time_step.is_finite() { time_step } else { 0.0 };
     }
 
-    /// To be called after a phase of explicit steps broke the energy balance. Returns whether shorter ones are worth a trial.
+    /// To be called after an explicit phase that violated the energy balance. Returns whether a trial of shorter steps
+    /// is useful.
     pub(crate) fn shorten(&mut self) -> bool {
         self.control.shorten(0.5);
         self.phase_cost = PHASE_COSTS.0;
         self.control.share() > SMALLEST_SHARE
     }
 
-    /// To be called after a phase of explicit steps kept the balance.
+    /// To be called after an explicit phase that kept the energy balance.
     pub(crate) fn after_balanced_phase(&mut self) {
         self.control.lengthen(SHARE_GROWTH, SHARE);
         self.set_explicit_step(self.control.time_step());
@@ -113,7 +115,7 @@ impl MethodSelection {
         self.implicit_cost as usize
     }
 
-    /// The method of least work if errors allow steps of this length \[time\].
+    /// The method of least work, if the allowed error permits steps of this length \[time\].
     pub(crate) fn method(&self, time_step: f64) -> Method {
         let (mut method, mut rate) = (Method::Implicit, self.implicit_cost / time_step);
         if self.explicit_step > 0.0 && VERLET_COST / self.explicit_step < rate {
@@ -147,7 +149,7 @@ impl MethodSelection {
         }
     }
 
-    /// Starts a phase of explicit steps. Returns how many it has.
+    /// Starts an explicit phase. Returns its number of steps.
     pub(crate) fn next_phase(&mut self) -> usize {
         if self.step_count == 0 {
             self.phase_cost = (2 * self.phase_cost).min(PHASE_COSTS.1);

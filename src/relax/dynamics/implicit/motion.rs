@@ -1,14 +1,15 @@
-//! [`ImplicitMotion`]: disks in damped motion, moved by one long step of a linearly implicit method at a time.
+//! [`ImplicitMotion`]: disks in damped motion, integrated with long steps of a linearly implicit method.
 //!
 //! ```text
 //! u̇ = v        m v̇ = F(u) − ζ v − Σ c_ij (n·v_ij) n        Ẇ = ζ v² + Σ c_ij (n·v_ij)²
 //! (m/(hγ)² + (ζ + C)/(hγ) + K) U_i = r_v + (m/(hγ) + ζ + C) r_u        r_u, r_v the right sides of the stage
 //! ```
 //!
-//! C is the matrix of the contact damping, K the [`Hessian`](crate::linear::hessian::Hessian). Damped dynamics has m = 1, ζ = 0.
-//! Gradient flow has m = 0, C = 0, and no velocities. The matrix is symmetric, and one factorisation serves all stages. It leaves
-//! out how C rotates and grows with u, and contains contacts that may close during the step. Neither changes the order, see
-//! [`super::tableau`]. The matrix is positive definite except for the prestress in K, which is left out where necessary.
+//! C is the matrix of the contact damping, K the [`Hessian`](crate::linear::hessian::Hessian). Damped dynamics has m =
+//! 1, ζ = 0. Gradient flow has m = 0, C = 0, and no velocities. The matrix is symmetric, and one factorisation serves
+//! all stages. It neglects the derivatives of C with respect to u, and contains contacts that may close during the
+//! step. Neither changes the order, see [`super::tableau`]. The matrix is positive definite except for the prestress in
+//! K, which is omitted where necessary.
 
 use crate::forces::assembly::Assembly;
 use crate::forces::damped::add_damping;
@@ -44,10 +45,11 @@ pub struct ImplicitMotion<const D: usize, L, C> {
     pub time: f64,
     /// Cost so far.
     pub work: Work,
-    /// How much nearer disks are assumed in the matrix of a step than at its start \[length\]. The matrix then contains contacts
-    /// that close during the step; without them a step may be unstable.
+    /// Distance by which disks are assumed closer in the matrix than at the start of the step \[length\]. The matrix
+    /// then contains contacts that close during the step; without them a step may be unstable.
     pub margin: f64,
-    /// Disks in working order: the matrix contains the prestress of contacts between two marked ones. At first all are marked.
+    /// Marks of disks in working order. The matrix contains the prestress of contacts between two marked disks.
+    /// Initially all are marked.
     pub prestressed: Vec<bool>,
     pub(super) inertia: Inertia,
     pub(super) damping: C,
@@ -82,7 +84,7 @@ pub(crate) struct Snapshot<const D: usize, L> {
     time: f64,
 }
 
-/// What a rejected step has to restore.
+/// State that a rejected step has to restore.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Before<const D: usize> {
     pub(super) velocities: Vec<Vector<D>>,
@@ -142,7 +144,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         totals
     }
 
-    /// The time in which this force moves a disk at rest by this distance \[time\].
+    /// Time in which this force moves a disk at rest by this distance \[time\].
     pub(crate) fn time_to_move(&self, distance: f64, force: f64) -> f64 {
         match self.inertia {
             Inertia::Massive => (2.0 * distance / force).sqrt(),
@@ -150,7 +152,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         }
     }
 
-    /// Whether there are masses.
+    /// Whether the disks have masses.
     pub(crate) fn has_masses(&self) -> bool {
         self.inertia == Inertia::Massive
     }
@@ -199,7 +201,8 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         Ok(())
     }
 
-    /// The step at which (hγ)² λ or hγ λ/ζ is `limit`; λ bounds the stiffness of contacts. Infinite without contacts \[time\].
+    /// The step at which (hγ)² λ or hγ λ/ζ equals `limit`, where λ bounds the contact stiffness \[time\]. Infinite
+    /// without contacts.
     pub fn longest_step(&mut self, limit: f64) -> f64 {
         let stiffness = self.assembly.stiffness_bound(&mut self.row);
         let ratio = limit / stiffness;

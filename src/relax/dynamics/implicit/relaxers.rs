@@ -14,42 +14,43 @@ use crate::relax::outcome::Outcome;
 use crate::relax::relaxer::Relaxer;
 use crate::relax::trace::Trace;
 
-/// Damped dynamics by implicit steps.
+/// Settings of damped dynamics with implicit steps.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ImplicitDynamics {
-    /// How contacts dissipate. Changes results.
+    /// Damping law of contacts. Changes results.
     pub damping: DampingChoice,
-    /// When the packing counts as at rest. Changes results.
+    /// Criterion of mechanical equilibrium. Changes results.
     pub limit: ForceLimit,
-    /// Which net force the limit is on. Changes results.
+    /// Net force to which the limit applies. Changes results.
     pub net_force: NetForce,
     /// Error allowed in one step, over the mean overlap \[1\]. Changes results where minima lie close together.
     pub tolerance: f64,
     /// How the motion ends.
     pub finish: Finish,
-    /// Steps allowed, rejected ones included. A phase of explicit or stabilised steps counts as one.
+    /// Largest number of steps, rejected ones included. A phase of explicit or stabilised steps counts as one.
     pub step_limit: usize,
 }
 
-/// Gradient flow, the path of steepest descent, by implicit steps. It ends in the minimum whose basin contains the start.
+/// Settings of gradient flow, the path of steepest descent, with implicit steps. It ends in the minimum whose basin
+/// contains the start.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct GradientFlow {
-    /// When the packing counts as at rest. Changes results.
+    /// Criterion of mechanical equilibrium. Changes results.
     pub limit: ForceLimit,
     /// Error allowed in one step, over the mean overlap \[1\]. Changes results where minima lie close together.
     pub tolerance: f64,
     /// How the flow ends.
     pub finish: Finish,
-    /// Steps allowed, rejected ones included.
+    /// Largest number of steps, rejected ones included.
     pub step_limit: usize,
 }
 
 /// Default tolerance, see the book.
 const TOLERANCE: f64 = 0.01;
 
-/// Default limit of steps.
+/// Default largest number of steps.
 const STEP_LIMIT: usize = 100_000;
 
 impl Default for ImplicitDynamics {

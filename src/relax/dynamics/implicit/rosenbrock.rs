@@ -40,7 +40,8 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         stepped
     }
 
-    /// Estimated error of the last step for a mobile disk: that of its position, and that of its velocity times hγ \[length\].
+    /// Estimated error of the last step for a mobile disk: that of its position, and that of its velocity times hγ
+    /// \[length\].
     pub fn error(&self, time_step: f64, disk: usize) -> f64 {
         let scale = time_step * ROS34PW2.diagonal;
         let (mut moved, mut kick) = ([0.0; D], [0.0; D]);
@@ -108,7 +109,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
                 }
             }
         }
-        // Stiffly accurate: the end is the argument of the last stage plus its U.
+        // The method is stiffly accurate: the end state is the argument of the last stage plus its U.
         let mut weights = ROS34PW2.argument[STAGE_COUNT - 1];
         weights[STAGE_COUNT - 1] = 1.0;
         let Some(totals) = self.go(&weights)? else { return Ok(Stepped::TooFar) };
@@ -118,8 +119,8 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         Ok(Stepped::Moved(totals))
     }
 
-    /// Sets disks and velocities to the start of the step plus this sum of stages, and evaluates the forces. None if a disk would move
-    /// farther than the smallest radius, or if its displacement is NaN.
+    /// Sets positions and velocities to the start of the step plus this weighted sum of stages, and evaluates the
+    /// forces. None if a disk would move farther than the smallest radius, or if its displacement is NaN.
     fn go(&mut self, weights: &[f64]) -> Result<Option<Totals<D>>, PackingError> {
         let mut longest = 0.0;
         for (disk, moved) in self.moved.iter_mut().enumerate() {
@@ -139,7 +140,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             });
             self.assembly.displacements[disk] = sum(self.assembly.displacements[disk], moved);
         }
-        // A restored assembly may have another list as well.
+        // A restored assembly may also have another list.
         let _ = self.assembly.keep_listed(longest)?;
         self.set_damping_coefficients();
         Ok(Some(self.evaluate()))

@@ -1,7 +1,7 @@
-//! [`Stagnation`]: when a motion counts as one that does not come to rest.
+//! [`Stagnation`]: detection of a motion that does not come to rest.
 
-/// Steps after which a motion stagnates, if its residual has not fallen by 10 % and damping has taken less than half of its
-/// initial kinetic energy.
+/// Number of steps after which a motion stagnates, if its residual has not fallen by 10 % and damping has removed less
+/// than half of its initial kinetic energy.
 const STAGNATION_STEPS: usize = 3000;
 
 /// The half in [`STAGNATION_STEPS`].
@@ -22,7 +22,7 @@ impl Default for Stagnation {
 }
 
 impl Stagnation {
-    /// Whether, for too long, the residual has not fallen and damping has taken little of the kinetic energy.
+    /// Whether the residual has not fallen for too long, while damping has removed little of the kinetic energy.
     pub(crate) fn is_reached(
         &mut self,
         step_count: usize,

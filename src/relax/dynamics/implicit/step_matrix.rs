@@ -4,9 +4,9 @@
 //! (m/(hγ)² + (ζ + C)/(hγ) + K) U = r
 //! ```
 //!
-//! It contains the present contacts and those that may close during the step. Each disk may come nearer by up to ten times its
-//! displacement in the last accepted step. Where the mass term dominates, conjugate gradients with an incomplete factor need a few
-//! products. Elsewhere a Cholesky factor serves all stages.
+//! The matrix contains the present contacts and those that may close during the step. Each disk may approach others by
+//! up to ten times its displacement in the last accepted step. If the mass term dominates, conjugate gradients with an
+//! incomplete factor need only a few matrix products. Otherwise a Cholesky factor serves all stages.
 
 use crate::forces::assembly::Assembly;
 use crate::law::damping::DampingLaw;
@@ -19,14 +19,14 @@ use crate::relax::dynamics::implicit::inertia::{Inertia, Work};
 use crate::sparse::SymmetricMatrix;
 use crate::vector::{Vector, larger, norm, scaled};
 
-/// Condition of the matrix, by its rows, up to which conjugate gradients are used. They need some ten products a stage there, and
-/// less time than a factorisation of any size (5548 disks).
+/// Largest condition number of the matrix, by its rows, for which conjugate gradients are used. They then need some ten
+/// products per stage, and less time than a factorisation.
 const ITERATION_CONDITION: f64 = 6.0;
 
 /// Backward error of their solutions \[1\]. The relative error of a stage is then far below any tolerance of a step.
 const ITERATION_ERROR: f64 = 1e-8;
 
-/// Factor on a disk's last displacement by which it may come nearer in the next step.
+/// Factor on the last displacement of a disk; the disk may approach others by the product in the next step.
 const APPROACH_FACTOR: f64 = 10.0;
 
 /// A pair in the matrix of a step.
@@ -38,7 +38,7 @@ pub(crate) struct Link<const D: usize> {
     pub(crate) damping: f64,
 }
 
-/// The terms that a step adds to its matrix.
+/// The terms that a step adds to the matrix.
 pub(crate) struct StepTerms<'a, C> {
     /// hγ.
     pub(crate) scale: f64,
@@ -92,12 +92,12 @@ impl<const D: usize> StepMatrix<D> {
         }
     }
 
-    /// Sets the displacements of the last step. They bound how much nearer disks may come in the next.
+    /// Sets the displacements of the last step. They bound the approach of disks in the next step.
     pub(crate) fn set_last_distances(&mut self, moved: &[Vector<D>]) {
         self.last_distances.iter_mut().zip(moved).for_each(|(distance, &moved)| *distance = norm(moved));
     }
 
-    /// The matrix of a step that begins here, factorised or ready for conjugate gradients.
+    /// The matrix of a step from the present state, factorised or prepared for conjugate gradients.
     pub(crate) fn set<L: PairLaw, C: DampingLaw>(
         &mut self,
         assembly: &Assembly<D, L>,
@@ -124,7 +124,7 @@ impl<const D: usize> StepMatrix<D> {
         let matrix = &mut self.matrix;
         matrix.clone_from(self.hessian.matrix());
         for column in 0..matrix.dimension() {
-            // The first entry of a column is the one on the diagonal.
+            // The first entry of a column is the diagonal one.
             matrix.values[matrix.starts[column]] += diagonal;
         }
         let iterate = mass > 0.0 && matrix.norm() <= ITERATION_CONDITION * diagonal;
@@ -181,7 +181,7 @@ impl<const D: usize> PreparedMatrix<'_, D> {
                 let limits = IterationLimits { backward_error: ITERATION_ERROR, iteration_count: 200 };
                 match conjugate_gradients(matrix, factor, right_side, unknowns, &limits) {
                     Ok(solution) => solution.iteration_count,
-                    // The best solution so far. If it is not good enough, the error of the step shows it.
+                    // The best solution so far. If it is too inaccurate, the error estimate of the step shows it.
                     Err(_) => limits.iteration_count,
                 }
             }

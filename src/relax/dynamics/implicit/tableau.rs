@@ -1,15 +1,16 @@
-//! The coefficients of a Rosenbrock method, in the form without products with the matrix.
+//! Coefficients of a Rosenbrock method, in the form without products with the matrix.
 //!
 //! ```text
 //! (1/(hγ) − J̃) U_i = f(y + Σ_{j<i} a_ij U_j) + Σ_{j<i} (c_ij/h) U_j        y' = y + Σ m_j U_j
 //! ```
 //!
-//! [`ROS34PW2`] has four stages and order 3; it is L-stable and stiffly accurate. It keeps its order for every J̃ (a *W-method*):
-//! J̃ may leave out unsymmetric parts, be outdated, or be made definite. Its embedded solution `y + Σ m̂_j U_j` has order 2.
+//! [`ROS34PW2`] has four stages and order 3; it is L-stable and stiffly accurate. It keeps its order for every J̃ (a
+//! *W-method*). So J̃ may omit unsymmetric parts, be outdated, or be made definite. Its embedded solution `y + Σ m̂_j
+//! U_j` has order 2.
 //!
 //! # Source
-//! Rang, Angermann (2005), BIT Numer. Math. 45, 761, ROS34PW2. The form: Hairer, Wanner (1996), Solving Ordinary Differential
-//! Equations II, §IV.7.
+//! Rang, Angermann (2005), BIT Numer. Math. 45, 761, ROS34PW2. The form: Hairer, Wanner (1996), Solving Ordinary
+//! Differential Equations II, §IV.7.
 
 /// Stages of the method.
 pub const STAGE_COUNT: usize = 4;
@@ -134,8 +135,8 @@ mod tests {
 
     #[test]
     fn the_order_conditions_of_a_w_method_hold_to_rounding() {
-        // Hairer, Wanner (1996), §IV.7, eq. (7.11) with the conditions of W-methods: every tree of up to three vertices,
-        // with either matrix on its edges. Sums of four products below 2: 4 roundings of 10⁻¹⁶.
+        // Hairer, Wanner (1996), §IV.7, eq. (7.11) with the conditions of W-methods: every tree of up to three
+        // vertices, with either matrix on its edges. Sums of four products below 2: 4 roundings of 10⁻¹⁶.
         let (a, g) = (&PUBLISHED_ARGUMENT, &PUBLISHED_IMPLICIT);
         let (alpha, gamma) = (row_sums(a), row_sums(g));
         let squares = std::array::from_fn(|i| alpha[i] * alpha[i]);
@@ -151,12 +152,12 @@ mod tests {
         close(product(b, times(a, gamma)), 0.0);
         close(product(b, times(g, alpha)), 0.0);
         close(product(b, times(g, gamma)), 0.0);
-        // The embedded solution is of order 2 only; else the difference would estimate nothing.
+        // The embedded solution is only of order 2; otherwise the difference would not estimate the error.
         assert!((product(PUBLISHED_EMBEDDED, squares) - 1.0 / 3.0).abs() > 0.01);
     }
 
-    /// The factor by which a step multiplies y for y' = λ y, z = hλ real or imaginary, as (real, imaginary) part; and the
-    /// share of the estimated error.
+    /// Amplification factor of a step for y' = λ y, with z = hλ real or imaginary, as (real, imaginary) part; and the
+    /// same factor of the estimated error.
     fn factor(z: (f64, f64)) -> ((f64, f64), (f64, f64)) {
         let times = |a: (f64, f64), b: (f64, f64)| (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0);
         let divided = |a: (f64, f64), b: (f64, f64)| {
@@ -199,7 +200,7 @@ mod tests {
 
     #[test]
     fn a_step_agrees_with_the_exponential_to_third_order() {
-        // Error C h⁴ a step: halving h divides it by 16, to relative order h.
+        // Error C h⁴ per step: halving h divides it by 16, up to relative order h.
         let error = |h: f64| (factor((-h, 0.0)).0.0 - (-h).exp()).abs();
         let order = (error(0.02) / error(0.01)).log2();
         assert!((order - 4.0).abs() < 0.05, "{order}");

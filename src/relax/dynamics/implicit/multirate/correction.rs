@@ -1,15 +1,17 @@
-//! Multirate steps: a stabilised step that is too long for a few disks is repeated around them, in shorter steps.
+//! Multirate steps: a stabilised step that is too long for a few disks is repeated around these disks, in shorter
+//! steps.
 //!
-//! Where a contact opens or closes, the error of a step is thousands of times that of the rest of the packing. Each such disk and
-//! some shells of contacts around it form a [`Patch`]. The patch is integrated again from the start of the step to its end, in
-//! steps as long as its own errors allow. The disks around it follow the long step. So every disk has the allowed error, and the
-//! work of an event is that of its surroundings. The effect of the patch on the disks around it is neglected. So its last shell must
-//! agree with the long step, to a share of the allowed error. If nothing holds the packing, the neglected momentum is distributed
-//! evenly over all disks. Otherwise the packing would drift, and no contact damps a drift.
+//! If a contact opens or closes, the error of a step is thousands of times that of the rest of the packing. Each disk
+//! with such an error and some shells of contacts around it form a [`Patch`]. The patch is integrated again from the
+//! start of the step to its end, in steps as long as its own errors allow. The disks around it follow the long step. So
+//! every disk has the allowed error, and the work of an event is that of its surroundings. The effect of the patch on
+//! the disks around it is neglected. So its last shell must agree with the long step, up to a fraction of the allowed
+//! error. If the packing has no held disks or sites, the neglected momentum is distributed evenly over all disks.
+//! Otherwise the packing would drift, and no contact damps a drift.
 //!
 //! # Source
-//! Savcenco, Hundsdorfer, Verwer (2007), BIT Numer. Math. 47, 137: first one step for all components, then shorter ones for those
-//! whose error is too large, with the others interpolated.
+//! Savcenco, Hundsdorfer, Verwer (2007), BIT Numer. Math. 47, 137: first one step for all components, then shorter
+//! steps for those whose error is too large, with the others interpolated.
 
 use crate::law::damping::DampingLaw;
 use crate::law::pair_law::PairLaw;
@@ -21,24 +23,25 @@ use crate::relax::dynamics::implicit::rkc::coefficients::Chebyshev;
 use crate::relax::dynamics::implicit::rkc::stages::measure;
 use crate::vector::{Vector, difference, larger, norm, scaled, sum};
 
-/// Largest change of the last shell of a patch over the allowed error. The disks around, which are kept, would change by less.
+/// Largest change of the last shell of a patch over the allowed error. The surrounding disks, which are kept, would
+/// change by less.
 const LAST_SHELL_CHANGE: f64 = 0.5;
 
-/// Shells of a patch beyond those that its disks affect in one step, which are [`AFFECTED_SHELLS`] √(hλ).
+/// Number of shells of a patch in addition to those affected in one step, which are [`AFFECTED_SHELLS`] √(hλ).
 const EXTRA_SHELLS: u32 = 1;
 
-/// See [`EXTRA_SHELLS`]. Of 3000 to 4000 steps of 16 508 disks at p = 10, patches fail in 3 at 1, in 34 at 1/2 and in 461 at 0.3.
-/// The whole motion takes a third longer at 1 than at 1/2, and as long at 0.3.
+/// See [`EXTRA_SHELLS`]. With a smaller value more patches fail; a larger value makes the motion slower.
 const AFFECTED_SHELLS: f64 = 0.5;
 
-/// Largest share of the mobile disks in patches. With more of them a shorter step of all disks costs less.
+/// Largest fraction of the mobile disks in patches. Above it a shorter step of all disks costs less.
 const LARGEST_SHARE: f64 = 0.25;
 
-/// Displacement for which the list must hold, over the width of the skin. At most half of the skin is possible.
+/// Displacement for which the list must be complete, over the width of the skin. At most half of the skin is possible.
 const LISTED_SKIN: f64 = 0.25;
 
 impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
-    /// Repeats the last stabilised step around some disks. False if that is impossible: the step must then be taken back.
+    /// Repeats the last stabilised step around some disks. Returns false if that is impossible: the step must then be
+    /// taken back.
     ///
     /// # Errors
     /// Two disks with the same centre.
@@ -83,7 +86,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         self.assembly.mobile_count() == self.assembly.len() && !self.assembly.law().has_sites()
     }
 
-    /// Removes this momentum evenly from all disks, which changes no relative velocity and so no force.
+    /// Removes this momentum evenly from all disks. This changes no relative velocity, and so no force.
     fn remove_momentum(&mut self, momentum: Vector<D>) {
         let kick = scaled(-1.0 / self.velocities.len() as f64, momentum);
         for velocity in &mut self.velocities {
@@ -91,7 +94,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         }
     }
 
-    /// The longest change of a disk in all patches. None if one failed.
+    /// The largest change of a disk in all patches. None if a patch failed.
     fn correct_patches(
         &mut self,
         shell_count: u32,
@@ -117,7 +120,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         Some(change)
     }
 
-    /// The longest change of a disk. None if the patch failed.
+    /// The largest change of a disk. None if the patch failed.
     fn correct_patch(
         &mut self,
         longest: f64,
@@ -200,7 +203,7 @@ mod tests {
         motion
     }
 
-    /// Moves on by [`STEP`], in this number of steps.
+    /// Integrates over [`STEP`], in this number of steps.
     fn go(motion: &mut Motion, step_count: usize) {
         let stiffness = motion.stiffness().expect("every contact is damped");
         let time_step = STEP / step_count as f64;
@@ -220,7 +223,7 @@ mod tests {
         (0..mobile).filter(|&disk| share(0, motion.stabilised_error(STEP, disk as usize)) > 1.0).collect()
     }
 
-    /// Longest distance of a disk between two motions of one packing \[length\].
+    /// Largest distance of a disk between two motions of one packing \[length\].
     fn apart(one: &Motion, other: &Motion) -> f64 {
         let places =
             (0..one.assembly.len()).map(|disk| difference(one.assembly.place(disk), other.assembly.place(disk)));
@@ -243,7 +246,7 @@ mod tests {
         let before = motion.assembly.displacements.clone();
         assert!(refined(&mut motion, &disks));
         let error = apart(&motion, &exact);
-        // Each step of the patch has at most the allowed error, mostly less by SAFETY or more. The errors add up.
+        // Each step of the patch has at most the allowed error, and usually a fraction SAFETY of it. The errors add up.
         assert!(long_error > 20.0 * ALLOWED && error < 10.0 * ALLOWED, "{error}, without {long_error}");
         let moved = motion.assembly.displacements.iter().zip(&before).filter(|(now, before)| now != before).count();
         assert!(moved < before.len() / 4, "{moved} disks moved again");
@@ -274,7 +277,7 @@ mod tests {
         go(&mut motion, 1);
         let mobile = motion.assembly.mobile_count() as u32;
         let before = motion.assembly.displacements.clone();
-        // Too many disks; then one whose surroundings move with it.
+        // Too many disks; then a disk whose surroundings move with it.
         let every_other: Vec<u32> = (0..mobile).step_by(2).collect();
         assert!(!refined(&mut motion, &every_other));
         motion.velocities.iter_mut().for_each(|velocity| *velocity = [30.0, 0.0]);

@@ -1,8 +1,11 @@
-//! [`Patch`]: some disks that are moved separately over one long step. The course of the disks around them is known.
+//! [`Patch`]: some disks that are integrated separately over one long step. The motion of the surrounding disks is
+//! given.
 //!
 //! ```text
-//! w(x) = w_1 (3x² − 2x³) + h v_0 (x − 2x² + x³) + h v_1 (x³ − x²)        0 ≤ x = t/h ≤ 1: displacement of an outer disk, h the long step
+//! w(x) = w_1 (3x² − 2x³) + h v_0 (x − 2x² + x³) + h v_1 (x³ − x²)        0 ≤ x = t/h ≤ 1
 //! ```
+//!
+//! w is the displacement of an outer disk, h the long step.
 
 use crate::forces::damped::damped_forces;
 use crate::law::damping::DampingLaw;
@@ -13,14 +16,14 @@ use crate::relax::dynamics::implicit::rkc::stages::{Stages, estimated_error};
 use crate::relax::dynamics::implicit::step_control::{LARGEST_RATIO, step_ratio};
 use crate::vector::{Vector, difference, larger, sum};
 
-/// Ratio of the long step to the first short step. It is a guess that the errors correct at once.
+/// Ratio of the long step to the first short step. It is an initial guess that the error control corrects at once.
 const FIRST_PARTS: f64 = 4.0;
 
-/// Largest number of short steps, rejected ones included. If more are needed, the long step is far too long.
+/// Largest number of short steps, rejected ones included. If more are needed, the long step is much too long.
 const MOST_STEPS: usize = 500;
 
 /// No index.
-const NOWHERE: u32 = u32::MAX;
+const ABSENT: u32 = u32::MAX;
 
 /// The disks whose errors are too large for the long step, and the accuracy they need.
 pub(crate) struct FastDisks<'a, S> {
@@ -33,10 +36,10 @@ pub(crate) struct FastDisks<'a, S> {
     pub(crate) share: S,
 }
 
-/// Some disks inside, and those around them.
+/// Inner disks, and the outer disks around them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Patch<const D: usize> {
-    /// The disks inside, which move, then those around them; numbers in working order.
+    /// The inner disks, which move, then the outer disks; numbers in working order.
     pub(crate) disks: Vec<u32>,
     /// Which of the inner disks belong to the last shell.
     pub(crate) last_shell: Vec<bool>,
@@ -85,7 +88,7 @@ impl<const D: usize> Patch<D> {
     /// Sets the number of disks of the packing.
     pub(crate) fn set_disk_count(&mut self, disk_count: usize) {
         self.places.clear();
-        self.places.resize(disk_count, NOWHERE);
+        self.places.resize(disk_count, ABSENT);
     }
 
     /// Removes all disks.
@@ -106,7 +109,7 @@ impl<const D: usize> Patch<D> {
     }
 
     pub(crate) fn has(&self, disk: u32) -> bool {
-        self.places[disk as usize] != NOWHERE
+        self.places[disk as usize] != ABSENT
     }
 
     /// Index of a disk in the patch.
@@ -145,7 +148,7 @@ impl<const D: usize> Patch<D> {
         }
         self.pairs.select(whole, &self.starts, &self.seconds);
         for &disk in &self.disks {
-            self.places[disk as usize] = NOWHERE;
+            self.places[disk as usize] = ABSENT;
         }
     }
 
@@ -157,7 +160,8 @@ impl<const D: usize> Patch<D> {
         self.damping.extend(ends.map(|(&i, &j)| damping.coefficient(radius(i), radius(j))));
     }
 
-    /// Sets the course of the next disk: position at the end of the long step, displacement in it, velocities at its start and end.
+    /// Sets the motion of the next disk: position at the end of the long step, displacement in it, and velocities at
+    /// its start and end.
     pub(crate) fn set_course(&mut self, end: Vector<D>, moved: Vector<D>, velocities: [Vector<D>; 2]) {
         self.start.push(difference(end, moved));
         self.moved.push(moved);
@@ -175,7 +179,7 @@ impl<const D: usize> Patch<D> {
         std::mem::take(&mut self.pair_count)
     }
 
-    /// Repeats the long step, of length h \[time\], with interpolated outer disks. Keeps its forces.
+    /// Repeats the long step, of length h \[time\], with interpolated outer disks. Stores its forces.
     pub(crate) fn long_step<L: PairLaw, C: DampingLaw>(
         &mut self,
         laws: (&L, &C),
@@ -193,8 +197,8 @@ impl<const D: usize> Patch<D> {
         LongStep { work, power: self.power }
     }
 
-    /// Takes short steps over the long step. Returns the work of damping. None if there are too many steps, or if a disk would move
-    /// farther than `longest`.
+    /// Takes short steps over the long step. Returns the work of damping. Returns None if there are too many steps, or
+    /// if a disk would move farther than `longest`.
     pub(crate) fn short_steps<L: PairLaw, C: DampingLaw>(
         &mut self,
         laws: (&L, &C),
@@ -222,7 +226,7 @@ impl<const D: usize> Patch<D> {
             }
             if share <= 1.0 {
                 (work, reach) = (work + step_work, reach + step_reach);
-                // The bound is per coordinate.
+                // The bound is per component.
                 if reach * (D as f64).sqrt() > longest {
                     return None;
                 }
@@ -260,7 +264,8 @@ impl<const D: usize> Patch<D> {
         self.before.power = self.power;
     }
 
-    /// One short step of the inner disks at this time of the long step. Returns the work of damping and a bound on displacements.
+    /// One short step of the inner disks at this time of the long step. Returns the work of damping and a bound on
+    /// displacements.
     fn step<L: PairLaw, C: DampingLaw>(
         &mut self,
         laws: (&L, &C),
@@ -290,7 +295,7 @@ impl<const D: usize> Patch<D> {
         (work, reach)
     }
 
-    /// Interpolates the outer disks at this share x of the long step h.
+    /// Interpolates the outer disks at this fraction x of the long step h.
     fn set_around(&mut self, h: f64, x: f64) {
         let rest = 1.0 - x;
         let position = [x * x * (3.0 - 2.0 * x), h * x * rest * rest, -h * x * x * rest];

@@ -7,7 +7,8 @@ use crate::neighbours::pair_list::PairList;
 use crate::relax::dynamics::implicit::multirate::patch::Patch;
 use crate::vector::{Vector, larger, norm};
 
-/// Largest displacement in a patch over the longest one of the long step there. The pair list must hold for such displacements.
+/// Largest displacement in a patch over the largest one of the long step there. The pair list must be complete for such
+/// displacements.
 pub(crate) const LONGEST_MOVE: f64 = 4.0;
 
 /// The disk is in no patch.
@@ -33,7 +34,7 @@ pub(crate) struct Shells<const D: usize> {
 }
 
 impl<const D: usize> Shells<D> {
-    /// Updates the pairs of each disk if the list is another one.
+    /// Updates the pairs of each disk if the list has changed.
     pub(crate) fn set_list(&mut self, pairs: &PairList<D>, disk_count: usize, list: usize) {
         if self.list == list && self.shell_of.len() == disk_count {
             return;
@@ -56,7 +57,7 @@ impl<const D: usize> Shells<D> {
                 self.starts[disk as usize] += 1;
             }
         }
-        // Each start now is that of the next disk.
+        // Each start is now that of the next disk.
         self.starts.rotate_right(1);
         self.starts[0] = 0;
         self.shell_of.clear();
@@ -73,8 +74,8 @@ impl<const D: usize> Shells<D> {
         })
     }
 
-    /// Finds the shells of mobile disks around some disks; gaps up to `margin` count as contacts. Returns whether there are no more
-    /// than `most` of them.
+    /// Finds the shells of mobile disks around some disks; gaps up to `margin` count as contacts. Returns whether they
+    /// contain at most `most` disks.
     pub(crate) fn set_shells<L: PairLaw>(
         &mut self,
         assembly: &Assembly<D, L>,
@@ -109,8 +110,8 @@ impl<const D: usize> Shells<D> {
         self.inside.len() <= most
     }
 
-    /// Sets the patch of a disk: all inner disks connected with it by pairs of the list, and those around them. Returns how far a disk
-    /// of it may move \[length\]. Pairs that cannot touch then are left out.
+    /// Sets the patch of a disk: all inner disks connected with it by pairs of the list, and the outer disks around
+    /// them. Returns the largest displacement allowed in it \[length\]. Pairs that cannot touch then are omitted.
     pub(crate) fn set_patch(
         &mut self,
         (pairs, displacements): (&PairList<D>, &[Vector<D>]),
@@ -139,7 +140,7 @@ impl<const D: usize> Shells<D> {
             for (pair, other) in self.pairs_of(pairs, disk) {
                 // A pair of two inner disks is found from both of them.
                 let met = patch.place(other).is_some_and(|place| place < inside);
-                // Both disks may come nearer.
+                // Both disks may approach each other.
                 if !met && geometry(pairs, pair, displacements).2 > -2.0 * longest {
                     patch.add(other);
                     patch.add_pair(pair, [pairs.first[pair], pairs.second[pair]]);

@@ -1,4 +1,5 @@
-//! Coefficients of the Runge–Kutta–Chebyshev method: explicit, of second order, with as many stages as the stiffness needs.
+//! Coefficients of the Runge–Kutta–Chebyshev method: explicit, of second order, with as many stages as the stiffness
+//! requires.
 //!
 //! ```text
 //! Y_1 = y + h μ̃_1 f(y)
@@ -6,10 +7,10 @@
 //! y' = P(hλ) y        P(z) = a_s + b_s T_s(w_0 + w_1 z)        (for ẏ = λ y)
 //! ```
 //!
-//! T_s is Chebyshev's polynomial of degree s; w_0 = 1 + ε/s², w_1 = T_s'(w_0)/T_s''(w_0), b_j = T_j''(w_0)/T_j'(w_0)²,
-//! a_j = 1 − b_j T_j(w_0). |P| ≤ 1 from 0 to −β with β = (w_0 + 1)/w_1, which grows as s². So s evaluations of f replace of the
-//! order of s² evaluations of a plain explicit method. Unresolved decays are multiplied by 1/3 ± less than 2/3; the spread falls
-//! with ε. From ε = 2/13 to 8, motions of 1000 disks need more evaluations.
+//! T_s is the Chebyshev polynomial of degree s; w_0 = 1 + ε/s², w_1 = T_s'(w_0)/T_s''(w_0), b_j =
+//! T_j''(w_0)/T_j'(w_0)², a_j = 1 − b_j T_j(w_0). |P| ≤ 1 from 0 to −β with β = (w_0 + 1)/w_1, which grows as s². So s
+//! evaluations of f replace of the order of s² evaluations of a plain explicit method. Unresolved decays are multiplied
+//! by factors within 2/3 of 1/3. The range of these factors decreases with increasing ε.
 //!
 //! # Source
 //! Sommeijer, Shampine, Verwer (1997), J. Comput. Appl. Math. 88, 315, eqs. (2.1) to (2.8), ε = 2/13 there.
@@ -20,14 +21,14 @@ const DAMPING: f64 = 2.0 / 13.0;
 /// Lower bound of β over s² − 1.
 const EXTENT: f64 = 0.653;
 
-/// R. An oscillation with the ratio ρ of stiffness to damping has λ on the circle of radius ρ through 0 with its centre at −ρ. If
-/// hλ lies inside a circle of radius R (1 − 2.8/s²), then |P| ≤ 1, for every s.
+/// R. An oscillation with the ratio ρ of stiffness to damping has λ on the circle of radius ρ through 0 with its centre
+/// at −ρ. If hλ lies inside a circle of radius R (1 − 2.8/s²), then |P| ≤ 1 for every s.
 const CIRCLE: f64 = 2.5;
 
-/// The 2.8 there.
+/// The constant 2.8 in the radius of that circle.
 const CIRCLE_LOSS: f64 = 2.8;
 
-/// Longest step over R/ρ. Beyond, the circle would set the number of stages.
+/// Longest step over R/ρ. For longer steps the circle would determine the number of stages.
 const LONGEST: f64 = 0.9;
 
 /// Coefficients of one stage.
@@ -114,7 +115,7 @@ impl Chebyshev {
     }
 }
 
-/// What a step must not amplify: decays of rates up to λ, and oscillations with stiffness over damping up to ρ.
+/// Stability requirement of a step: decay rates up to λ, and oscillations with ratios of stiffness to damping up to ρ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stiffness {
     /// λ \[1 / time\].
@@ -129,17 +130,17 @@ impl Stiffness {
         LONGEST * CIRCLE / self.ratio
     }
 
-    /// Number of stages for a step of this length, up to the longest.
+    /// Number of stages for a step of this length, up to the largest number allowed.
     pub(crate) fn stage_count(&self, time_step: f64) -> usize {
         let decays = 1.0 + time_step * self.decay / EXTENT;
         let circle = CIRCLE_LOSS / (1.0 - (time_step * self.ratio / CIRCLE).min(LONGEST));
         let count = decays.max(circle).sqrt().ceil();
-        // NaN and absurd counts: the bound avoids an overflow.
+        // For NaN and very large counts the bound avoids an overflow.
         if count < MOST_STAGES as f64 { (count as usize).max(2) } else { MOST_STAGES }
     }
 }
 
-/// Bound on the number of stages.
+/// Largest number of stages.
 const MOST_STAGES: usize = 1000;
 
 #[cfg(test)]
@@ -186,8 +187,8 @@ mod tests {
             for k in 0..=40 {
                 let z = Complex64::new(-method.extent * f64::from(k) / 40.0, 0.3 * f64::from(k % 5));
                 let (stages, exact) = (by_stages(&method, z), closed(count, z));
-                // Rounding grows as s² (Verwer, Hundsdorfer, Sommeijer 1990); the closed form has second differences of w_0 near
-                // 1, which leave 10⁻¹⁶ s⁴/ε of them.
+                // Rounding grows as s² (Verwer, Hundsdorfer, Sommeijer 1990). The closed form contains second
+                // differences of w_0 near 1, with a rounding error of 10⁻¹⁶ s⁴/ε.
                 let bound = 1e-14 * (count as f64).powi(4) * exact.norm().max(1.0);
                 assert!((stages - exact).norm() < bound, "{count} stages, z = {z}: {stages} for {exact}");
             }
@@ -196,7 +197,8 @@ mod tests {
 
     #[test]
     fn the_stages_are_where_their_polynomials_say() {
-        // c_j = w_1 T_j''(w_0)/T_j'(w_0), the first derivative at 0 of that of stage j; c_1 is that of b_1 = b_2.
+        // c_j = w_1 T_j''(w_0)/T_j'(w_0) is the first derivative at 0 of the polynomial of stage j; for c_1 it is that
+        // of b_1 = b_2.
         for count in counts() {
             let method = Chebyshev::new(count);
             let w0 = 1.0 + DAMPING / (count as f64).powi(2);
@@ -215,7 +217,7 @@ mod tests {
 
     #[test]
     fn a_step_agrees_with_the_exponential_to_second_order() {
-        // Error C z³: halving z divides it by 8, to relative order z.
+        // Error C z³: halving z divides it by 8, up to relative order z.
         for count in counts() {
             let method = Chebyshev::new(count);
             let error = |z: f64| (by_stages(&method, Complex64::new(z, 0.0)).re - z.exp()).abs();
@@ -242,7 +244,8 @@ mod tests {
 
     #[test]
     fn a_damped_oscillator_never_grows() {
-        // ẍ = −κx − gẋ with every g up to λ and κ up to ρg: both roots of x² + gx + κ, over a grid of steps up to the longest.
+        // ẍ = −κx − gẋ with every g up to λ and κ up to ρg: both roots of x² + gx + κ, for a range of steps up to the
+        // longest.
         let decay = 3600.0;
         for ratio in [1.0, 10.0, 30.0, 100.0, 400.0, 2000.0] {
             let stiffness = Stiffness { decay, ratio };

@@ -1,4 +1,4 @@
-//! Phases of stabilised steps, each with about the work of an implicit step.
+//! Phases of stabilised steps; the work of a phase is about that of an implicit step.
 
 use crate::forces::totals::Totals;
 use crate::law::damping::DampingLaw;
@@ -12,25 +12,26 @@ use crate::relax::dynamics::implicit::multirate::patch::FastDisks;
 use crate::relax::dynamics::implicit::step_control::{LARGEST_RATIO, SMALLEST_RATIO, step_ratio};
 use crate::relax::outcome::Cost;
 
-/// Error allowed in a stabilised step over that in an implicit one. Of twelve motions of 1000 disks at p = 10 (constant damping),
-/// seven end where explicit dynamics do at 1/2, ten at 1/4. At 1/10 eleven do with one step for all disks, all twelve with shorter
-/// ones around events. Of twenty motions at p = 100 and at p = 800, all do at each share.
+/// Error allowed in a stabilised step over that in an implicit step. Smaller values make more motions end in the
+/// minimum of explicit dynamics, see the book.
 const TOLERANCE_SHARE: f64 = 0.1;
 
-/// Share of the mobile disks whose errors do not count for the length of a step. If their errors are too large, the step is
-/// repeated around them. A motion of 16 508 disks at p = 10 takes the same time from 1/300 to 1/30, and 10 % more at 1/10.
+/// Fraction of the mobile disks whose errors do not limit the step length. If their errors are too large, the step is
+/// repeated around them. The speed depends weakly on this value.
 const EXCLUDED_SHARE: f64 = 0.01;
 
-/// Ratio of the next step if the multirate correction fails.
+/// Ratio of step lengths if the multirate correction fails.
 const UNCORRECTED_RATIO: f64 = 0.5;
 
-/// Ratio of the next step after a phase that broke the energy balance.
+/// Ratio of step lengths after a phase that violated the energy balance.
 const UNBALANCED_RATIO: f64 = 0.25;
 
-/// Largest ratio from the longest stable step. Only an implicit step follows it, which is cheaper only if it is much longer.
+/// Largest ratio after the longest stable step. Only an implicit step can follow, and it is cheaper only if it is much
+/// longer.
 const RATIO_FROM_LONGEST: f64 = 20.0;
 
-/// Takes stabilised steps while they are cheapest, and repeats rejected ones with shorter ones. `time_step` becomes the next one.
+/// Takes stabilised steps while they are cheapest, and repeats rejected ones with shorter lengths. `time_step` becomes
+/// the next one.
 pub(crate) fn rkc_phase<const D: usize, L: PairLaw, C: DampingLaw>(
     motion: &mut ImplicitMotion<D, L, C>,
     selection: &mut MethodSelection,
@@ -89,7 +90,7 @@ struct Errors {
 }
 
 impl Errors {
-    /// The largest error, except for a share [`EXCLUDED_SHARE`] of the disks. NaN counts as the largest.
+    /// The largest error, except for a fraction [`EXCLUDED_SHARE`] of the disks. NaN counts as the largest.
     fn set(&mut self, disk_count: usize, error: impl Fn(usize) -> f64) -> f64 {
         self.of_disks.clear();
         self.of_disks.extend((0..disk_count).map(error));

@@ -1,4 +1,4 @@
-//! [`Stages`]: buffers and update of the stages of one Runge–Kutta–Chebyshev step; and its estimated error.
+//! [`Stages`]: buffers and update of the stages of one Runge–Kutta–Chebyshev step, and its estimated error.
 
 use crate::processor;
 use crate::relax::dynamics::implicit::rkc::coefficients::{Chebyshev, StageTerms};
@@ -9,7 +9,7 @@ use crate::vector::{Vector, difference, dot, larger, scaled, sum};
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Stages<const D: usize> {
     pub(crate) method: Option<Chebyshev>,
-    /// Displacements since the start of the step after the last stage, and after the one before it.
+    /// Displacements since the start of the step, after the last stage and after the stage before it.
     pub(crate) moved: Vec<Vector<D>>,
     earlier_moved: Vec<Vector<D>>,
     /// Velocities of all disks at the same stages; those of held disks are 0.
@@ -36,7 +36,8 @@ impl<const D: usize> Stages<D> {
         }
     }
 
-    /// Takes one stage. Returns the largest component of a displacement since the last stage, and since the start of the step.
+    /// Computes one stage. Returns the largest component of a displacement since the last stage, and since the start of
+    /// the step.
     pub(crate) fn advance(
         &mut self,
         terms: &StageTerms,
@@ -85,7 +86,8 @@ impl<const D: usize> Stages<D> {
     }
 }
 
-/// The error of a stabilised step, from a disk's displacement, and its velocities and forces at start and end \[length\].
+/// Error of a stabilised step, from the displacement of a disk and its velocities and forces at start and end
+/// \[length\].
 pub(crate) fn estimated_error<const D: usize>(
     time_step: f64,
     moved: Vector<D>,

@@ -1,4 +1,5 @@
-//! One step of the method of [`super::coefficients`]: stages, error, and the bounds that set the number of stages.
+//! One step of the method of [`super::coefficients`]: stages, error, and the bounds that determine the number of
+//! stages.
 
 use crate::forces::damped::damped_forces;
 use crate::law::damping::DampingLaw;
@@ -12,16 +13,16 @@ use crate::relax::dynamics::implicit::rkc::stages::{Stages, estimated_error};
 use crate::vector::{Vector, larger};
 
 impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
-    /// Bounds for stabilised steps while no contact closes whose gap exceeds [`ImplicitMotion::margin`]. None without masses, and where
-    /// something is stiff without damping: an undamped contact, or sites.
+    /// Stability requirement of stabilised steps, valid while no contact with a gap above [`ImplicitMotion::margin`]
+    /// closes. None for gradient flow, and if stiff forces are undamped: an undamped contact, or sites.
     ///
     /// ```text
     /// λ ≤ 2 max_i μ_i        μ_i the largest eigenvalue of Σ_j c_ij n n, half for a contact with a held disk
     /// ρ = max F'(δ_ij)/c_ij
     /// ```
     ///
-    /// Since (x_i − x_j)² ≤ 2 x_i² + 2 x_j². With six contacts a disk, this is about half of Gershgorin's rows, which add the c_ij
-    /// as if all n were parallel.
+    /// This follows from (x_i − x_j)² ≤ 2 x_i² + 2 x_j². With six contacts per disk it is about half of Gershgorin's
+    /// bound, which adds the c_ij as if all n were parallel.
     pub(crate) fn stiffness(&mut self) -> Option<Stiffness> {
         if self.assembly.law().has_sites() || self.inertia != Inertia::Massive {
             return None;
@@ -55,11 +56,12 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         (ratio.is_finite() && decay.is_finite()).then_some(Stiffness { decay, ratio })
     }
 
-    /// One explicit step of length h \[time\] with this number of stages; [`ImplicitMotion::take_back`] undoes it. False if a disk
-    /// would move farther than the smallest radius: the step must then be taken back.
+    /// One explicit step of length h \[time\] with this number of stages; [`ImplicitMotion::take_back`] undoes it.
+    /// Returns false if a disk would move farther than the smallest radius: the step must then be taken back.
     ///
-    /// Afterwards the net forces are those at the end, but the elastic ones in [`ImplicitMotion::assembly`] are not:
-    /// [`ImplicitMotion::evaluate`] computes them. Not for gradient flow, nor for laws with sites.
+    /// Afterwards the net forces are those at the end of the step, but the elastic forces in
+    /// [`ImplicitMotion::assembly`] are not. [`ImplicitMotion::evaluate`] computes them. The method does not apply to
+    /// gradient flow or to laws with sites.
     ///
     /// # Errors
     /// Two disks with the same centre.
@@ -99,7 +101,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
                 + slopes[0] * self.dissipation
                 + slopes[1] * start_dissipation;
             (earlier_work, work) = (work, next_work);
-            // The bounds are per coordinate.
+            // The bounds are per component.
             let longest = (D as f64).sqrt();
             if farthest * longest > self.smallest_radius {
                 return Ok(false);
@@ -125,7 +127,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         Ok(true)
     }
 
-    /// Estimated error of the last stabilised step for each mobile disk, in the measure of [`ImplicitMotion::error`]
+    /// Estimated error of the last stabilised step for each mobile disk, in the norm of [`ImplicitMotion::error`]
     /// \[length\].
     ///
     /// ```text
@@ -141,11 +143,11 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     }
 }
 
-/// Largest eigenvalue of a symmetric matrix; for D > 2 rows an upper bound.
+/// Largest eigenvalue of a symmetric matrix; for D > 2 an upper bound.
 ///
 /// # Source
-/// Wolkowicz, Styan (1980), Linear Algebra Appl. 29, 471, theorem 2.1: m + s √(D − 1), m and s mean and deviation of the
-/// eigenvalues.
+/// Wolkowicz, Styan (1980), Linear Algebra Appl. 29, 471, theorem 2.1: m + s √(D − 1), where m and s are the mean and
+/// the standard deviation of the eigenvalues.
 fn largest_eigenvalue<const D: usize>(matrix: &[Vector<D>; D]) -> f64 {
     let mean = (0..D).map(|d| matrix[d][d]).sum::<f64>() / D as f64;
     let mut squares = 0.0;
@@ -178,7 +180,7 @@ mod tests {
     fn the_bound_on_decays_holds_and_is_half_of_gershgorins() {
         let mut motion = stored();
         let bound = motion.stiffness().expect("every contact is damped").decay;
-        // The largest eigenvalue from below, by the power method from a velocity that is not a mode.
+        // Lower bound on the largest eigenvalue, by the power method from a velocity that is not a mode.
         let count = motion.assembly.len();
         let mut x: Vec<Vector<2>> = (0..count).map(|i| [(7.0 * i as f64).sin(), (11.0 * i as f64).cos()]).collect();
         let mut value = 0.0;
