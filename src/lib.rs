@@ -14,25 +14,16 @@
 //!
 //! # Example
 //!
-//! 200 disks far from jamming answer as an elastic medium does.
+//! 200 disks far from jamming respond as an elastic medium does.
 //!
 //! ```
-//! use jamscope::law::Hertzian;
-//! use jamscope::displacement::DisplacementField;
-//! use jamscope::inflation::{Inflation, inflate};
-//! use jamscope::observe::RadialProfile;
-//! use jamscope::packing::Mixture;
-//! use jamscope::preparation::{Preparation, Target, prepare};
-//! use jamscope::reference::{Annulus, RadialSolution, elastic::Elastic};
-//! use jamscope::relax::Fire;
+//! use jamscope::preparation::Target;
+//! use jamscope::reference::{RadialSolution, elastic::Elastic};
+//! use jamscope::{Annulus, DisplacementField, Inflation, Preparation, RadialProfile, inflate, prepare};
 //!
-//! let (law, fire, seed) = (Hertzian::default(), Fire::default(), 1);
-//! let (mixture, target) = (Mixture::default(), Target::Pressure(3000.0));
-//! let preparation = Preparation { disk_count: 200, mixture, target, tolerance: 0.01, seed };
-//! let prepared = prepare::<2, _>(&preparation, &law, &fire, &mut ())?;
-//! assert!((prepared.pressure / 3000.0 - 1.0).abs() <= 0.01);
-//!
-//! let inflated = inflate(&Inflation::default(), prepared.packing.get(), &law, &fire, seed, &mut ())?;
+//! let target = Target::Pressure(3000.0);
+//! let prepared = prepare(&Preparation { disk_count: 200, target, ..Preparation::default() })?;
+//! let inflated = inflate(&Inflation::default(), prepared.packing.get())?;
 //! let field = DisplacementField::of_inflation(&inflated);
 //! let profile = RadialProfile::of(&field, 1.0);
 //!
@@ -47,6 +38,9 @@
 //! assert!(amplitude > 0.05 && amplitude < 0.15, "d_0 = 0.1 acts as {amplitude}");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! [`prepare`] and [`inflate`] take Hertzian disks and FIRE; [`prepare_with`](preparation::prepare_with) and
+//! [`inflate_with`](inflation::inflate_with) take any law, relaxer and observer. Six programs of at most 50 lines are in `examples/`.
 //!
 //! # Modules
 //!
@@ -67,8 +61,8 @@
 //! | `linear` (feature `linear`) | Hessian, factorisations, the response to an infinitesimal inflation, elastic moduli, modes | `linear::LinearResponse`, `linear::ElasticModuli` |
 //! | [`relax`] | bringing a packing to rest | [`Relaxer`](relax::Relaxer), [`Fire`](relax::Fire) |
 //! | [`certificate`] | what is known of a state at rest | [`Certificate`](certificate::Certificate) |
-//! | [`preparation`] | random points to a packing at a packing fraction or a pressure | [`prepare`](preparation::prepare) |
-//! | [`inflation`] | one disk grows, the rest relaxes; and back | [`inflate`](inflation::inflate) |
+//! | [`preparation`] | random points to a packing at a packing fraction or a pressure | [`prepare`] |
+//! | [`inflation`] | one disk grows, the rest relaxes; and back | [`inflate`] |
 //! | [`lattice`] | lattices whose continuum answer is known | [`Lattice`](lattice::Lattice) |
 //! | [`displacement`] | how far every disk moved | [`DisplacementField`](displacement::DisplacementField) |
 //! | `plastic` (feature `linear`) | what of a response is not in the linear one, and from where on | `plastic::PlasticPart` |
@@ -149,6 +143,18 @@ pub mod study;
 pub mod transition;
 pub mod vector;
 pub mod verdict;
+
+pub use displacement::DisplacementField;
+pub use inflation::{Inflation, inflate};
+pub use io::read_packing;
+pub use law::{Hertzian, Hookean, PairLaw};
+pub use network::ContactNetwork;
+pub use observe::RadialProfile;
+pub use packing::{Mixture, Packing};
+pub use preparation::{Preparation, prepare};
+pub use reference::Annulus;
+pub use relax::Fire;
+pub use scene::Scene;
 
 /// The README and the chapters of the book, so that `cargo test --doc` compiles and runs their snippets.
 #[cfg(doctest)]

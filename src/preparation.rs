@@ -21,9 +21,10 @@ use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
 use crate::law::pair_law::PairLaw;
+use crate::law::power_laws::Hertzian;
 use crate::network::ContactNetwork;
 use crate::packing::{Domain, Mixture, Packing, PackingError, ball_volume};
-use crate::relax::{Cost, Criterion, Outcome, Relaxed, Relaxer, Residual, Stop, Trace};
+use crate::relax::{Cost, Criterion, Fire, Outcome, Relaxed, Relaxer, Residual, Stop, Trace};
 
 /// What the packing is prepared for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -48,6 +49,14 @@ pub struct Preparation {
     pub tolerance: f64,
     /// Seed of the random points.
     pub seed: u64,
+}
+
+impl Default for Preparation {
+    /// 1000 disks of the usual mixture at p = 100, seed 1: jammed, below the transition.
+    fn default() -> Self {
+        let (mixture, target) = (Mixture::default(), Target::Pressure(100.0));
+        Preparation { disk_count: 1000, mixture, target, tolerance: 0.01, seed: 1 }
+    }
 }
 
 /// A packing at rest and what it took.
@@ -182,11 +191,29 @@ pub fn random_points<const D: usize>(
     Ok(Packing::new(Domain::cube(side), positions, radii)?)
 }
 
-/// Prepares a packing.
+/// Prepares a packing of Hertzian disks by FIRE.
+///
+/// [`prepare_with`] takes any law, relaxer and observer, in two dimensions or three.
 ///
 /// # Errors
-/// [`PreparationError`] says what cannot be had, with numbers.
-pub fn prepare<const D: usize, L: PairLaw>(
+/// [`PreparationError`] says what is not possible, with numbers.
+///
+/// # Example
+/// ```
+/// use jamscope::{Preparation, prepare};
+/// let prepared = prepare(&Preparation { disk_count: 100, ..Preparation::default() })?;
+/// assert!((prepared.pressure / 100.0 - 1.0).abs() <= 0.01);
+/// # Ok::<(), jamscope::preparation::PreparationError>(())
+/// ```
+pub fn prepare(preparation: &Preparation) -> Result<Prepared<2>, PreparationError> {
+    prepare_with(preparation, &Hertzian::default(), &Fire::default(), &mut ())
+}
+
+/// Prepares a packing with this law and relaxer; `trace` observes the relaxations.
+///
+/// # Errors
+/// [`PreparationError`] says what is not possible, with numbers.
+pub fn prepare_with<const D: usize, L: PairLaw>(
     preparation: &Preparation,
     law: &L,
     relaxer: &impl Relaxer,

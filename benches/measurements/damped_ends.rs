@@ -22,7 +22,7 @@ use jamscope::law::Hertzian;
 use jamscope::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Mixture, Packing};
-use jamscope::preparation::{Preparation, Target, prepare};
+use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::{
     Cost, DampedDynamics, ForceLimit, ImplicitDynamics, Newton, Outcome, Relaxer, Staged, Stop, TimeStep,
 };
@@ -169,7 +169,7 @@ fn at_rest(settings: &Settings, pressure: f64, seed: u64) -> Result<Start, Box<d
     let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
     let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed };
     let relaxer = Staged::default();
-    let prepared = prepare::<2, _>(&preparation, &law, &relaxer, &mut ())?;
+    let prepared = prepare_with::<2, _>(&preparation, &law, &relaxer, &mut ())?;
     let packing = prepared.packing.get();
     let chosen = choose_centre(packing, &law, Centre::Backbone, seed)?;
     let side = packing.domain().lengths().ok_or("the packing is not periodic")?[0];

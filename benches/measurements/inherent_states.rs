@@ -18,7 +18,7 @@ use jamscope::law::Hertzian;
 use jamscope::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Mixture, Packing};
-use jamscope::preparation::{Preparation, Target, prepare};
+use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::{ImplicitDynamics, Look, Relaxer, Staged, Trace};
 
 /// Radius of the circle over the side of the box: the study's smallest size.
@@ -97,7 +97,7 @@ fn at_rest(disk_count: usize, pressure: f64, seed: u64) -> Result<Start, Box<dyn
     let (law, relaxer) = (Hertzian::default(), Staged::default());
     let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
     let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed };
-    let prepared = prepare::<2, _>(&preparation, &law, &relaxer, &mut ())?;
+    let prepared = prepare_with::<2, _>(&preparation, &law, &relaxer, &mut ())?;
     let packing = prepared.packing.get();
     let chosen = choose_centre(packing, &law, Centre::Backbone, seed)?;
     let side = packing.domain().lengths().ok_or("the packing is not periodic")?[0];

@@ -19,7 +19,7 @@ use jamscope::law::Hertzian;
 use jamscope::linear::{Analysis, LinearResponse};
 use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::packing::{Mixture, Packing};
-use jamscope::preparation::{Preparation, Target, prepare};
+use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::{ForceLimit, Staged};
 
 /// Times each stage is run.
@@ -104,7 +104,7 @@ fn prepared(law: &Hertzian) -> Result<Packing<2>, Box<dyn Error>> {
     let (mixture, target) = (Mixture::default(), Target::Pressure(100.0));
     let preparation = Preparation { disk_count: 88_776, mixture, target, tolerance: 0.2, seed: 1 };
     let staged = Staged { limit: ForceLimit::Relative(1e-6), ..Staged::default() };
-    Ok(prepare::<2, _>(&preparation, law, &staged, &mut ())?.packing.get().clone())
+    Ok(prepare_with::<2, _>(&preparation, law, &staged, &mut ())?.packing.get().clone())
 }
 
 /// A number of the kernel's table of this process, in MiB; none where there is no such table.

@@ -10,7 +10,7 @@ use std::error::Error;
 
 use jamscope::law::{Hertzian, PairLaw};
 use jamscope::packing::{Mixture, Packing, PackingError};
-use jamscope::preparation::{Preparation, Target, prepare};
+use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::{Cost, Fire, Outcome, Relaxer, Staged, Trace};
 
 /// A relaxer that passes through states at a residual of its own, or through none.
@@ -76,7 +76,7 @@ fn made(disk_count: usize, pressure: f64, seeds: u64, relaxer: &impl Relaxer) ->
     for seed in 1..=seeds {
         let target = Target::Pressure(pressure);
         let preparation = Preparation { disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed };
-        let prepared = prepare::<2, _>(&preparation, &Hertzian::default(), relaxer, &mut ())?;
+        let prepared = prepare_with::<2, _>(&preparation, &Hertzian::default(), relaxer, &mut ())?;
         count += prepared.relaxation_count;
         cost = cost.plus(prepared.cost);
     }

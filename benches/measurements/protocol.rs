@@ -13,7 +13,7 @@
 use std::error::Error;
 use std::time::Instant;
 
-use jamscope::inflation::{Inflation, inflate};
+use jamscope::inflation::{Inflation, inflate_with};
 use jamscope::io::read_packing;
 use jamscope::law::Hertzian;
 use jamscope::protocol::{Compared, Protocol, ProtocolSettings, Spread};
@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let packing = read_packing::<2>(format!("{}/fixtures/packings/{name}.xyz", env!("CARGO_MANIFEST_DIR")))?;
         for seed in 1..=4 {
             let clock = Instant::now();
-            let inflated = inflate(&inflation, &packing, &law, &staged, seed, &mut ())?;
+            let inflated = inflate_with(&inflation, &packing, &law, &staged, seed, &mut ())?;
             let settings = ProtocolSettings::default();
             #[cfg_attr(not(feature = "fit"), allow(unused_mut, reason = "only fits are added"))]
             let mut compared = Compared::of_inflation(&inflated, &inflation, &law, &protocols, &settings, &mut ())?;

@@ -11,7 +11,7 @@ use std::error::Error;
 use std::time::Instant;
 
 use jamscope::displacement::DisplacementField;
-use jamscope::inflation::{Boundary, Inflation, inflate};
+use jamscope::inflation::{Boundary, Inflation, inflate_with};
 use jamscope::law::Hertzian;
 use jamscope::linear::LinearResponse;
 use jamscope::linear::Prestress;
@@ -24,7 +24,7 @@ use jamscope::observe::isostatic::{
 use jamscope::observe::multipoles::{MultipoleFit, MultipoleSettings, Multipoles};
 use jamscope::observe::{ExcessCoordination, PressureChange, State};
 use jamscope::packing::Mixture;
-use jamscope::preparation::{Preparation, Target, prepare};
+use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::Fire;
 use jamscope::report::figures::Figure;
 use jamscope::report::figures::bond_map::bond_map;
@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (law, fire) = (Hertzian::default(), Fire::default());
     let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
     let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed };
-    let packing = prepare::<2, _>(&preparation, &law, &fire, &mut ())?.packing.into_inner();
+    let packing = prepare_with::<2, _>(&preparation, &law, &fire, &mut ())?.packing.into_inner();
     // r_out/L as the sizes of the study have it.
     let share = if disk_count < 10_000 {
         0.480
@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let boundary = Boundary::HeldRim { outer_radius_over_side: share };
     let inflation = Inflation { deflate: true, boundary, ..Inflation::default() };
-    let inflated = inflate(&inflation, &packing, &law, &fire, seed, &mut ())?;
+    let inflated = inflate_with(&inflation, &packing, &law, &fire, seed, &mut ())?;
 
     let start = Instant::now();
     let before = State::new(inflated.before.packing.get(), &law)?;

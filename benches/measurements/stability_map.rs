@@ -24,7 +24,7 @@ use jamscope::law::{Hertzian, PairLaw};
 use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Mixture, Packing};
-use jamscope::preparation::{Preparation, Target, prepare};
+use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::implicit::{ImplicitMotion, Inertia, Stepped};
 use jamscope::relax::{ForceLimit, Motion, Newton, Relaxer, Staged};
 use jamscope::vector::{Vector, difference, larger, norm, scaled, sum};
@@ -47,7 +47,7 @@ fn main() -> Result<(), Failure> {
     for pressure in PREPARED {
         let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
         let preparation = Preparation { disk_count: 400, mixture, target, tolerance: 0.1, seed: 1 };
-        packings.push(prepare::<2, _>(&preparation, &law, &Staged::default(), &mut ())?.packing.into_inner());
+        packings.push(prepare_with::<2, _>(&preparation, &law, &Staged::default(), &mut ())?.packing.into_inner());
     }
     let folder = format!("{}/fixtures/packings", env!("CARGO_MANIFEST_DIR"));
     for (place, name) in STORED.iter().enumerate() {

@@ -20,8 +20,9 @@ pub use rest::{Rest, Stage};
 pub use settings::{Boundary, Centre, Inflation};
 
 use crate::law::pair_law::PairLaw;
+use crate::law::power_laws::Hertzian;
 use crate::packing::Packing;
-use crate::relax::{Relaxer, Trace};
+use crate::relax::{Fire, Relaxer, Trace};
 
 /// An inflation done: the states before, after, and after deflation if asked for.
 #[derive(Debug, Clone)]
@@ -42,11 +43,31 @@ pub struct Inflated<const D: usize> {
     pub deflated: Option<Rest<D>>,
 }
 
-/// Inflates a disk of a packing and relaxes the rest.
+/// Inflates a disk of a packing of Hertzian disks and relaxes the rest by FIRE; the disk is drawn with seed 1.
+///
+/// [`inflate_with`] takes any law, relaxer, seed and observer. Near jamming the relaxer decides where the disks end: FIRE stops at a
+/// minimum near the start, the damped dynamics of the study cross barriers.
 ///
 /// # Errors
-/// [`InflationError`] says what cannot be done, with numbers.
-pub fn inflate<const D: usize, L: PairLaw>(
+/// [`InflationError`] says what is not possible, with numbers.
+///
+/// # Example
+/// ```
+/// use jamscope::{Inflation, Preparation, inflate, prepare};
+/// let prepared = prepare(&Preparation { disk_count: 100, ..Preparation::default() })?;
+/// let inflated = inflate(&Inflation::default(), prepared.packing.get())?;
+/// assert!(inflated.after.energy > inflated.before.energy);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn inflate(inflation: &Inflation, packing: &Packing<2>) -> Result<Inflated<2>, InflationError> {
+    inflate_with(inflation, packing, &Hertzian::default(), &Fire::default(), 1, &mut ())
+}
+
+/// Inflates a disk of a packing and relaxes the rest with this law and relaxer. `seed` draws the disk; `trace` observes the relaxations.
+///
+/// # Errors
+/// [`InflationError`] says what is not possible, with numbers.
+pub fn inflate_with<const D: usize, L: PairLaw>(
     inflation: &Inflation,
     packing: &Packing<D>,
     law: &L,

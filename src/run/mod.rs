@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use crate::certificate::Certificate;
 use crate::displacement::DisplacementField;
-use crate::inflation::{Boundary, Inflated, Inflation, InflationError, Rest, inflate};
+use crate::inflation::{Boundary, Inflated, Inflation, InflationError, Rest, inflate_with};
 use crate::io::{ReadError, read_packing};
 use crate::law::pair_law::PairLaw;
 use crate::memory::Memory;
@@ -16,7 +16,7 @@ use crate::network::ContactNetwork;
 use crate::observe::PressureChange;
 use crate::observe::state::State;
 use crate::packing::{Packing, PackingError};
-use crate::preparation::{Preparation, PreparationError, Target, prepare};
+use crate::preparation::{Preparation, PreparationError, Target, prepare_with};
 use crate::processor::Processor;
 #[cfg(feature = "linear")]
 use crate::protocol::{Compared, Protocol, ProtocolSensitivity, ProtocolSettings, ProtocolSummary, chosen};
@@ -221,7 +221,7 @@ pub(crate) fn measure<L: PairLaw>(
     let watch =
         |stage, relaxer: &RelaxerChoice| Watch { progress, sample: index, stage, limit: relaxer.limit().value() };
     let trace = &mut watch("inflation", &sample.relaxer);
-    let inflated = inflate(&scene.inflation, &prepared, law, &sample.relaxer, sample.seed, trace)?;
+    let inflated = inflate_with(&scene.inflation, &prepared, law, &sample.relaxer, sample.seed, trace)?;
     let observables = &scene.observables;
     let verdict = verdict(scene, &inflated, law)?;
     let verdict = match &packing.as_read {
@@ -355,7 +355,7 @@ pub(crate) fn packing_of<L: PairLaw>(
         tolerance: scene.preparation.pressure_tolerance,
         seed: sample.seed,
     };
-    let prepared = prepare::<2, L>(&preparation, law, &scene.preparation.relaxer, trace)?;
+    let prepared = prepare_with::<2, L>(&preparation, law, &scene.preparation.relaxer, trace)?;
     let rest = RestSummary {
         criterion: prepared.criterion,
         relative_residual: prepared.residual.relative(),

@@ -4,12 +4,12 @@ mod stiffening;
 mod swirl;
 
 use jamscope::displacement::{DisplacementField, MeasuredOn, Moved};
-use jamscope::inflation::{Inflation, inflate};
+use jamscope::inflation::{Inflation, inflate_with};
 use jamscope::io::read_packing;
 use jamscope::law::{Hertzian, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Mixture, Packing};
-use jamscope::preparation::{Preparation, Target, prepare, random_points};
+use jamscope::preparation::{Preparation, Target, prepare_with, random_points};
 use jamscope::reference::{Annulus, RadialSolution, elastic::Elastic};
 use jamscope::relax::{Criterion, Fire, Relaxer, Stop};
 use jamscope::vector::{larger, norm};
@@ -84,9 +84,10 @@ fn fire_brings_a_packing_to_rest_under_a_new_law() {
 fn a_packing_under_a_new_law_is_prepared_and_inflated() {
     let (target, fire) = (Target::Pressure(2000.0), Fire::default());
     let preparation = Preparation { disk_count: 200, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
-    let prepared = prepare::<2, _>(&preparation, &LAW, &fire, &mut ()).expect("a packing");
+    let prepared = prepare_with::<2, _>(&preparation, &LAW, &fire, &mut ()).expect("a packing");
     assert!((prepared.pressure / 2000.0 - 1.0).abs() <= 0.01);
-    let inflated = inflate(&Inflation::default(), prepared.packing.get(), &LAW, &fire, 1, &mut ()).expect("at rest");
+    let inflated =
+        inflate_with(&Inflation::default(), prepared.packing.get(), &LAW, &fire, 1, &mut ()).expect("at rest");
     // Neighbours are pushed away from a disk that grows.
     let field = DisplacementField::of_inflation(&inflated);
     let nearest = field.counted().min_by(|a, b| a.distance.total_cmp(&b.distance)).expect("a disk");
@@ -131,7 +132,7 @@ fn the_swirl_of_a_rotation_is_its_angle_and_that_of_an_elastic_field_is_nothing(
 fn the_swirl_of_a_response_is_below_that_of_its_disks_and_changes_sign_in_a_mirror() {
     let packing = read_packing::<2>("fixtures/packings/hertz_N1000_p800.xyz").expect("readable");
     let law = Hertzian::default();
-    let inflated = inflate(&Inflation::default(), &packing, &law, &Fire::default(), 1, &mut ()).expect("at rest");
+    let inflated = inflate_with(&Inflation::default(), &packing, &law, &Fire::default(), 1, &mut ()).expect("at rest");
     let field = DisplacementField::of_inflation(&inflated);
     let whole = swirl(&field, 0.0, field.outer_radius).expect("disks");
     // No disk turns by more than the largest of them, and a mean not by more than that.

@@ -1,10 +1,10 @@
 //! Inflations from 10⁻¹⁴ to half a length, of packings far from and below jamming.
 
 use jamscope::displacement::DisplacementField;
-use jamscope::inflation::{Inflated, Inflation, InflationError, inflate};
+use jamscope::inflation::{Inflated, Inflation, InflationError, inflate_with};
 use jamscope::law::Hertzian;
 use jamscope::packing::{Mixture, Packing};
-use jamscope::preparation::{Preparation, Target, prepare};
+use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::Criterion;
 use jamscope::vector::larger;
 
@@ -12,12 +12,15 @@ use crate::{all_finite, fire};
 
 fn packing(target: Target) -> Packing<2> {
     let preparation = Preparation { disk_count: 400, mixture: Mixture::default(), target, tolerance: 0.01, seed: 2 };
-    prepare::<2, _>(&preparation, &Hertzian::default(), &fire(1e-13), &mut ()).expect("in reach").packing.into_inner()
+    prepare_with::<2, _>(&preparation, &Hertzian::default(), &fire(1e-13), &mut ())
+        .expect("in reach")
+        .packing
+        .into_inner()
 }
 
 fn inflated(packing: &Packing<2>, increase: f64) -> Result<Inflated<2>, InflationError> {
     let inflation = Inflation { increase, ..Inflation::default() };
-    inflate(&inflation, packing, &Hertzian::default(), &fire(1e-13), 1, &mut ())
+    inflate_with(&inflation, packing, &Hertzian::default(), &fire(1e-13), 1, &mut ())
 }
 
 #[test]

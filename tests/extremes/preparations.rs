@@ -3,14 +3,14 @@
 use jamscope::law::{Hertzian, Hookean, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Component, Mixture, PackingError};
-use jamscope::preparation::{Preparation, PreparationError, Prepared, Target, prepare};
+use jamscope::preparation::{Preparation, PreparationError, Prepared, Target, prepare_with};
 use jamscope::relax::Criterion;
 
 use crate::{all_finite, fire};
 
 fn made<L: PairLaw>(law: &L, count: usize, mixture: Mixture, target: Target) -> Result<Prepared<2>, PreparationError> {
     let preparation = Preparation { disk_count: count, mixture, target, tolerance: 0.01, seed: 3 };
-    prepare::<2, L>(&preparation, law, &fire(1e-8), &mut ())
+    prepare_with::<2, L>(&preparation, law, &fire(1e-8), &mut ())
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! No relaxation gains energy: damped motions from the blow of an inflation, energies in the costs, and states that no relaxation can
 //! lead to.
 
-use jamscope::inflation::{Boundary, Inflation, inflate};
+use jamscope::inflation::{Boundary, Inflation, inflate_with};
 use jamscope::io::read_packing;
 use jamscope::law::Hertzian;
 use jamscope::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
@@ -121,7 +121,7 @@ fn every_relaxer_ends_lower_than_it_began_and_inside_the_rim() {
     for name in ["hertz_N1000_p005", "hertz_N1000_p1", "hertz_N1000_p100"] {
         for relaxer in relaxers.iter() {
             let inflation = Inflation { boundary, ..Inflation::default() };
-            let inflated = inflate(&inflation, &small_start(name), &Hertzian::default(), relaxer, 3, &mut ());
+            let inflated = inflate_with(&inflation, &small_start(name), &Hertzian::default(), relaxer, 3, &mut ());
             let inflated = inflated.unwrap_or_else(|error| panic!("{name}, {}: {error}", relaxer.name()));
             let account = inflated.after.cost.energies.expect("energies");
             assert!(account.after <= account.before, "{name}, {}: {account:?}", relaxer.name());
@@ -147,7 +147,7 @@ fn newton_finishes_where_the_motion_leads() {
             let relaxer = ImplicitDynamics { damping, finish, ..ImplicitDynamics::default() };
             let boundary = Boundary::HeldRim { outer_radius_over_side: 0.45 };
             let inflation = Inflation { boundary, ..Inflation::default() };
-            let inflated = inflate(&inflation, &small_start(name), &Hertzian::default(), &relaxer, 5, &mut ());
+            let inflated = inflate_with(&inflation, &small_start(name), &Hertzian::default(), &relaxer, 5, &mut ());
             inflated.unwrap_or_else(|error| panic!("{name}: {error}")).after.energy
         };
         let (early, late) = (end(Finish::default()), end(Finish::Newton(1e-4)));

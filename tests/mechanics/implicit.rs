@@ -130,7 +130,7 @@ fn gradient_flow_of_a_hookean_pair_decays_exponentially_to_third_order() {
 /// 100 disks at rest at high pressure, all shaken by much less than an overlap: no contact opens or closes.
 fn smooth_scene() -> Packing<2> {
     use jamscope::packing::Mixture;
-    use jamscope::preparation::{Preparation, Target, prepare};
+    use jamscope::preparation::{Preparation, Target, prepare_with};
     let preparation = Preparation {
         disk_count: 100,
         mixture: Mixture::default(),
@@ -140,7 +140,7 @@ fn smooth_scene() -> Packing<2> {
     };
     let limit = ForceLimit::Relative(1e-12);
     let relaxer = Staged { limit, ..Staged::default() };
-    let prepared = prepare::<2, _>(&preparation, &Hertzian::default(), &relaxer, &mut ()).expect("a packing");
+    let prepared = prepare_with::<2, _>(&preparation, &Hertzian::default(), &relaxer, &mut ()).expect("a packing");
     let packing = prepared.packing.into_inner();
     let contacts = |packing: &Packing<2>| {
         let network = ContactNetwork::new(packing, &Hertzian::default()).expect("no coincidence");

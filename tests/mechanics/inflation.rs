@@ -4,12 +4,12 @@ use std::sync::OnceLock;
 
 use jamscope::displacement::{DisplacementField, MeasuredOn};
 use jamscope::inflation::{
-    Boundary, Centre, Circle, Inflated, Inflation, InflationError, Stage, choose_centre, inflate,
+    Boundary, Centre, Circle, Inflated, Inflation, InflationError, Stage, choose_centre, inflate_with,
 };
 use jamscope::law::{Hertzian, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Mixture, Packing, PackingError};
-use jamscope::preparation::{Preparation, Target, prepare};
+use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::{Criterion, Fire, ForceLimit, Outcome, Relaxer, Stop, Trace};
 use jamscope::vector::{Vector, difference, dot, larger, norm, sum};
 
@@ -32,12 +32,12 @@ fn loose() -> &'static Packing<2> {
 
 fn made(target: Target) -> Packing<2> {
     let preparation = Preparation { disk_count: 300, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
-    let prepared = prepare::<2, _>(&preparation, &Hertzian::default(), &fire(), &mut ()).expect("a packing");
+    let prepared = prepare_with::<2, _>(&preparation, &Hertzian::default(), &fire(), &mut ()).expect("a packing");
     prepared.packing.into_inner()
 }
 
 fn inflated(inflation: &Inflation, packing: &Packing<2>) -> Inflated<2> {
-    inflate(inflation, packing, &Hertzian::default(), &fire(), 1, &mut ()).expect("an inflation")
+    inflate_with(inflation, packing, &Hertzian::default(), &fire(), 1, &mut ()).expect("an inflation")
 }
 
 fn periodic(increase: f64) -> Inflation {
@@ -188,7 +188,7 @@ impl Relaxer for Drifting {
 #[test]
 fn nothing_held_keeps_the_centre_of_mass_whatever_the_relaxer() {
     let law = Hertzian::default();
-    let drifting = inflate(&periodic(0.1), dense(), &law, &Drifting(fire()), 1, &mut ()).expect("an inflation");
+    let drifting = inflate_with(&periodic(0.1), dense(), &law, &Drifting(fire()), 1, &mut ()).expect("an inflation");
     for (run, drift) in [(inflated(&periodic(0.1), dense()), 0.0), (drifting, 0.25 * 2f64.sqrt())] {
         let (before, after) = (run.before.packing.get(), run.after.packing.get());
         let total = (0..before.len()).fold([0.0; 2], |total, disk| {
@@ -278,7 +278,7 @@ fn the_centre_chosen_is_a_small_disk_on_the_backbone_and_its_label_leads_back() 
 #[test]
 fn what_cannot_be_inflated_is_refused_with_its_numbers() {
     let refused = |inflation: Inflation, packing: &Packing<2>| {
-        inflate(&inflation, packing, &Hertzian::default(), &fire(), 1, &mut ()).expect_err("not possible")
+        inflate_with(&inflation, packing, &Hertzian::default(), &fire(), 1, &mut ()).expect_err("not possible")
     };
     let error = refused(Inflation { increase: 5.0, ..Inflation::default() }, dense());
     let InflationError::IncreaseTooLarge { increase, radius, nearest } = error else { panic!("{error}") };
@@ -304,7 +304,8 @@ fn what_cannot_be_inflated_is_refused_with_its_numbers() {
 #[test]
 fn too_few_steps_are_an_error_that_names_the_stage() {
     let fire = Fire { step_limit: 3, ..fire() };
-    let error = inflate(&Inflation::default(), dense(), &Hertzian::default(), &fire, 1, &mut ()).expect_err("too few");
+    let error =
+        inflate_with(&Inflation::default(), dense(), &Hertzian::default(), &fire, 1, &mut ()).expect_err("too few");
     let InflationError::NotAtRest { stage, stop, step_count, .. } = &error else { panic!("{error}") };
     assert_eq!((*stage, *stop, *step_count), (Stage::Inflated, Stop::StepLimit, 3));
     assert!(error.to_string().starts_with("after the inflation: "), "{error}");

@@ -9,7 +9,7 @@ use jamscope::linear::moduli::Tensor;
 use jamscope::linear::{ElasticModuli, LinearError};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Mixture, Packing};
-use jamscope::preparation::{Preparation, Target, prepare};
+use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::{Fire, ForceLimit, Relaxer};
 use jamscope::vector::{Vector, larger};
 
@@ -253,7 +253,7 @@ fn slopes_of_the_stress_are_differences_of_relaxed_packings() {
     let fire = Fire { limit: ForceLimit::Relative(1e-13), step_limit: 200_000, ..Fire::default() };
     for seed in [1, 2] {
         let preparation = Preparation { disk_count: 60, mixture: Mixture::default(), target, tolerance: 0.01, seed };
-        let prepared = prepare::<2, _>(&preparation, &law, &fire, &mut ()).expect("at rest");
+        let prepared = prepare_with::<2, _>(&preparation, &law, &fire, &mut ()).expect("at rest");
         check_slopes(prepared.packing.get(), &law, &format!("60 Hertzian disks, seed {seed}"));
     }
 }

@@ -2,12 +2,12 @@
 
 use jamscope::displacement::DisplacementField;
 use jamscope::forces::Assembly;
-use jamscope::inflation::{Boundary, Inflation, InflationError, Stage, inflate};
+use jamscope::inflation::{Boundary, Inflation, InflationError, Stage, inflate_with};
 use jamscope::law::damping::{ConstantDamping, DampingChoice};
 use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Mixture, Packing};
-use jamscope::preparation::{Preparation, Target, prepare, random_points};
+use jamscope::preparation::{Preparation, Target, prepare_with, random_points};
 use jamscope::relax::{Criterion, DampedDynamics, Fire, ForceLimit, Look, Outcome, Relaxer, Stop};
 use jamscope::scene::{Scene, SceneError};
 use jamscope::vector::{Vector, difference, dot, larger, norm, scaled, sum};
@@ -230,7 +230,7 @@ fn energies_at_the_restarts_of_fire_never_increase_below_zero_either() {
 fn dense() -> Packing<2> {
     let target = Target::Pressure(2000.0);
     let preparation = Preparation { disk_count: 300, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
-    let prepared = prepare::<2, _>(&preparation, &Hertzian::default(), &fire(1e-12), &mut ()).expect("a packing");
+    let prepared = prepare_with::<2, _>(&preparation, &Hertzian::default(), &fire(1e-12), &mut ()).expect("a packing");
     prepared.packing.into_inner()
 }
 
@@ -239,9 +239,9 @@ fn an_inflation_with_sites_has_them_throughout_and_its_pressure_is_that_of_conta
     let (packing, law) = (dense(), Hertzian::default());
     for boundary in [Boundary::HeldRim { outer_radius_over_side: 0.45 }, Boundary::Periodic] {
         let inflation = Inflation { increase: 1e-3, boundary, deflate: true, ..Inflation::default() };
-        let plain = inflate(&inflation, &packing, &law, &fire(1e-12), 1, &mut ()).expect("an inflation");
+        let plain = inflate_with(&inflation, &packing, &law, &fire(1e-12), 1, &mut ()).expect("an inflation");
         let tied = Inflation { on_site_coupling: Some(-1e4), ..inflation };
-        let run = inflate(&tied, &packing, &law, &fire(1e-12), 1, &mut ()).expect("an inflation");
+        let run = inflate_with(&tied, &packing, &law, &fire(1e-12), 1, &mut ()).expect("an inflation");
         let sizes = [&plain, &run].map(|run| {
             DisplacementField::of_inflation(run).disks.iter().map(|m| dot(m.displacement, m.displacement)).sum::<f64>()
         });
@@ -264,12 +264,12 @@ fn an_inflation_with_sites_has_them_throughout_and_its_pressure_is_that_of_conta
             assert_eq!(run.after.pressure, network.pressure(volume));
         }
         let pushed = Inflation { on_site_coupling: Some(1e5), deflate: false, ..inflation };
-        let error = inflate(&pushed, &packing, &law, &fire(1e-12), 1, &mut ()).expect_err("no minimum");
+        let error = inflate_with(&pushed, &packing, &law, &fire(1e-12), 1, &mut ()).expect_err("no minimum");
         let InflationError::NotAtRest { stop, stage: Stage::Inflated, .. } = error else { panic!("{error}") };
         assert_eq!(stop, Stop::NoMinimum);
     }
     let nan = Inflation { on_site_coupling: Some(f64::NAN), ..Inflation::default() };
-    let error = inflate(&nan, &packing, &law, &fire(1e-12), 1, &mut ()).expect_err("not a number");
+    let error = inflate_with(&nan, &packing, &law, &fire(1e-12), 1, &mut ()).expect_err("not a number");
     assert!(matches!(error, InflationError::CouplingNotFinite { .. }), "{error}");
 }
 

@@ -1,6 +1,6 @@
 //! Linear responses to forces and moved disks, the changes of contacts and pressure that go with them, and the plastic part.
 
-use jamscope::inflation::{Boundary, Centre, Circle, Inflated, Inflation, inflate};
+use jamscope::inflation::{Boundary, Centre, Circle, Inflated, Inflation, inflate_with};
 use jamscope::io::read_packing;
 use jamscope::lattice::Lattice;
 use jamscope::law::{Hertzian, Hookean, PairLaw};
@@ -27,7 +27,7 @@ fn dense() -> Packing<2> {
 
 fn inflated(increase: f64, boundary: Boundary) -> Inflated<2> {
     let inflation = Inflation { increase, boundary, centre: Centre::Backbone, ..Inflation::default() };
-    inflate(&inflation, &dense(), &Hertzian::default(), &fire(), 1, &mut ()).expect("at rest")
+    inflate_with(&inflation, &dense(), &Hertzian::default(), &fire(), 1, &mut ()).expect("at rest")
 }
 
 fn response(inflated: &Inflated<2>) -> LinearResponse<2> {

@@ -3,11 +3,11 @@
 use std::cell::RefCell;
 
 use jamscope::displacement::DisplacementField;
-use jamscope::inflation::{Boundary, Inflation, inflate};
+use jamscope::inflation::{Boundary, Inflation, inflate_with};
 use jamscope::law::{Hertzian, Hookean, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Component, Mixture, Packing, PackingError};
-use jamscope::preparation::{Preparation, PreparationError, Prepared, Target, prepare, random_points};
+use jamscope::preparation::{Preparation, PreparationError, Prepared, Target, prepare_with, random_points};
 use jamscope::relax::{Criterion, Fire, ForceLimit, Outcome, Relaxer, Stop, Trace};
 use jamscope::vector::{larger, norm};
 
@@ -16,7 +16,7 @@ fn preparation(disk_count: usize, target: Target, seed: u64) -> Preparation {
 }
 
 fn made<L: PairLaw>(preparation: &Preparation, law: &L) -> Result<Prepared<2>, PreparationError> {
-    prepare::<2, L>(preparation, law, &Fire::default(), &mut ())
+    prepare_with::<2, L>(preparation, law, &Fire::default(), &mut ())
 }
 
 fn meets_pressures<L: PairLaw>(law: L, seed: u64) {
@@ -74,7 +74,7 @@ fn states_on_the_way_to_a_pressure_are_passed_through_and_the_last_is_at_rest() 
         let limits = RefCell::new(Vec::new());
         let wanted = Preparation { tolerance, ..preparation(128, Target::Pressure(100.0), 7) };
         let fire = Recorded(Fire::default(), &limits);
-        let prepared = prepare::<2, _>(&wanted, &Hertzian::default(), &fire, &mut ()).expect("a packing");
+        let prepared = prepare_with::<2, _>(&wanted, &Hertzian::default(), &fire, &mut ()).expect("a packing");
         let limits = limits.into_inner();
         assert_eq!(limits.len(), prepared.relaxation_count);
         // Passed through first, at rest from the first that met the pressure on, and no way back.
@@ -133,7 +133,8 @@ fn the_same_seed_gives_the_same_bits_and_another_seed_another_packing() {
 #[test]
 fn balls_are_prepared_as_disks_are() {
     let preparation = preparation(200, Target::Pressure(100.0), 8);
-    let prepared = prepare::<3, _>(&preparation, &Hookean::default(), &Fire::default(), &mut ()).expect("a packing");
+    let prepared =
+        prepare_with::<3, _>(&preparation, &Hookean::default(), &Fire::default(), &mut ()).expect("a packing");
     assert!((prepared.pressure / 100.0 - 1.0).abs() <= 0.01);
     let network = ContactNetwork::new(prepared.packing.get(), &Hookean::default()).expect("no coincidence");
     let (balls, contacts) = (network.backbone_count(), network.backbone_contacts().count());
@@ -188,7 +189,7 @@ fn a_pressure_beyond_reach_is_refused_with_its_number() {
 fn too_few_steps_are_an_error_with_their_number() {
     let preparation = preparation(100, Target::PackingFraction(0.9), 9);
     let fire = Fire { step_limit: 12, ..Fire::default() };
-    let error = prepare::<2, _>(&preparation, &Hertzian::default(), &fire, &mut ()).expect_err("too few steps");
+    let error = prepare_with::<2, _>(&preparation, &Hertzian::default(), &fire, &mut ()).expect_err("too few steps");
     let PreparationError::NotAtRest { packing_fraction, stop, step_count, residual } = &error else {
         panic!("{error}")
     };
@@ -224,7 +225,7 @@ fn balls_are_prepared_and_inflated_by_the_same_code() {
         seed: 3,
     };
     let (law, fire) = (Hertzian::default(), Fire::default());
-    let prepared = prepare::<3, _>(&preparation, &law, &fire, &mut ()).expect("within reach");
+    let prepared = prepare_with::<3, _>(&preparation, &law, &fire, &mut ()).expect("within reach");
     assert!((prepared.pressure / 2000.0 - 1.0).abs() <= 0.01);
     let network = ContactNetwork::new(prepared.packing.get(), &law).expect("valid");
     let count = network.backbone_count() as f64;
@@ -234,7 +235,7 @@ fn balls_are_prepared_and_inflated_by_the_same_code() {
     // Three diameters hold a ball's neighbours; the box has a side of about nine.
     let boundary = Boundary::HeldRim { outer_radius_over_side: 0.45 };
     let inflation = Inflation { boundary, ..Inflation::default() };
-    let inflated = inflate(&inflation, prepared.packing.get(), &law, &fire, 3, &mut ()).expect("room to grow");
+    let inflated = inflate_with(&inflation, prepared.packing.get(), &law, &fire, 3, &mut ()).expect("room to grow");
     let field = DisplacementField::of_inflation(&inflated);
     assert_eq!(field.disks.len(), inflated.mobile_count);
     let near: Vec<f64> = field.counted().filter(|ball| ball.distance < 1.3).map(|ball| ball.radial).collect();

@@ -1,7 +1,7 @@
 //! Several relaxers from one start: one minimum where there is but one, two where inertia throws a disk through a gap, and what
 //! a scene and its report make of it.
 
-use jamscope::inflation::{Boundary, Inflation, inflate};
+use jamscope::inflation::{Boundary, Inflation, inflate_with};
 use jamscope::io::read_packing;
 use jamscope::law::damping::{ConstantDamping, DampingChoice};
 use jamscope::law::{Hertzian, Hookean};
@@ -165,7 +165,7 @@ fn far_from_jamming_all_relaxers_share_a_minimum() {
     ];
     for (boundary, protocols) in [(Boundary::default(), all()), (Boundary::Periodic, two.to_vec())] {
         let inflation = Inflation { boundary, ..Inflation::default() };
-        let inflated = inflate(&inflation, &packing, &law, &staged, 1, &mut ()).expect("at rest");
+        let inflated = inflate_with(&inflation, &packing, &law, &staged, 1, &mut ()).expect("at rest");
         let settings = ProtocolSettings::default();
         let compared =
             Compared::of_inflation(&inflated, &inflation, &law, &protocols, &settings, &mut ()).expect("disks apart");
@@ -188,7 +188,7 @@ fn fits_of_endings_spread_as_their_minima_do() {
     use jamscope::fit::profile::ProfileFitSettings;
     let packing = read_packing::<2>("fixtures/packings/hertz_N1000_p100.xyz").expect("readable");
     let (law, staged, inflation) = (Hertzian::default(), Staged::default(), Inflation::default());
-    let inflated = inflate(&inflation, &packing, &law, &staged, 2, &mut ()).expect("at rest");
+    let inflated = inflate_with(&inflation, &packing, &law, &staged, 2, &mut ()).expect("at rest");
     let implicit = ImplicitDynamics::default();
     let protocols =
         [RelaxerChoice::Staged(staged), RelaxerChoice::Fire(Fire::default()), RelaxerChoice::Implicit(implicit)];

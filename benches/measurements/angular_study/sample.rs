@@ -5,13 +5,13 @@ use std::f64::consts::PI;
 use std::time::Instant;
 
 use jamscope::displacement::DisplacementField;
-use jamscope::inflation::{Boundary, Inflated, Inflation, inflate};
+use jamscope::inflation::{Boundary, Inflated, Inflation, inflate_with};
 use jamscope::law::Hertzian;
 use jamscope::observe::angular::{RingSample, RingSettings};
 use jamscope::observe::multipoles::{MultipoleFit, MultipoleSettings, Multipoles};
 use jamscope::observe::{ContactCycle, PressureChange};
 use jamscope::packing::Mixture;
-use jamscope::preparation::{Preparation, Target, prepare};
+use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::{ImplicitDynamics, Relaxer, Staged};
 use serde::{Deserialize, Serialize};
 
@@ -108,10 +108,10 @@ impl Plan {
         let target = self.packing_fraction.map_or(Target::Pressure(pressure), Target::PackingFraction);
         let preparation =
             Preparation { disk_count: self.disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed };
-        let prepared = prepare::<2, _>(&preparation, &law, relaxer, &mut ())?;
+        let prepared = prepare_with::<2, _>(&preparation, &law, relaxer, &mut ())?;
         let boundary = Boundary::HeldRim { outer_radius_over_side: self.outer_radius_over_side };
         let inflation = Inflation { increase: self.increase, boundary, deflate: true, ..Inflation::default() };
-        let inflated = inflate(&inflation, prepared.packing.get(), &law, relaxer, seed, &mut ())?;
+        let inflated = inflate_with(&inflation, prepared.packing.get(), &law, relaxer, seed, &mut ())?;
         let (ring, shares) = ring(&inflated)?;
         let cycle = ContactCycle::of(&inflated, &law)?.ok_or("it was deflated")?;
         let changes = &cycle.inflation;

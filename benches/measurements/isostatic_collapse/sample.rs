@@ -5,7 +5,7 @@ use std::fmt;
 use std::ops::Range;
 
 use jamscope::displacement::DisplacementField;
-use jamscope::inflation::{Boundary, Centre, Inflation, inflate};
+use jamscope::inflation::{Boundary, Centre, Inflation, inflate_with};
 use jamscope::law::damping::{DampingChoice, ViscoelasticDamping};
 use jamscope::law::{Hertzian, PairLaw};
 use jamscope::linear::LinearResponse;
@@ -14,7 +14,7 @@ use jamscope::observe::bond_changes::{BondChange, BondChanges, BondSet};
 use jamscope::observe::fluctuations::Fluctuations;
 use jamscope::observe::{ExcessCoordination, State};
 use jamscope::packing::{Mixture, Packing};
-use jamscope::preparation::{Preparation, Target, prepare};
+use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::{ImplicitDynamics, Staged};
 use jamscope::vector::norm;
 use rayon::prelude::*;
@@ -74,7 +74,7 @@ pub fn prepared(disk_count: usize, seeds: Range<u64>, pressure: f64) -> Result<V
     let one = |seed: u64| {
         let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
         let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed };
-        let prepared = prepare::<2, _>(&preparation, &Hertzian::default(), &Staged::default(), &mut ());
+        let prepared = prepare_with::<2, _>(&preparation, &Hertzian::default(), &Staged::default(), &mut ());
         prepared.map(|prepared| prepared.packing.into_inner()).map_err(|error| error.to_string())
     };
     Ok(seeds.into_par_iter().map(one).collect::<Result<_, String>>()?)
@@ -176,9 +176,9 @@ fn relaxed(
         let inflated = if damped {
             let damping = DampingChoice::Viscoelastic(ViscoelasticDamping { rate: RATE });
             let dynamics = ImplicitDynamics { damping, ..ImplicitDynamics::default() };
-            inflate(&inflation, state.packing, &law, &dynamics, 1, &mut ())
+            inflate_with(&inflation, state.packing, &law, &dynamics, 1, &mut ())
         } else {
-            inflate(&inflation, state.packing, &law, &Staged::default(), 1, &mut ())
+            inflate_with(&inflation, state.packing, &law, &Staged::default(), 1, &mut ())
         };
         let inflated = inflated.map_err(|error| error.to_string())?;
         let bonds = BondChanges::of_inflation(&inflated, &law, BondSet::Kept).map_err(|error| error.to_string())?;

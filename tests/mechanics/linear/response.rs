@@ -1,7 +1,7 @@
 //! The linear response as the limit of relaxations.
 
 use jamscope::displacement::{DisplacementField, MeasuredOn};
-use jamscope::inflation::{Boundary, Centre, Circle, Inflation, inflate};
+use jamscope::inflation::{Boundary, Centre, Circle, Inflation, inflate_with};
 use jamscope::lattice::Lattice;
 use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw, PowerLaw};
 use jamscope::linear::Prestress;
@@ -39,7 +39,7 @@ fn departures<const D: usize, L: PairLaw>(
             // What the radius really grows by.
             let label = base.centre;
             let inflation = Inflation { increase: asked, centre: label, ..*base };
-            let run = inflate(&inflation, packing, law, &fire(2e-14), 1, &mut ()).expect("at rest");
+            let run = inflate_with(&inflation, packing, law, &fire(2e-14), 1, &mut ()).expect("at rest");
             let (before, after) = (run.before.packing.get(), run.after.packing.get());
             let increase = after.radii()[run.centre] - run.inner_radius;
             let response =

@@ -1,5 +1,5 @@
 use jamscope::displacement::{DisplacementField, Moved};
-use jamscope::inflation::{Inflation, inflate};
+use jamscope::inflation::{Inflation, inflate_with};
 use jamscope::io::read_packing;
 use jamscope::law::Hertzian;
 use jamscope::observe::State;
@@ -50,7 +50,8 @@ fn states() -> &'static (Packing<2>, Packing<2>, usize, f64) {
     static STATES: OnceLock<(Packing<2>, Packing<2>, usize, f64)> = OnceLock::new();
     STATES.get_or_init(|| {
         let packing = read_packing::<2>("fixtures/packings/hertz_N1000_p10.xyz").expect("a fixture");
-        let inflated = inflate(&Inflation::default(), &packing, &Hertzian::default(), &Fire::default(), 1, &mut ());
+        let inflated =
+            inflate_with(&Inflation::default(), &packing, &Hertzian::default(), &Fire::default(), 1, &mut ());
         let inflated = inflated.expect("an inflation");
         let [before, after] = [inflated.before, inflated.after].map(|rest| rest.packing.into_inner());
         (before, after, inflated.centre, inflated.outer_radius)

@@ -1,4 +1,4 @@
-use jamscope::inflation::{Inflation, inflate};
+use jamscope::inflation::{Inflation, inflate_with};
 use jamscope::io::read_packing;
 use jamscope::law::Hertzian;
 use jamscope::observe::bond_changes::BondSet;
@@ -163,7 +163,8 @@ fn what_has_no_length_says_why() {
 fn an_inflation_has_the_curve_of_its_bonds() {
     let packing = read_packing::<2>("fixtures/packings/hertz_N1000_p800.xyz").expect("a fixture");
     let law = Hertzian::default();
-    let inflated = inflate(&Inflation::default(), &packing, &law, &Fire::default(), 1, &mut ()).expect("an inflation");
+    let inflated =
+        inflate_with(&Inflation::default(), &packing, &law, &Fire::default(), 1, &mut ()).expect("an inflation");
     let settings = IsostaticSettings { bonds: BondSet::Before, ..IsostaticSettings::default() };
     let length = IsostaticLength::of_inflation(&inflated, &law, &settings).expect("sound settings");
     // ΔZ of the circle is near that of the box, 0.893; contacts with the rim have one end in it.
