@@ -41,11 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (law, fire) = (Stiffening(2e5, 0.2), Fire::default());
     let preparation = Preparation { disk_count: 500, target: Target::Pressure(2000.0), ..Preparation::default() };
     let prepared = prepare_with::<2, _>(&preparation, &law, &fire, &mut ())?;
-    println!(
-        "p = {:.1}, Z = {:.3}",
-        prepared.pressure,
-        ContactNetwork::new(prepared.packing.get(), &law)?.coordination()
-    );
+    println!("p = {:.1} at φ = {:.4}", prepared.pressure, prepared.packing_fraction);
     let inflated = inflate_with(&Inflation::default(), prepared.packing.get(), &law, &fire, 1, &mut ())?;
     println!("Δp = {:.4}", inflated.after.pressure - inflated.before.pressure);
     Ok(())

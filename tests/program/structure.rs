@@ -175,6 +175,23 @@ fn files_are_read_in_one_sitting() {
 }
 
 #[test]
+fn examples_are_short_and_named_by_the_crate() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(root.join("examples")).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let text = std::fs::read_to_string(&path).expect("text");
+        assert!(text.lines().count() <= 50, "{} has at most 50 lines", path.display());
+        names.push(path.file_stem().expect("a name").to_string_lossy().into_owned());
+    }
+    let book = std::fs::read_to_string(root.join("book/src/library.md")).expect("the chapter");
+    assert_eq!(names.len(), 6);
+    for name in names {
+        assert!(book.contains(&format!("`{name}`")), "the chapter As a library names {name}");
+    }
+}
+
+#[test]
 fn a_circle_is_seen() {
     let file = |name: &str, text: &str| (name.to_string(), text.to_string());
     let files = BTreeMap::from([
