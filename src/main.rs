@@ -30,10 +30,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
+use jamscope::read_packing;
 use jamscope::relax::RelaxerChoice;
 use jamscope::report;
 use jamscope::run::{SampleOutcome, run};
-use jamscope::scene::{Sample, Scene, Source};
+use jamscope::scene::{ProtocolChoice, Sample, Scene, Source};
 use jamscope::verdict::{AboveLimit, Decision, VerdictSettings};
 
 /// The mechanics of jammed packings: prepare, inflate, relax, and hold the response against exact solutions.
@@ -187,7 +188,7 @@ fn is_refused(result: &SampleOutcome) -> bool {
     }
 }
 
-/// The sample of `--packing`: the file, relaxed after the inflation as the first sample of the scene.
+/// The sample of `--packing`: the file, relaxed after the inflation as the first sample of the scene on the same side of jamming.
 fn sample_of_file(path: &std::path::Path, scene: &Scene) -> Sample {
     let stem: String = path
         .file_stem()
@@ -197,9 +198,17 @@ fn sample_of_file(path: &std::path::Path, scene: &Scene) -> Sample {
         .map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' })
         .collect();
     let name = if stem.starts_with(|c: char| c.is_ascii_alphanumeric()) { stem } else { format!("packing{stem}") };
-    let (seed, relaxer) =
-        scene.sample.first().map_or((1, RelaxerChoice::default()), |first| (first.seed, first.relaxer));
-    Sample { name, seed, source: Source::File(path.to_path_buf()), relaxer }
+    let seed = scene.sample.first().map_or(1, |first| first.seed);
+    Sample { name, seed, source: Source::File(path.to_path_buf()), relaxer: relaxer_of_file(path, scene) }
+}
+
+/// What the scene relaxes packings with that are as dense as this one; the default protocol, if it has none of them.
+fn relaxer_of_file(path: &std::path::Path, scene: &Scene) -> RelaxerChoice {
+    // A file that cannot be read is reported by the run.
+    let fraction = read_packing::<2>(path).ok().and_then(|packing| packing.packing_fraction()).unwrap_or(1.0);
+    let own = Source::PackingFraction(fraction);
+    let alike = scene.sample.iter().find(|sample| sample.source.is_below_jamming() == own.is_below_jamming());
+    alike.map_or_else(|| ProtocolChoice::default().relaxer_of(&own), |sample| sample.relaxer)
 }
 
 fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {

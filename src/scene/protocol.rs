@@ -38,10 +38,6 @@ pub enum ProtocolChoice {
 /// γ of either damping law. Source: the published study, η_n = 500.
 const RATE: f64 = 500.0;
 
-/// φ_J. Below it FIRE relaxes: viscoelastic damping vanishes with the overlaps, so that a packing without contacts never stops.
-/// Source: O'Hern, Langer, Liu, Nagel (2002), Phys. Rev. Lett. 88, 075507.
-const JAMMING: f64 = 0.842;
-
 impl ProtocolChoice {
     /// All of them.
     pub const ALL: [ProtocolChoice; 4] =
@@ -82,10 +78,7 @@ impl ProtocolChoice {
 
     /// The relaxer of a packing from this source: FIRE for one quenched below jamming.
     pub fn relaxer_of(self, source: &Source) -> RelaxerChoice {
-        match source {
-            Source::PackingFraction(fraction) if *fraction < JAMMING => RelaxerChoice::Fire(Fire::default()),
-            _ => self.relaxer(),
-        }
+        if source.is_below_jamming() { RelaxerChoice::Fire(Fire::default()) } else { self.relaxer() }
     }
 
     /// The protocol that has this relaxer after the inflation, if one has.

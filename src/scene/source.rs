@@ -13,3 +13,14 @@ pub enum Source {
     /// A packing from a file.
     File(std::path::PathBuf),
 }
+
+/// φ_J. Below it FIRE relaxes: viscoelastic damping vanishes with the overlaps, so that a packing without contacts never stops.
+/// Source: O'Hern, Langer, Liu, Nagel (2002), Phys. Rev. Lett. 88, 075507.
+const JAMMING: f64 = 0.842;
+
+impl Source {
+    /// Whether random points are quenched below φ_J.
+    pub fn is_below_jamming(&self) -> bool {
+        matches!(self, Source::PackingFraction(fraction) if *fraction < JAMMING)
+    }
+}

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use jamscope::scene::ProtocolChoice;
 use serde_json::Value;
 
 fn jamscope(arguments: &[&str]) -> Output {
@@ -93,6 +94,26 @@ fn a_run_on_a_packing_from_a_file_writes_the_whole_report() {
     let pressure = done["packing"]["pressure"].as_f64().expect("a number");
     assert!((pressure / 799.6342106591023 - 1.0).abs() < 1e-10, "{pressure}");
     assert!(done["inflation"]["after"]["rest"]["relative_residual"].as_f64().expect("a number") <= 1e-8);
+    // Jammed, so by the protocol of the study, and not by FIRE as the first sample of the built-in scene.
+    let relaxer = &report["scene"]["sample"][0]["relaxer"];
+    let study = serde_json::to_value(ProtocolChoice::default().relaxer()).expect("JSON");
+    assert_eq!(*relaxer, study);
+}
+
+#[test]
+fn an_unjammed_packing_from_a_file_is_relaxed_by_fire() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (packing, out) = (folder.path().join("loose.xyz"), folder.path().join("report"));
+    // 16 disks on a square lattice, a gap of 0.5 between them.
+    let disks: String =
+        (0..16).map(|k| format!("{} {} 0.5\n", 1.5 * f64::from(k % 4), 1.5 * f64::from(k / 4))).collect();
+    let header = r#"Lattice="6 0 0 0 6 0 0 0 1" Properties=pos:R:2:radius:R:1 pbc="T T F""#;
+    std::fs::write(&packing, format!("16\n{header}\n{disks}")).expect("a file");
+    let output = jamscope(&["run", "--packing", text(&packing), "--out", text(&out)]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: Value =
+        serde_json::from_slice(&std::fs::read(out.join("report.json")).expect("a report")).expect("JSON");
+    assert!(report["scene"]["sample"][0]["relaxer"]["fire"].is_object(), "{}", report["scene"]["sample"][0]);
 }
 
 #[test]
