@@ -188,7 +188,7 @@ impl Energy {
             state.assembly.displacements[disk] = [x[0] - state.taken[disk][0], x[1] - state.taken[disk][1]];
         }
         let before = state.assembly.displacements[..mobile].to_vec();
-        if state.assembly.keep_listed(f64::INFINITY)? {
+        if state.assembly.update_list(f64::INFINITY)? {
             for (disk, before) in before.iter().enumerate() {
                 for (d, x) in before.iter().enumerate() {
                     state.taken[disk][d] += x - state.assembly.displacements[disk][d];

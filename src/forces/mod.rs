@@ -5,6 +5,7 @@ pub mod assembly;
 pub(crate) mod block_arithmetic;
 pub mod damped;
 pub mod elastic;
+pub(crate) mod layout;
 pub mod single;
 pub mod stiffness_bound;
 pub mod totals;

@@ -91,7 +91,7 @@ pub struct Single<const D: usize> {
     /// Forces of the last evaluation, all disks \[`Units::force`\].
     pub forces: Vec<[f32; D]>,
     across: Across<f32, D>,
-    /// The list whose pairs are in `blocks`, by [`Assembly::listing_number`]; none if the base is no longer valid.
+    /// The list whose pairs are in `blocks`, by [`Assembly::list_number`]; none if the base is no longer valid.
     listing: Option<(usize, usize)>,
 }
 
@@ -138,7 +138,7 @@ impl<const D: usize> Single<D> {
 
     /// Writes the present positions into the assembly.
     pub fn settle<L: PairLaw>(&self, assembly: &mut Assembly<D, L>) {
-        if self.listing.is_none_or(|(list, _)| list != assembly.listing_number().0) {
+        if self.listing.is_none_or(|(list, _)| list != assembly.list_number().0) {
             // Before a new list was built, the disks were settled. Their anchors may have changed since.
             return;
         }
@@ -157,7 +157,7 @@ impl<const D: usize> Single<D> {
     /// Makes the assembly's displacements the base if the base is outdated, and rounds the pairs of the list. Pairs
     /// inserted into a long list are rounded at the present base.
     fn prepare<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
-        let (list, amendments) = assembly.listing_number();
+        let (list, amendments) = assembly.list_number();
         let known = self.listing.replace((list, amendments));
         if known == self.listing {
             return;

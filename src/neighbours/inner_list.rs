@@ -164,8 +164,8 @@ mod tests {
                 assembly.displacements[disk][0] += displacement * angle.cos();
                 assembly.displacements[disk][1] += displacement * angle.sin();
             }
-            assembly.keep_listed(displacement).expect("no coincidence");
-            near += usize::from(assembly.inner_list_is_used());
+            assembly.update_list(displacement).expect("no coincidence");
+            near += usize::from(assembly.lists().inner_list_is_used());
             let found = assembly.evaluate_totals();
             let forces = assembly.forces.clone();
             if step % 10 == 9 {
@@ -193,7 +193,10 @@ mod tests {
         let radius = 0.5;
         let (near, made) = move_disks(&mut assembly, 1e-4 * radius, 400);
         assert!(near > 0.9 && made == 0.0, "slowly: {near} {made}");
-        assert!(assembly.pairs().len() * 10 < assembly.all_pairs().len() * 9, "a tenth of the pairs and more left out");
+        assert!(
+            assembly.pairs().len() * 10 < assembly.lists().outer().len() * 9,
+            "a tenth of the pairs and more left out"
+        );
         let (near, made) = move_disks(&mut assembly, 2e-2 * radius, 200);
         assert!(near < 0.5 && made > 0.02, "fast: {near} {made}");
         let (near, _) = move_disks(&mut assembly, 1e-4 * radius, 400);

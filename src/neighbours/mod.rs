@@ -12,6 +12,7 @@ pub(crate) mod fast_disks;
 pub mod for_each_pair;
 pub(crate) mod inner_list;
 pub(crate) mod inserted_pairs;
+pub(crate) mod list_keeper;
 pub(crate) mod missing_pairs;
 pub(crate) mod pair_block;
 pub mod pair_list;

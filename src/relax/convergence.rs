@@ -172,7 +172,7 @@ impl Monitor {
     /// Whether a disk pushed from its site is too far from it. Callers also ask after every rebuilt list, since a disk may move
     /// far between two checks.
     pub fn ran_away<const D: usize, L: PairLaw>(&self, assembly: &Assembly<D, L>) -> bool {
-        assembly.law().has_sites() && assembly.longest_way_from_site() >= self.farthest
+        assembly.law().has_sites() && assembly.longest_displacement_from_site() >= self.farthest
     }
 
     /// Determines the backbone and its residual. Without a backbone, all disks count if there are forces. Returns the criterion met.

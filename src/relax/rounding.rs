@@ -52,7 +52,7 @@ pub(crate) fn floor_of<const D: usize, L: PairLaw>(
     let most =
         row.iter().zip(members).filter(|&(_, &member)| member).fold(0.0, |most, (&value, _)| larger(value, most));
     let sites = if assembly.law().has_sites() {
-        assembly.law().on_site_coupling().abs() * assembly.longest_way_from_site()
+        assembly.law().on_site_coupling().abs() * assembly.longest_displacement_from_site()
     } else {
         0.0
     };

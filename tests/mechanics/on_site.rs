@@ -154,11 +154,11 @@ fn the_way_from_a_site_survives_new_anchors_without_rounding() {
     // displacement held before rounds: 10⁻¹⁶ of it. The sum in the test: (0.3 − 0.7) + 1e-9 + 2e-17.
     let way: Vector<2> = std::array::from_fn(|d| (steps[0][d] + steps[2][d]) + (steps[1][d] + steps[3][d]));
     for index in 0..assembly.len() {
-        let off = norm(difference(assembly.way_from_site(index), way));
+        let off = norm(difference(assembly.displacement_from_site(index), way));
         assert!(off <= 2.0 * f64::EPSILON * norm(way), "{off:e}");
-        assert_eq!(assembly.forces[index], scaled(coupling, assembly.way_from_site(index)));
+        assert_eq!(assembly.forces[index], scaled(coupling, assembly.displacement_from_site(index)));
     }
-    assert!((assembly.longest_way_from_site() / norm(way) - 1.0).abs() <= 4.0 * f64::EPSILON);
+    assert!((assembly.longest_displacement_from_site() / norm(way) - 1.0).abs() <= 4.0 * f64::EPSILON);
 }
 
 #[test]

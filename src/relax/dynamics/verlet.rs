@@ -145,7 +145,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
             speed_squared += *v * *v;
         }
         self.peak = larger(0.5 * speed_squared, self.peak);
-        if self.assembly.keep_listed(time_step * speed_squared.sqrt())? {
+        if self.assembly.update_list(time_step * speed_squared.sqrt())? {
             self.set_damping_coefficients();
         }
         let dissipation = self.accelerate();

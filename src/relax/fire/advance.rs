@@ -38,9 +38,9 @@ impl Run<'_> {
         let advanced = if self.due { Advanced::Not } else { state.advance(assembly, step, reach) };
         let rebuilt = if advanced == Advanced::Not {
             let fastest = state.kick(assembly, step);
-            assembly.keep_listed(reach * fastest)?
+            assembly.update_list(reach * fastest)?
         } else {
-            assembly.keep()?
+            assembly.update_list_after_advance()?
         };
         if let Advanced::Evaluated(parts) = advanced {
             self.taken = Some(state.sum(&parts));

@@ -21,7 +21,7 @@ impl Relaxer for Fire {
         trace: &mut impl Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();
-        let mut assembly = Assembly::with_amended_lists(&packing, *law)?;
+        let mut assembly = Assembly::with_incremental_updates(&packing, *law)?;
         let mut monitor = Monitor::new(self.limit, &assembly);
         let (stop, cost) = self.run(&mut assembly, &mut monitor, trace)?;
         Ok(monitor.outcome(assembly, packing, (stop, cost), start))

@@ -33,7 +33,7 @@ impl Run<'_> {
                 return Ok(Err(if floor { Stop::RoundingFloor } else { Stop::NoDescent }));
             }
             state.step_back(assembly, self.time_step);
-            assembly.keep_listed(0.5 * self.time_step * sums.speed_squared.sqrt())?;
+            assembly.update_list(0.5 * self.time_step * sums.speed_squared.sqrt())?;
         }
         let totals = match totals {
             Some(totals) if self.settings.uphill == Uphill::Restart => totals,

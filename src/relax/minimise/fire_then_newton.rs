@@ -62,7 +62,7 @@ impl Relaxer for Staged {
         trace: &mut impl Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();
-        let mut assembly = Assembly::with_amended_lists(&packing, *law)?;
+        let mut assembly = Assembly::with_incremental_updates(&packing, *law)?;
         let (stop, cost, monitor) = self.run(&mut assembly, trace)?;
         Ok(monitor.outcome(assembly, packing, (stop, cost), start))
     }

@@ -73,7 +73,7 @@ pub fn search<const D: usize, L: PairLaw>(
         }
         let mobile = assembly.mobile_count();
         combine(1.0, assembly.displacements[..mobile].as_flattened_mut(), length, line.direction);
-        assembly.keep_listed(length * distance)?;
+        assembly.update_list(length * distance)?;
         *evaluation_count += 1;
         let totals = assembly.evaluate_totals();
         let slope = dot_product(assembly.forces[..mobile].as_flattened(), line.direction);

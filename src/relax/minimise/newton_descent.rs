@@ -251,7 +251,7 @@ impl NewtonDescent {
             *u = sum(*u, scaled(length, s));
             distance = larger(dot(s, s), distance);
         }
-        assembly.keep_listed(length * distance.sqrt())?;
+        assembly.update_list(length * distance.sqrt())?;
         let reached = self.evaluate(assembly);
         Ok((reached, along(&assembly.forces, step)))
     }

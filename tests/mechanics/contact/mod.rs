@@ -160,7 +160,7 @@ fn check_against_all_pairs<const D: usize, L: PairLaw>(law: L, seed: u64, count:
             for (u, &step) in assembly.displacements[..mobile].iter_mut().zip(&flight) {
                 *u = sum(*u, step);
             }
-            assembly.keep_listed(longest).expect("no coincidence");
+            assembly.update_list(longest).expect("no coincidence");
         }
         let placed = assembly.placed(packing.clone());
         assert_list_is_complete(&assembly, &placed, round == 0);

@@ -72,8 +72,8 @@ fn a_force_that_is_not_a_number_shows_in_energy_and_forces() {
     let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("no coincidence");
     let touching = assembly.pairs().first[0] as usize;
     assembly.displacements[touching][0] = f64::NAN;
-    // keep_listed leaves such a state to the relaxer.
-    assert_eq!(assembly.keep_listed(f64::NAN), Ok(false));
+    // update_list leaves such a state to the relaxer.
+    assert_eq!(assembly.update_list(f64::NAN), Ok(false));
     let totals = assembly.evaluate_totals();
     assert!(totals.energy.is_nan() && assembly.forces[touching][0].is_nan());
 }

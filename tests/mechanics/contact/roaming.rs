@@ -54,10 +54,10 @@ impl<const D: usize> Crossing<D> {
                 Advanced::Moved => self.spent += 1,
                 Advanced::Evaluated(_) => {}
             }
-            self.assembly.keep().expect("no coincidence");
+            self.assembly.update_list_after_advance().expect("no coincidence");
         } else {
             moved(&steps, &mut self.assembly.displacements);
-            self.assembly.keep_listed(bound).expect("no coincidence");
+            self.assembly.update_list(bound).expect("no coincidence");
         }
     }
 
@@ -212,17 +212,17 @@ fn a_way_that_is_taken_stands_for_the_bounds_that_were_told() {
         assert_eq!(matches!(advanced, Advanced::Moved), !holds, "step {step}");
         // The first disk is moved either way.
         assert!((assembly.displacements[0][0] - f64::from(step) * WAY).abs() < 1e-12, "step {step}");
-        assert_eq!(assembly.keep(), Ok(!holds), "step {step}");
+        assert_eq!(assembly.update_list_after_advance(), Ok(!holds), "step {step}");
     }
     // NaN is no bound: the ways themselves are taken.
     let advanced = assembly.advance(&mut velocities, |_, _, _| f64::NAN, |_, _| ());
     assert!(matches!(advanced, Advanced::Evaluated(_)));
-    assert_eq!(assembly.keep(), Ok(false));
+    assert_eq!(assembly.update_list_after_advance(), Ok(false));
     // Nor is it a place; that is left to the relaxer.
     velocities[0] = [f64::NAN, 0.0];
     let advanced = assembly.advance(&mut velocities, |_, v, u| f64::NAN * go(v, u), |_, _| ());
     assert_eq!(advanced, Advanced::Moved);
-    assert_eq!(assembly.keep(), Ok(false));
+    assert_eq!(assembly.update_list_after_advance(), Ok(false));
 }
 
 /// The same forces, whatever the order of the disks.
@@ -260,11 +260,11 @@ fn steps_tile_by_tile_miss_no_contact_of_disks_that_go_far() {
                 }
                 anew.evaluate();
                 assert_same_forces(&crossing.assembly.forces, &anew.forces, ROUNDING, step);
-                amended += usize::from(crossing.assembly.keep().expect("no coincidence"));
+                amended += usize::from(crossing.assembly.update_list_after_advance().expect("no coincidence"));
             }
             Advanced::Moved => {
                 spent += 1;
-                assert_eq!(crossing.assembly.keep(), Ok(true), "step {step}");
+                assert_eq!(crossing.assembly.update_list_after_advance(), Ok(true), "step {step}");
             }
             Advanced::Not => panic!("a long list is advanced whatever comes"),
         }
@@ -302,7 +302,7 @@ fn pairs_that_a_list_is_amended_by_have_their_forces_in_single_precision_too() {
             Advanced::Not => panic!("a long list is advanced whatever comes"),
         };
         let made = assembly.rebuild_count();
-        let changed = assembly.keep().expect("no coincidence");
+        let changed = assembly.update_list_after_advance().expect("no coincidence");
         amended += usize::from(changed && holds);
         spent += usize::from(!holds);
         assert_eq!(assembly.rebuild_count(), made, "step {at}: amended, not made anew");
@@ -337,7 +337,7 @@ fn near_pairs_of_a_list_that_disks_have_worn_miss_no_contact() {
         let right = if assembly.place(0)[0] < assembly.place(1)[0] { 0 } else { 1 };
         assembly.displacements[right][0] += way;
         assembly.displacements[1 - right][0] -= way;
-        assembly.keep_listed(way).expect("apart");
+        assembly.update_list(way).expect("apart");
         assembly.evaluate();
         let overlap = 1.0 - (assembly.place(1 - right)[0] - assembly.place(right)[0]);
         let pressed = assembly.forces[right][0] < 0.0;
@@ -351,7 +351,7 @@ fn a_list_that_all_disks_wear_out_is_made_anew_with_a_wider_skin() {
     let smallest = packing.radii().iter().copied().fold(f64::INFINITY, f64::min);
     // Ways of all disks a step, over the smallest radius, and the skin that lasts for them: √(2 · 25 steps of making / 0.75 · way).
     for (way, expected) in [(2e-4f64, 0.2), (2e-3, (50.0 / 0.75 * 2e-3f64).sqrt()), (1e-2, 0.5)] {
-        let mut assembly = Assembly::with_amended_lists(&packing, Hertzian::default()).expect("no coincidence");
+        let mut assembly = Assembly::with_incremental_updates(&packing, Hertzian::default()).expect("no coincidence");
         assembly.prune_lists(true);
         assert_eq!(assembly.skin(), 0.2 * smallest);
         while assembly.rebuild_count() == 1 {
@@ -359,14 +359,14 @@ fn a_list_that_all_disks_wear_out_is_made_anew_with_a_wider_skin() {
                 let angle = 1.7 * disk as f64;
                 *displacement = sum(*displacement, [angle.cos(), angle.sin()].map(|along| way * smallest * along));
             }
-            assembly.keep_listed(way * smallest).expect("no coincidence");
+            assembly.update_list(way * smallest).expect("no coincidence");
         }
         assert!((assembly.skin() - expected * smallest).abs() < 1e-9, "{way}: {}", assembly.skin());
     }
     // A short list has the wider one from the start.
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N5548_p100.xyz");
     let packing = read_packing::<2>(file).expect("a stored packing");
-    let assembly = Assembly::with_amended_lists(&packing, Hertzian::default()).expect("no coincidence");
+    let assembly = Assembly::with_incremental_updates(&packing, Hertzian::default()).expect("no coincidence");
     assert_eq!(assembly.skin(), 0.5 * smallest);
 }
 
@@ -384,7 +384,7 @@ fn disks_that_go_far_in_near_pairs_find_each_other() {
     for step in 1..=17_600 {
         assembly.displacements[lower][1] += way;
         assembly.displacements[upper][1] -= way;
-        assembly.keep_listed(way).expect("apart");
+        assembly.update_list(way).expect("apart");
         if step > 17_400 {
             assembly.evaluate();
             let overlap = 1.0 - (assembly.place(upper)[1] - assembly.place(lower)[1]);

@@ -123,7 +123,7 @@ fn a_moved_packing_keeps_the_pattern_until_a_contact_changes() {
         for (index, displacement) in assembly.displacements.iter_mut().enumerate() {
             *displacement = [length * (index as f64).sin(), length * (2.0 * index as f64).cos()];
         }
-        assembly.keep_listed(f64::INFINITY).expect("apart");
+        assembly.update_list(f64::INFINITY).expect("apart");
         let same = hessian.update(&assembly);
         let fresh = Hessian::of(&assembly, Members::Backbone, Prestress::Included);
         assert_eq!(hessian.matrix(), fresh.matrix(), "length {length}");

@@ -141,7 +141,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             self.assembly.displacements[disk] = sum(self.assembly.displacements[disk], moved);
         }
         // A restored assembly may also have another list.
-        let _ = self.assembly.keep_listed(longest)?;
+        let _ = self.assembly.update_list(longest)?;
         self.set_damping_coefficients();
         Ok(Some(self.evaluate()))
     }

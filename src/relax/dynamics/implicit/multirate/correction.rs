@@ -50,7 +50,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         fast: &FastDisks<'_, impl Fn(usize, f64) -> f64>,
     ) -> Result<bool, PackingError> {
         let longest = LONGEST_MOVE * self.moved.iter().fold(0.0, |most, &change| larger(norm(change), most));
-        if self.assembly.listed_way() < longest.min(LISTED_SKIN * self.assembly.skin()) {
+        if self.assembly.remaining_displacement() < longest.min(LISTED_SKIN * self.assembly.skin()) {
             self.assembly.reanchor()?;
             self.set_damping_coefficients();
         }
@@ -75,7 +75,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         if self.is_free() {
             self.remove_momentum(difference(total(&self.velocities), momentum));
         }
-        if self.assembly.keep_listed(change)? {
+        if self.assembly.update_list(change)? {
             self.set_damping_coefficients();
         }
         Ok(true)
@@ -108,7 +108,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             }
             let listed = (self.assembly.pairs(), self.assembly.displacements.as_slice());
             let longest = shells.set_patch(listed, &self.moved, (disk, shell_count));
-            if longest > self.assembly.listed_way() {
+            if longest > self.assembly.remaining_displacement() {
                 return None;
             }
             change = larger(self.correct_patch(longest, fast, &mut shells.patch)?, change);

@@ -106,7 +106,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             if farthest * longest > self.smallest_radius {
                 return Ok(false);
             }
-            if self.assembly.keep_listed(change * longest)? {
+            if self.assembly.update_list(change * longest)? {
                 self.set_damping_coefficients();
             }
             self.work.evaluation_count += 1;

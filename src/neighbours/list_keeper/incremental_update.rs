@@ -5,12 +5,10 @@
 
 use std::ops::Range;
 
-use crate::forces::assembly::Assembly;
-use crate::law::pair_law::PairLaw;
 use crate::neighbours::displacement_bounds::SKIN_FRACTION;
+use crate::neighbours::list_keeper::{Coefficient, ListKeeper};
 use crate::neighbours::missing_pairs::insert_missing_pairs;
-use crate::neighbours::pair_list::PairList;
-use crate::neighbours::verlet_list::ListRoom;
+use crate::neighbours::verlet_list::Disks;
 use crate::vector::{Vector, difference, dot, longest_difference_squared};
 
 /// At most one disk in so many may be fast.
@@ -18,7 +16,7 @@ const FAST_ONE_OF: usize = 128;
 
 /// Parameters that differ between lists of one tile, which stay in cache and are built quickly, and long lists. They
 /// change speed only.
-pub(crate) struct Tuning {
+pub(super) struct Tuning {
     /// A disk is fast if its displacement exceeds this fraction of the limit of its list \[1\].
     fast_fraction: f64,
     /// At most one disk in so many may have been updated since the list was built.
@@ -41,28 +39,28 @@ const EXCEPTED_ONE_OF: usize = 512;
 /// Size of the sample of disks for the common displacement; some 250 of the sample exceed it.
 const SAMPLE_SIZE: usize = 1 << 17;
 
-impl<const D: usize, L: PairLaw> Assembly<D, L> {
-    pub(crate) fn tuning(&self) -> &'static Tuning {
-        if self.pairs.is_long() { &LONG } else { &SHORT }
+impl<const D: usize> ListKeeper<D> {
+    pub(super) fn tuning(&self) -> &'static Tuning {
+        if self.outer.is_long() { &LONG } else { &SHORT }
     }
 
     /// Whether lists are updated before they expire. A step by tiles is then never interrupted by an expired list.
     fn updates_ahead(&self) -> bool {
-        self.prunes && self.pairs.is_long()
+        self.prunes && self.outer.is_long()
     }
 
     /// Updates the list in use if a step like the last one may exceed its limit. Returns whether it did.
-    pub(crate) fn update_ahead(&mut self) -> bool {
+    pub(crate) fn update_ahead(&mut self, disks: &Disks<'_, D>, coefficient: Coefficient<'_>) -> bool {
         let limit = SKIN_FRACTION * self.skin();
         let nearly: Vec<usize> = self.bounds.nearly_expired(limit).collect();
         if !self.updates_ahead() || nearly.is_empty() {
             return false;
         }
-        self.tighten_bounds(nearly);
-        self.bounds.nearly_expired(limit).next().is_some() && self.update_fast_disks()
+        self.tighten_bounds(disks, nearly);
+        self.bounds.nearly_expired(limit).next().is_some() && self.update_fast_disks(disks, coefficient)
     }
 
-    /// The disks that [`Assembly::keep`] checks after a step for which the list was complete.
+    /// The disks that [`ListKeeper::keep`] and [`ListKeeper::update_ahead`] check after a step for which the list was complete.
     pub(crate) fn disks_to_check(&self) -> Vec<Range<usize>> {
         let limit = SKIN_FRACTION * self.skin();
         if !self.updates_ahead() || self.bounds.nearly_expired(limit).next().is_none() {
@@ -79,22 +77,22 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Updates the few fast disks to their present positions and inserts the pairs that the list in use is missing.
     /// Returns false if that is impossible. Then the list in use is unchanged, and the outer list stays valid up to its
     /// old limit.
-    pub(crate) fn update_fast_disks(&mut self) -> bool {
-        if !self.pairs.reserves_blocks {
+    pub(super) fn update_fast_disks(&mut self, disks: &Disks<'_, D>, coefficient: Coefficient<'_>) -> bool {
+        if !self.outer.reserves_blocks {
             return false;
         }
         // Disks that are fast in the inner list are searched in the cells of the outer list, so they must not be far
         // from those cells.
-        let outer_updated = self.update_outer_list();
+        let outer_updated = self.update_outer_list(disks, coefficient);
         let updated = match self.inner_skin {
             None => outer_updated == Some(true),
-            Some(skin) => outer_updated.is_some() && self.update_inner_list(skin),
+            Some(skin) => outer_updated.is_some() && self.update_inner_list(disks, coefficient, skin),
         };
         if updated {
-            self.listing_number.1 += 1;
-            if self.inner_skin.is_none() && !self.pairs.is_long() {
+            self.list_number.1 += 1;
+            if self.inner_skin.is_none() && !self.outer.is_long() {
                 // The speed of the disks is checked as for a new list.
-                self.prune_lists(self.prunes);
+                self.set_pruning(disks, self.prunes);
             }
         }
         updated
@@ -102,56 +100,46 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// Updates the disks that are fast in the outer list. Returns whether there were any; none if the update is
     /// impossible.
-    fn update_outer_list(&mut self) -> Option<bool> {
+    fn update_outer_list(&mut self, disks: &Disks<'_, D>, coefficient: Coefficient<'_>) -> Option<bool> {
         let portions: Vec<usize> = self.fast_portions_of_outer().collect();
-        let disks = self.fast_disks_of(&portions, &self.outer_at_build, self.skin)?;
-        if disks.is_empty() {
+        let fast = self.fast_disks_of(disks, &portions, &self.outer_at_build, self.skin)?;
+        if fast.is_empty() {
             return Some(false);
         }
-        self.fast_disks.set(disks, self.order.len());
-        let mut room = std::mem::take(&mut self.list_room);
-        let mut pairs = std::mem::take(&mut self.pairs);
-        let updated = room.note_updated(&self.disks(), &self.fast_disks, self.len() / self.tuning().updated_one_of)
-            && self.insert_missing((&self.outer_at_build, self.skin), &mut room, &mut pairs);
-        (self.pairs, self.list_room) = (pairs, room);
+        self.fast_disks.set(fast, disks.radii.len());
+        let most = disks.radii.len() / self.tuning().updated_one_of;
+        let ListKeeper { outer, room, fast_disks, outer_at_build, skin, .. } = self;
+        let updated = room.note_updated(disks, fast_disks, most)
+            && insert_missing_pairs(disks, (outer_at_build, *skin), fast_disks, coefficient, room, outer);
         if !updated {
             return None;
         }
-        for &disk in self.fast_disks.disks() {
-            self.outer_at_build[disk as usize] = self.displacements[disk as usize];
+        for &disk in fast_disks.disks() {
+            outer_at_build[disk as usize] = disks.displacements[disk as usize];
         }
         match self.inner_skin {
             Some(_) => self.tighten_bounds_before(&portions),
-            None => self.tighten_bounds(portions),
+            None => self.tighten_bounds(disks, portions),
         }
         Some(true)
     }
 
     /// The same for the inner list.
-    fn update_inner_list(&mut self, skin: f64) -> bool {
+    fn update_inner_list(&mut self, disks: &Disks<'_, D>, coefficient: Coefficient<'_>, skin: f64) -> bool {
         let portions: Vec<usize> = self.fast_portions().collect();
-        let Some(disks) = self.fast_disks_of(&portions, &self.inner_at_build, skin).filter(|disks| !disks.is_empty())
-        else {
+        let fast = self.fast_disks_of(disks, &portions, &self.inner_at_build, skin);
+        let Some(fast) = fast.filter(|fast| !fast.is_empty()) else { return false };
+        self.fast_disks.set(fast, disks.radii.len());
+        let ListKeeper { inner, room, fast_disks, inner_at_build, .. } = self;
+        if !insert_missing_pairs(disks, (inner_at_build, skin), fast_disks, coefficient, room, inner) {
             return false;
-        };
-        self.fast_disks.set(disks, self.order.len());
-        let mut room = std::mem::take(&mut self.list_room);
-        let mut pairs = std::mem::take(&mut self.inner_pairs);
-        let updated = self.insert_missing((&self.inner_at_build, skin), &mut room, &mut pairs);
-        (self.inner_pairs, self.list_room) = (pairs, room);
-        if updated {
-            for &disk in self.fast_disks.disks() {
-                self.inner_at_build[disk as usize] = self.displacements[disk as usize];
-            }
-            self.tighten_bounds_before(&portions);
-            self.tighten_bounds(portions);
         }
-        updated
-    }
-
-    fn insert_missing(&self, listing: (&[Vector<D>], f64), room: &mut ListRoom<D>, pairs: &mut PairList<D>) -> bool {
-        let law = self.law;
-        insert_missing_pairs(&self.disks(), listing, &self.fast_disks, |a, b| law.coefficient(a, b), room, pairs)
+        for &disk in fast_disks.disks() {
+            inner_at_build[disk as usize] = disks.displacements[disk as usize];
+        }
+        self.tighten_bounds_before(&portions);
+        self.tighten_bounds(disks, portions);
+        true
     }
 
     /// Portions that may contain disks that are fast in the list in use.
@@ -170,23 +158,29 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     }
 
     /// The disks of some portions that are far from their reference positions; none if they are too many.
-    fn fast_disks_of(&self, portions: &[usize], listed: &[Vector<D>], skin: f64) -> Option<Vec<u32>> {
+    fn fast_disks_of(
+        &self,
+        disks: &Disks<'_, D>,
+        portions: &[usize],
+        reference: &[Vector<D>],
+        skin: f64,
+    ) -> Option<Vec<u32>> {
         let limit = self.tuning().fast_fraction * SKIN_FRACTION * skin;
-        let disks = portions.iter().flat_map(|&portion| self.bounds.disks_of(portion));
+        let candidates = portions.iter().flat_map(|&portion| self.bounds.disks_of(portion));
         let is_fast = |disk: &usize| {
-            let displacement = difference(self.displacements[*disk], listed[*disk]);
+            let displacement = difference(disks.displacements[*disk], reference[*disk]);
             dot(displacement, displacement) > limit * limit
         };
-        let fast: Vec<u32> = disks.filter(is_fast).map(|disk| disk as u32).collect();
-        (fast.len() <= self.len() / FAST_ONE_OF).then_some(fast)
+        let fast: Vec<u32> = candidates.filter(is_fast).map(|disk| disk as u32).collect();
+        (fast.len() <= disks.radii.len() / FAST_ONE_OF).then_some(fast)
     }
 
     /// Computes the displacements of the disks of some portions, in place of their bounds.
-    pub(crate) fn tighten_bounds(&mut self, portions: Vec<usize>) {
+    pub(super) fn tighten_bounds(&mut self, disks: &Disks<'_, D>, portions: Vec<usize>) {
         for portion in portions {
-            let disks = self.bounds.disks_of(portion);
+            let own = self.bounds.disks_of(portion);
             self.bounds.portions[portion].total =
-                longest(&self.displacements[disks.clone()], &self.reference_displacements()[disks]);
+                longest(&disks.displacements[own.clone()], &self.reference_displacements()[own]);
         }
     }
 
@@ -201,23 +195,23 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Effective displacement since `from` that wears out the inner list. Displacements of fast disks count less, by
     /// the ratio of the costs of an update and of pruning. For large lists all count more, because pruning takes longer
     /// there.
-    pub(crate) fn effective_displacement(&self, from: &[Vector<D>]) -> f64 {
-        let longest = self.largest_displacement_since(from);
-        if self.pairs.reserves_blocks {
-            LARGE_LIST_FACTOR * (self.common_displacement(from) + self.tuning().update_cost * longest)
+    pub(super) fn effective_displacement(&self, disks: &Disks<'_, D>, from: &[Vector<D>]) -> f64 {
+        let longest = self.largest_displacement_since(disks, from);
+        if self.outer.reserves_blocks {
+            LARGE_LIST_FACTOR * (self.common_displacement(disks, from) + self.tuning().update_cost * longest)
         } else {
             longest
         }
     }
 
     /// The displacement since `from` that all mobile disks but a few, which can be updated, do not exceed \[length\].
-    pub(crate) fn common_displacement(&self, from: &[Vector<D>]) -> f64 {
-        if !self.pairs.reserves_blocks || self.mobile_count == 0 {
-            return self.largest_displacement_since(from);
+    pub(super) fn common_displacement(&self, disks: &Disks<'_, D>, from: &[Vector<D>]) -> f64 {
+        if !self.outer.reserves_blocks || disks.mobile_count == 0 {
+            return self.largest_displacement_since(disks, from);
         }
-        let mobile = self.displacements[..self.mobile_count].iter().zip(from);
+        let mobile = disks.displacements[..disks.mobile_count].iter().zip(from);
         let mut squares: Vec<f64> = mobile
-            .step_by((self.mobile_count / SAMPLE_SIZE).max(1))
+            .step_by((disks.mobile_count / SAMPLE_SIZE).max(1))
             .map(|(&now, &before)| {
                 let displacement = difference(now, before);
                 dot(displacement, displacement)
