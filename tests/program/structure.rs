@@ -9,8 +9,161 @@ const LONGEST_FILE: usize = 450;
 /// Longer than that: tables of numbers, and files that are still to be parted.
 const LONG: [&str; 3] = ["reference::bessel::modified_tables", "reference::lorentzian::contour", "run"];
 
-/// Source files by the path of their module, "" for `lib.rs`.
-fn sources() -> BTreeMap<String, String> {
+/// Names of files that are standard terms of physics, mathematics, numerical computing or programming.
+const STANDARD: &[&str] = &[
+    "analyse",
+    "angular",
+    "area",
+    "atomic",
+    "bessel",
+    "bootstrap",
+    "chart",
+    "check",
+    "coefficients",
+    "compare",
+    "complex",
+    "components",
+    "conjugate_gradients",
+    "continuum",
+    "contour",
+    "convergence",
+    "correlation",
+    "csv",
+    "curve",
+    "cusp",
+    "cylindrical",
+    "damped",
+    "damping",
+    "data_file",
+    "decay",
+    "definition",
+    "descent",
+    "displacement",
+    "divergence",
+    "dynamics",
+    "elastic",
+    "elasticity",
+    "ensemble",
+    "error",
+    "estimates",
+    "exact",
+    "execute",
+    "extended_xyz",
+    "factorisation",
+    "figure",
+    "files",
+    "finite",
+    "fits",
+    "for_each_pair",
+    "force_distribution",
+    "forces",
+    "fourier",
+    "frequency",
+    "gauss",
+    "grid",
+    "heat_map",
+    "hessian",
+    "implicit",
+    "incomplete_beta",
+    "inspect",
+    "integration",
+    "interval",
+    "io",
+    "iterative",
+    "lammps_data",
+    "lammps_dump",
+    "lanczos",
+    "lanes",
+    "lbfgs",
+    "least_squares",
+    "lengths",
+    "likelihood",
+    "limits",
+    "line_search",
+    "linear",
+    "lock",
+    "log_axes",
+    "main",
+    "manifest",
+    "map",
+    "measure",
+    "memory",
+    "merge",
+    "minimise",
+    "modes",
+    "moduli",
+    "motion",
+    "multipoles",
+    "neighbours",
+    "newton",
+    "number",
+    "observables",
+    "observe",
+    "output",
+    "page",
+    "pairs",
+    "palette",
+    "parallel",
+    "plastic",
+    "plot",
+    "point",
+    "point_force",
+    "polynomial",
+    "power_law",
+    "power_spectrum",
+    "precision",
+    "pressure",
+    "processor",
+    "profile",
+    "progress",
+    "radial",
+    "radii",
+    "read_error",
+    "real",
+    "relax",
+    "report",
+    "response",
+    "restart",
+    "results",
+    "roots",
+    "rounding",
+    "run",
+    "scale",
+    "scaling",
+    "search",
+    "section",
+    "sensitivity",
+    "settings",
+    "significance",
+    "simd",
+    "size",
+    "slope",
+    "solution",
+    "source",
+    "sparse",
+    "spectra",
+    "spectrum",
+    "spherical",
+    "state",
+    "statistics",
+    "step",
+    "store_error",
+    "subset",
+    "synthetic",
+    "system",
+    "table",
+    "threads",
+    "trajectory",
+    "units",
+    "vector",
+    "verlet",
+    "window",
+    "write_lammps_data",
+    "write_packing",
+];
+
+/// All source files by the path of their module, "" for `lib.rs`.
+fn all_sources() -> BTreeMap<String, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let (mut files, mut folders) = (BTreeMap::new(), vec![root.clone()]);
     while let Some(folder) = folders.pop() {
@@ -31,14 +184,32 @@ fn sources() -> BTreeMap<String, String> {
                 .map(|part| part.to_string_lossy().into_owned())
                 .filter(|part| part != "mod" && part != "lib")
                 .collect();
-            // The program is a crate of its own, and imports the library by its name.
-            if parts[..].first().is_some_and(|first| first == "main" || first == "cli") {
-                continue;
-            }
             files.insert(parts.join("::"), std::fs::read_to_string(&path).expect("text"));
         }
     }
     files
+}
+
+/// The source files of the library.
+fn sources() -> BTreeMap<String, String> {
+    let mut files = all_sources();
+    // The program is a crate of its own, and imports the library by its name.
+    files.retain(|module, _| !matches!(room(module), "main" | "cli"));
+    files
+}
+
+/// A term in the form in which terms are compared: lower case, blanks for underscores and hyphens, singular.
+fn term(text: &str) -> String {
+    let text = text.to_lowercase().replace(['_', '-'], " ");
+    text.split_whitespace().map(|word| word.trim_end_matches('s')).collect::<Vec<_>>().join(" ")
+}
+
+/// The terms of the glossary: what is bold in the first column of its tables.
+fn glossary() -> BTreeSet<String> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("book/src/glossary.md");
+    let text = std::fs::read_to_string(path).expect("the glossary");
+    let first_column = text.lines().filter_map(|line| line.strip_prefix("| ")?.split(" | ").next());
+    first_column.flat_map(|cell| cell.split("**").skip(1).step_by(2)).map(term).collect()
 }
 
 /// The code of a file: no comments, no tests.
@@ -172,6 +343,22 @@ fn files_are_read_in_one_sitting() {
     for (module, text) in &files {
         assert!(text.starts_with("//!"), "{module} says what it is for");
     }
+}
+
+#[test]
+fn file_names_are_in_the_glossary_or_standard_terms() {
+    assert!(STANDARD.is_sorted(), "the standard terms are sorted");
+    let (mut files, glossary) = (all_sources(), glossary());
+    files.remove("");
+    let name = |module: &str| term(module.rsplit("::").next().unwrap_or(module));
+    let names: BTreeSet<String> = files.keys().map(|module| name(module)).collect();
+    let standard: BTreeSet<String> = STANDARD.iter().copied().map(term).collect();
+    let is_known = |name: &String| glossary.contains(name) || standard.contains(name);
+    let unknown: Vec<&String> = files.keys().filter(|module| !is_known(&name(module))).collect();
+    assert!(unknown.is_empty(), "neither in the glossary nor a standard term: {unknown:?}");
+    let unused: Vec<&String> =
+        standard.iter().filter(|&term| !names.contains(term) || glossary.contains(term)).collect();
+    assert!(unused.is_empty(), "not the name of a file, or already in the glossary: {unused:?}");
 }
 
 #[test]
