@@ -1,8 +1,8 @@
-//! [`Source`]: where a packing comes from.
+//! [`Source`]: the source of a packing.
 
 use serde::{Deserialize, Serialize};
 
-/// Where a packing comes from.
+/// The source of a packing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {

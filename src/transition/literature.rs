@@ -4,9 +4,9 @@
 //! otherwise the comparison is [uninformative](Verdict::Uninformative), with a reason:
 //!
 //! 1. There is an interval.
-//! 2. Every cell behind the number has at least 8 samples. 3. An interval that contains the published value is not too
-//! wide. For a pressure, its ends are at most a factor of 10 apart. For any other number, it is no wider than the
-//! published value, or than 0.1 if that is larger.
+//! 2. Every cell behind the number has at least 8 samples.
+//! 3. An interval that contains the published value is not too wide. For a pressure, its ends are at most a factor of 10
+//!    apart. For any other number, it is no wider than the published value, or than 0.1 if that is larger.
 //!
 //! The interval of a p̂_c must also lie within the measured cells and within a factor of 10 of the best value.
 //!
