@@ -1,18 +1,19 @@
-//! [`Certificate`]: what is known of a state at rest, each number by a route of its own.
+//! [`Certificate`]: what is known of a state at rest, with independent methods.
 //!
 //! ```text
-//! residual      max |f_i| / ⟨F⟩                    beside what rounding alone makes of it
+//! residual      max |f_i| / ⟨F⟩                    and the part of it that rounding alone causes
 //! contacts      N_c − N_iso                        N_iso = D (N − 1) + 1  in a box under pressure
 //! stability     negative eigenvalues of K          the negative pivots of a factorisation (feature `linear`)
-//! virial        Σ F r  =  −dE/d ln L               forces against energies of the packing, box and all, a little larger and smaller
+//! virial        Σ F r  =  −dE/d ln L               forces against energies of the packing in a slightly scaled box
 //! ```
 //!
-//! *Isostatic number.* N disks of the backbone that can move have D N degrees of freedom. In a box D of them are translations,
-//! so rigidity takes D (N − 1) contacts; a state whose contacts press needs one more, for the balance of forces has a solution
-//! other than none only if contacts outnumber its independent equations. Held disks leave no translation: D N. (A state of
-//! stress needs one more there too, but contacts across a rim exceed that by far, so the number for rigidity is the one given.)
+//! *Isostatic number.* N mobile disks of the backbone have D N degrees of freedom. In a box, D of them are
+//! translations, so rigidity takes D (N − 1) contacts. A packing under pressure needs one contact more: force balance
+//! has a non-zero solution only if contacts outnumber its independent equations. With held disks there are no
+//! translations, so the number is D N. (A stressed state needs one more here as well, but contacts across the rim
+//! exceed it by far. The number for rigidity is used.)
 //!
-//! *Bucklers* are disks of the backbone with exactly D + 1 contacts: they can snap through.
+//! *Bucklers* are disks of the backbone with exactly D + 1 contacts: they can buckle.
 //!
 //! # Source
 //! Goodrich, Liu, Nagel (2012), Phys. Rev. Lett. 109, 095704 (isostatic number of finite packings). Charbonneau, Corwin, Parisi,
@@ -33,11 +34,11 @@ use crate::packing::{Packing, PackingError};
 use crate::relax::{Criterion, rounding_floor};
 use crate::vector::{extended_sum, larger, norm};
 
-/// How far the packing is scaled for the virial identity, over the strain that undoes the mean overlap \[1\]: 2⁻¹⁷. A contact
-/// that opens or closes on the way falsifies by its square; the rounding of the energy, 10⁻¹⁶, is divided by it.
+/// Scaling of the packing for the virial identity, over the strain that removes the mean overlap \[1\]: 2⁻¹⁷. A contact
+/// that opens or closes causes an error of order of its square. The rounding of the energy, 10⁻¹⁶, is divided by it.
 const SCALING: f64 = 7.62939453125e-6;
 
-/// What is known of a state.
+/// Properties of a state at rest.
 ///
 /// # Cost
 /// Three neighbour lists and evaluations, and with the feature `linear` one factorisation.
@@ -58,44 +59,44 @@ const SCALING: f64 = 7.62939453125e-6;
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Certificate {
-    /// Which limit a relaxer met; absent for a state nobody relaxed here.
+    /// Limit that a relaxer met; absent for a state that was not relaxed here.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub criterion: Option<Criterion>,
-    /// Largest net force on a mobile disk of the backbone; of all mobile disks where there is no backbone \[force\].
+    /// Largest net force on a mobile disk of the backbone; on any mobile disk without a backbone \[force\].
     pub largest_net_force: f64,
     /// Mean contact force of the same disks \[force\].
     pub mean_contact_force: f64,
-    /// The first over the second, 0 without forces \[1\].
+    /// Ratio of the two, 0 without forces \[1\].
     pub relative_residual: f64,
-    /// What rounding alone makes of it, by [`rounding_floor`] \[1\].
+    /// Part of it that rounding alone causes, by [`rounding_floor`] \[1\].
     pub rounding_floor: f64,
     /// Contacts of the backbone against the isostatic number; absent without a backbone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contacts: Option<ContactCount>,
     /// Mobile disks off the backbone.
     pub rattler_count: usize,
-    /// Mobile disks of the backbone with exactly D + 1 contacts on it.
+    /// Mobile disks of the backbone with exactly D + 1 contacts to the backbone.
     pub buckler_count: usize,
     /// Whether it is a minimum.
     #[cfg(feature = "linear")]
     pub stability: Stability,
-    /// Forces against energies; absent without contacts, where overlaps are below 10⁻¹⁰ of the distances (sides have no digits
-    /// for them), and in a box that must not be smaller.
+    /// Forces against energies. Absent without contacts, and in a box that is as small as allowed. Also absent if
+    /// overlaps are below 10⁻¹⁰ of the distances: sides cannot resolve them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub virial: Option<VirialIdentity>,
 }
 
-/// What the backbone rests on, hence how many contacts it needs.
+/// The support of the backbone, which sets its isostatic number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Support {
-    /// A periodic box, contacts that press: D (N − 1) + 1.
+    /// A periodic box with contacts under pressure: D (N − 1) + 1.
     BoxUnderPressure,
-    /// A periodic box at rest as [`Criterion::Unjammed`], whose contact forces count as none: D (N − 1).
+    /// A periodic box at rest as [`Criterion::Unjammed`], whose contact forces count as zero: D (N − 1).
     Box,
     /// Held disks: D N.
     HeldDisks,
-    /// Nothing, in the open plane or space: rotations are free as well, D N − D (D + 1)/2.
+    /// No support, in the open plane or space. Rotations are free as well: D N − D (D + 1)/2.
     Nothing,
 }
 
@@ -104,9 +105,9 @@ pub enum Support {
 pub struct ContactCount {
     /// Mobile disks of the backbone, N.
     pub disk_count: usize,
-    /// Contacts of the backbone, those with held disks included, N_c.
+    /// Contacts of the backbone, including those with held disks, N_c.
     pub contact_count: usize,
-    /// What it rests on.
+    /// The support.
     pub support: Support,
     /// N_iso, by [`Support`].
     pub isostatic_count: usize,
@@ -114,45 +115,45 @@ pub struct ContactCount {
     pub excess: i64,
 }
 
-/// Two routes to Σ F r \[energy\].
+/// Two independent values of Σ F r \[energy\].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct VirialIdentity {
     /// Σ F r over the contacts: D V times the pressure \[energy\].
     pub from_forces: f64,
-    /// −dE/d ln L at fixed radii, by a central difference of energies \[energy\].
+    /// −dE/d ln L at fixed radii, by central differences of the energy \[energy\].
     pub from_energies: f64,
-    /// Their difference over the first \[1\].
+    /// Their difference over the first value \[1\].
     pub relative_difference: f64,
 }
 
-/// Whether a state is a minimum, by the inertia of its Hessian; where nothing holds the packing, translations are left out.
+/// Whether a state is a minimum, by the inertia of its Hessian. Without held disks, translations are excluded.
 #[cfg(feature = "linear")]
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stability {
-    /// The eigenvalues below 0 are counted: none at a minimum.
+    /// The number of negative eigenvalues; 0 at a minimum.
     Counted {
-        /// How many.
+        /// Number of negative eigenvalues.
         negative_eigenvalue_count: usize,
         /// Smallest over largest pivot \[1\].
         pivot_ratio: f64,
     },
-    /// Singular to rounding: some motion costs nothing.
+    /// Singular to rounding: a motion has no stiffness.
     Singular {
         /// Smallest over largest pivot \[1\].
         pivot_ratio: f64,
     },
-    /// There is nothing to be stable.
+    /// There is no backbone.
     NoBackbone,
-    /// The factorisation failed, in its own words.
+    /// The factorisation failed, with its error message.
     Unknown(String),
 }
 
 impl Certificate {
-    /// Looks at a state. `criterion` is that of the relaxation, if there was one.
+    /// Analyses a state. `criterion` is that of the relaxation, if there was one.
     ///
     /// # Errors
-    /// Two disks with the same centre, a box too small.
+    /// Two disks with the same centre; a box that is too small.
     pub fn of<const D: usize, L: PairLaw>(
         packing: &Packing<D>,
         law: &L,
@@ -178,7 +179,7 @@ impl Certificate {
     }
 }
 
-/// Largest net force and mean contact force of the backbone, of all disks where there is none.
+/// Largest net force and mean contact force of the backbone; of all disks without a backbone.
 fn residual<const D: usize>(packing: &Packing<D>, network: &ContactNetwork<D>) -> (f64, f64) {
     let rigid = network.backbone_count() > 0;
     let net = network.forces().iter().enumerate();
@@ -220,7 +221,7 @@ impl ContactCount {
 }
 
 impl VirialIdentity {
-    /// None without contacts, or where the scaled packing is none.
+    /// None without contacts, or if the scaled packing is invalid.
     fn of<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L, network: &ContactNetwork<D>) -> Option<Self> {
         let contacts = &network.contacts;
         let overlap: f64 = contacts.iter().map(|contact| contact.overlap).sum();
@@ -228,7 +229,7 @@ impl VirialIdentity {
         let virial = network.stress(1.0);
         let from_forces: f64 = (0..D).map(|axis| virial[axis][axis]).sum();
         let strain = SCALING * overlap / distance;
-        // Energies and sides must have digits for the difference. NaN goes on.
+        // Energies and sides must resolve the difference. NaN is passed on.
         let energy = network.energy();
         if contacts.is_empty() || energy < f64::MIN_POSITIVE / f64::EPSILON || strain < 4.0 * f64::EPSILON {
             return None;
@@ -237,7 +238,7 @@ impl VirialIdentity {
         let (narrow, shorter) = packing.stretched(-strain);
         let more = compensated_energy(&ContactNetwork::new(&wide, law).ok()?);
         let less = compensated_energy(&ContactNetwork::new(&narrow, law).ok()?);
-        // Sides are rounded numbers: each axis has its own strain, and the forces are asked for those.
+        // Sides are rounded numbers: each axis has its own strain, and the forces are compared at these strains.
         let expected: f64 = (0..D).map(|axis| virial[axis][axis] * (longer[axis] - shorter[axis])).sum();
         let relative_difference = (extended_sum(less, -more.0).0 - more.1 - expected) / expected;
         Some(VirialIdentity {
@@ -248,7 +249,7 @@ impl VirialIdentity {
     }
 }
 
-/// The energy of the contacts, summed without rounding.
+/// The energy of the contacts by compensated summation.
 fn compensated_energy<const D: usize>(network: &ContactNetwork<D>) -> (f64, f64) {
     network.contacts.iter().fold((0.0, 0.0), |sum, contact| extended_sum(sum, contact.energy))
 }
@@ -280,7 +281,7 @@ impl Stability {
         })
     }
 
-    /// Number of negative eigenvalues, where they could be counted.
+    /// Number of negative eigenvalues, if it is known.
     pub fn negative_eigenvalue_count(&self) -> Option<usize> {
         match self {
             Stability::Counted { negative_eigenvalue_count, .. } => Some(*negative_eigenvalue_count),

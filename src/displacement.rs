@@ -1,12 +1,13 @@
-//! [`DisplacementField`]: how far every disk moved, in radial and transverse parts, on the backbone.
+//! [`DisplacementField`]: the displacement of every disk, in radial and transverse parts, on the backbone.
 //!
 //! ```text
 //! d_i = r_i(after) − r_i(before)      d_r = d·r̂      d_θ = d·θ̂ (D = 2)      r̂ from the centre of the inflated disk
 //! ```
 //!
-//! Made from two [`Relaxed`](crate::relax::Relaxed) packings, so a state that never came to rest cannot reach a figure; or
-//! from a linear response, which says itself whether it is one at a minimum. Disks that are rattlers before or after are left
-//! out of every observable. An unjammed packing has no backbone: all its disks are rattlers, and all of them count.
+//! The field comes from two [`Relaxed`](crate::relax::Relaxed) packings, so a state that is not at rest cannot reach a
+//! figure. It may also come from a linear response, which records whether its packing is at a minimum. Rattlers before
+//! or after are left out of every observable. An unjammed packing has no backbone: all its disks are rattlers and all
+//! count.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,15 +23,15 @@ use crate::vector::{Vector, dot, norm, scaled};
 pub struct Moved<const D: usize> {
     /// Index of the disk in the packings the field was made from.
     pub disk: usize,
-    /// Position before, from the centre of the inflated disk \[length\].
+    /// Position before, relative to the centre of the inflated disk \[length\].
     pub position: Vector<D>,
-    /// Distance before from that centre \[length\].
+    /// Distance before to that centre \[length\].
     pub distance: f64,
     /// Displacement \[length\].
     pub displacement: Vector<D>,
     /// Radial part d_r \[length\].
     pub radial: f64,
-    /// Whether observables are measured on the disk: it is on the backbone before and after, or the packing is unjammed.
+    /// Whether observables include the disk: it is on the backbone before and after, or the packing is unjammed.
     pub counted: bool,
 }
 
@@ -46,7 +47,7 @@ impl Moved<2> {
     }
 }
 
-/// The displacements of the mobile disks, centre left out.
+/// The displacements of the mobile disks, without the inflated disk.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DisplacementField<const D: usize> {
     /// Mobile disks in the order of the packing.
@@ -59,11 +60,11 @@ pub struct DisplacementField<const D: usize> {
     pub measured_on: MeasuredOn,
 }
 
-/// Which disks the observables of a field are measured on.
+/// Which disks the observables of a field include.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MeasuredOn {
-    /// Those on the backbone before and after.
+    /// Disks on the backbone before and after.
     Backbone,
     /// All mobile disks: the packing was unjammed before or after.
     AllDisks,
@@ -75,17 +76,17 @@ impl<const D: usize> DisplacementField<D> {
         Self::between(inflated, &inflated.before, &inflated.after)
     }
 
-    /// What is left of it after the deflation, if there was one.
+    /// The displacement that remains after the deflation; none without a deflation.
     pub fn of_cycle(inflated: &Inflated<D>) -> Option<Self> {
         inflated.deflated.as_ref().map(|deflated| Self::between(inflated, &inflated.before, deflated))
     }
 
-    /// A linear response as the field that an inflation by `increase` would leave, measured on the disks solved for.
+    /// The linear response to an inflation by `increase`. The disks that were solved for count.
     ///
-    /// `packing` is the one the response was made from and `outer_radius` the R of its circle or box.
+    /// `packing` is the one of the response. `outer_radius` is the R of its circle or box.
     ///
     /// # Panics
-    /// If the packing has another number of disks, or the response is not one to the growth of a disk.
+    /// If the packing has another number of disks, or the response is not that to the growth of a disk.
     #[cfg(feature = "linear")]
     pub fn of_linear_response(
         response: &LinearResponse<D>,
@@ -107,7 +108,8 @@ impl<const D: usize> DisplacementField<D> {
         Self::of_states(states, unjammed, inflated.centre, inflated.inner_radius, inflated.outer_radius)
     }
 
-    /// From two states, each with its backbone; whoever calls this answers for their being at rest, or says that they are not.
+    /// The field from two states with their backbones. The caller ensures that both are at rest, or states that they
+    /// are not.
     pub(crate) fn of_states(
         [(first, first_backbone), (second, second_backbone)]: [(&Packing<D>, &[bool]); 2],
         unjammed: bool,
@@ -122,7 +124,7 @@ impl<const D: usize> DisplacementField<D> {
         DisplacementField { disks, inner_radius, outer_radius, measured_on }
     }
 
-    /// The disks observables are measured on.
+    /// The disks that observables include.
     pub fn counted(&self) -> impl Iterator<Item = &Moved<D>> + '_ {
         self.disks.iter().filter(|disk| disk.counted)
     }

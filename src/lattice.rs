@@ -1,38 +1,40 @@
-//! [`Lattice`]: equal disks on a regular lattice, whose continuum answer is known exactly.
+//! [`Lattice`]: equal disks on a regular lattice, whose continuum response is known exactly.
 //!
-//! A triangular lattice is isotropic for long waves. Pressed disks of spacing b = 2R − δ with contact force F and stiffness
-//! F' at the overlap δ, one disk to the cell area A = (√3/2) b², obey for slowly varying displacements
+//! A triangular lattice is isotropic for long waves. Consider pressed disks with spacing b = 2R − δ, contact force F,
+//! stiffness F' at the overlap δ, and one disk per cell of area A = (√3/2) b². For slowly varying displacements they
+//! obey
 //!
 //! ```text
 //! m ü = A [ (λ+2μ) ∇(∇·u) − μ ∇×(∇×u) ] + Γ u       λ+2μ = (9F' − 3F/b) b²/(8A)       μ = (3F' − 9F/b) b²/(8A)
 //! ```
 //!
 //! *Derivation.* Along a bond n the force changes by B (u_j − u_i), B = F' n nᵀ − (F/b)(1 − n nᵀ), the block of the
-//! [Hessian](crate::linear::hessian). A wave u = U exp(i k·r) gives ω² U = Σ_n B (1 − cos b k·n) U → ½ b² Σ_n (k·n)² B U
-//! for small k. Over the six directions (k·n)² n nᵀ averages to k² (3/8 along k, 1/8 across), (k·n)² (1 − n nᵀ) to k² (1/8
-//! along, 3/8 across). Six times ½ is three: ω² = (b² k²/8)(9F' − 3F/b) along k and (b² k²/8)(3F' − 9F/b) across. These are
-//! the moduli in the equation of motion; forces at rest are in them. Their difference is the bulk modulus,
-//! λ+μ = (√3/2)(F' + F/b) = −A dp/dA with p = √3 F/b, as a uniform compression of the lattice gives it directly.
+//! [Hessian](crate::linear::hessian). A wave u = U exp(i k·r) gives ω² U = Σ_n B (1 − cos b k·n) U → ½ b² Σ_n (k·n)² B
+//! U for small k. Over the six directions (k·n)² n nᵀ averages to k² (3/8 along k, 1/8 across), (k·n)² (1 − n nᵀ) to k²
+//! (1/8 along, 3/8 across). Six times ½ is three: ω² = (b² k²/8)(9F' − 3F/b) along k and (b² k²/8)(3F' − 9F/b) across.
+//! These are the moduli in the equation of motion, including the forces at rest. Their difference is the bulk modulus,
+//! λ+μ = (√3/2)(F' + F/b) = −A dp/dA with p = √3 F/b, in agreement with a uniform compression of the lattice.
 //!
-//! *A disk that grows.* The growth of one disk by d_0 pushes its six neighbours away by g d_0 each,
-//! g = F' + F ∂ln c/∂R. Such a set of forces is an isotropic dipole of strength Σ r·f/2 = 3 g b d_0; in the continuum
-//! (λ+2μ) ∇(∇·u) = 3 g b d_0 ∇δ(r), so far away
+//! *A growing disk.* The growth of one disk by d_0 pushes each of its six neighbours away with a force g d_0, where g =
+//! F' + F ∂ln c/∂R. These forces are an isotropic dipole of strength Σ r·f/2 = 3 g b d_0. In the continuum (λ+2μ)
+//! ∇(∇·u) = 3 g b d_0 ∇δ(r), so far away
 //!
 //! ```text
 //! u_r → B d_0/r        B = 3 g b / (2π A' )        A' = λ+2μ, per area
 //! ```
 //!
-//! In a circle with u(R) = 0 this becomes B d_0 (1/r − r/R²), with sites (Γ) the screened profile with κ² = (Γ/A)/(λ+2μ)
-//! and the same B as r → 0. So not only the shape but also the amplitude is known, without a fit.
+//! In a circle with u(R) = 0 this becomes B d_0 (1/r − r/R²). With sites (Γ) it becomes the screened profile with κ² =
+//! (Γ/A)/(λ+2μ) and the same B as r → 0. So both the shape and the amplitude are known without a fit.
 //!
-//! *Where the rim is.* Held sites lie at R and up to a spacing beyond, so u vanishes somewhere between: taking R itself is an
-//! error of first order in b/R. A field that is linear near the rim, u = s x with x towards the inside, decides where. Along a
-//! wall of close rows it is an exact solution that vanishes on the first held row, half a row, (√3/4) b = 0.433 b, beyond the
-//! area of the last mobile row. Along a wall at 30° to it, rows b/2 apart and bonds across one and two of them, of stiffness
-//! F'/4 + F'/4 and F', the mobile rows 0, −1, … follow u_m = −(m − m_0) + c (−1/2)^|m| (without prestress), and
-//! u_1 = u_2 = 0 in the same recursion gives m_0 = 4/3: 2/3 b, (5/12) b = 0.417 b beyond their area. Other directions
-//! lie close by; the mean over a circle is measured ([`WALL`]). [`Lattice::effective_radius`] is the radius of the area of
-//! the mobile sites plus that: with it the profile is right to second order.
+//! *Position of the rim.* Held sites are between R and about one spacing beyond, so u vanishes between; using R itself
+//! is an error of first order in b/R. The position follows from a field that is linear near the rim, u = s x with x
+//! towards the inside. Along a wall of close-packed rows it is an exact solution that vanishes on the first held row.
+//! This row is half a row, (√3/4) b = 0.433 b, beyond the area of the last mobile row. Consider next a wall at 30° to
+//! it, with rows b/2 apart and bonds across one and two of them, of stiffness F'/4 + F'/4 and F'. There the mobile rows
+//! 0, −1, … follow u_m = −(m − m_0) + c (−1/2)^|m| (without prestress). The conditions u_1 = u_2 = 0 in the same
+//! recursion give m_0 = 4/3: 2/3 b, (5/12) b = 0.417 b beyond their area. Other directions give similar values; the
+//! mean over a circle is measured ([`WALL`]). [`Lattice::effective_radius`] is the radius of the area of the mobile
+//! sites plus this distance: with it the profile is exact to second order.
 
 use std::f64::consts::PI;
 
@@ -45,18 +47,19 @@ use crate::vector::{Vector, two_product, two_sum};
 /// √3/2 as an unevaluated sum, to 32 digits.
 const ROW_HEIGHT: (f64, f64) = (0.8660254037844386, 5.0175421109034514e-17);
 
-/// How far beyond the area of the mobile sites of a circle the displacement vanishes, over the spacing \[1\].
+/// Distance beyond the area of the mobile sites of a circle at which the displacement vanishes, over the spacing \[1\].
 ///
-/// Measured in linear responses, whose amplitude is known: 0.406 to 0.417 at R = 40, 0.408 to 0.413 at R = 80, for
-/// overlaps from 0 to a twentieth of a diameter, Hertzian and Hookean. The walls of the two simplest directions have 0.433 and 0.417.
+/// Measured in linear responses with known amplitude: 0.406 to 0.417 at R = 40, 0.408 to 0.413 at R = 80, for overlaps
+/// from 0 to a twentieth of a diameter, Hertzian and Hookean. The walls of the two simplest directions have 0.433 and
+/// 0.417.
 pub const WALL: f64 = 0.412;
 
-/// How the disks are arranged.
+/// The arrangement of the disks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Arrangement {
     /// Six neighbours each; isotropic.
     Triangular,
-    /// Four neighbours each; any pressure makes it unstable against shear, and it is not isotropic.
+    /// Four neighbours each; not isotropic, and unstable against shear at any pressure.
     Square,
 }
 
@@ -84,7 +87,7 @@ pub struct Lattice {
     spacing: f64,
 }
 
-/// Long-wave moduli of a triangular lattice, its forces at rest included.
+/// Long-wave moduli of a triangular lattice, including its forces at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moduli {
     /// λ+2μ: stiffness of long waves along their direction \[force / length\].
@@ -97,31 +100,31 @@ pub struct Moduli {
     pub pressure: f64,
 }
 
-/// Why there is no such lattice.
+/// Why a lattice is invalid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LatticeError {
-    /// The disks make no sense.
+    /// The disks are invalid.
     #[error(transparent)]
     Packing(#[from] PackingError),
     /// The radius must be positive.
     #[error("radius is {radius}, not a positive number")]
     RadiusNotPositive {
-        /// The value asked for.
+        /// The value given.
         radius: f64,
     },
-    /// Only neighbours may touch: the overlap must be positive and leave second neighbours apart.
+    /// Only neighbours may touch: the overlap must be positive, and second neighbours must not touch.
     #[error("overlap is {overlap}, not between 0 and {largest}, where second neighbours touch")]
     OverlapOutOfRange {
-        /// The value asked for.
+        /// The value given.
         overlap: f64,
         /// The overlap at which second neighbours touch.
         largest: f64,
     },
-    /// The circle must hold a site besides the one in the middle.
+    /// The circle must contain a site besides the central one.
     #[error("outer radius {outer_radius} is not a finite number above the spacing {spacing}: no site could move")]
     OuterRadiusTooSmall {
-        /// The radius asked for.
+        /// The radius given.
         outer_radius: f64,
         /// Distance of neighbours.
         spacing: f64,
@@ -140,7 +143,7 @@ impl Lattice {
     /// A square lattice of disks of this radius that overlap their four neighbours by `overlap`.
     ///
     /// # Errors
-    /// As [`Lattice::triangular`].
+    /// See [`Lattice::triangular`].
     pub fn square(radius: f64, overlap: f64) -> Result<Self, LatticeError> {
         Self::new(Arrangement::Square, radius, overlap, 2f64.sqrt())
     }
@@ -171,7 +174,7 @@ impl Lattice {
         2.0 * self.radius - self.spacing
     }
 
-    /// Area a disk has, A \[length²\].
+    /// Area per disk, A \[length²\].
     pub fn cell_area(&self) -> f64 {
         match self.arrangement {
             Arrangement::Triangular => ROW_HEIGHT.0 * self.spacing * self.spacing,
@@ -204,13 +207,13 @@ impl Lattice {
         self.moduli(law).map(|moduli| 3.0 * push * self.spacing / (2.0 * PI * moduli.longitudinal))
     }
 
-    /// Γ with which the lattice answers as a screened medium of this κ² \[force / length\]: κ² (λ+2μ) A; negative for
+    /// Γ for which the lattice responds as a screened medium with this κ² \[force / length\]: κ² (λ+2μ) A; negative for
     /// κ² < 0. None for the square lattice.
     pub fn coupling<L: PairLaw>(&self, law: &L, squared_wavenumber: f64) -> Option<f64> {
         self.moduli(law).map(|moduli| squared_wavenumber * moduli.longitudinal * self.cell_area())
     }
 
-    /// A site: `along` half spacings along a row, `row` rows up, as position and correction.
+    /// A site as position and correction: `along` half spacings along a row, `row` rows up.
     fn site(&self, along: i64, row: i64) -> (Vector<2>, Vector<2>) {
         let height = match self.arrangement {
             Arrangement::Triangular => {
@@ -229,7 +232,7 @@ impl Lattice {
     /// one (square).
     ///
     /// # Errors
-    /// No cell. A box too small for one image a pair is refused by what uses it.
+    /// No cell. If a box is too small for one image per pair, later functions refuse it.
     pub fn periodic(&self, cells: [usize; 2]) -> Result<Packing<2>, LatticeError> {
         let rows_a_cell = match self.arrangement {
             Arrangement::Triangular => 2,
@@ -247,8 +250,8 @@ impl Lattice {
         Ok(Packing::new(domain, positions, radii)?.with_corrections(corrections)?)
     }
 
-    /// A circle in the open plane around a site: sites nearer than `outer_radius` are mobile, those from there on, as far
-    /// as a mobile disk can reach, are held, and so is the one in the middle.
+    /// A circle in the open plane around a site: sites nearer than `outer_radius` are mobile. Sites from there on, as
+    /// far as a mobile disk can reach, and the central one are held.
     ///
     /// # Errors
     /// A radius that leaves no mobile site.
@@ -276,21 +279,21 @@ impl Lattice {
         Ok(Circle { packing, centre, outer_radius })
     }
 
-    /// The radius at which the displacement in a circle of this lattice vanishes \[length\]: that of the area of its N mobile
-    /// sites and the one in the middle, plus [`WALL`].
+    /// The radius at which the displacement in a circle of this lattice vanishes \[length\]: that of the area of its N
+    /// mobile sites and the central one, plus [`WALL`].
     ///
     /// ```text
     /// R_eff = √((N + 1) A/π) + 0.412 b
     /// ```
     ///
     /// # Accuracy
-    /// 0.006 b, R from 40 to 80 (asserted). None for the square lattice, of which nothing is known.
+    /// 0.006 b for R from 40 to 80 (asserted). None for the square lattice, for which it is unknown.
     pub fn effective_radius(&self, circle: &Circle<2>) -> Option<f64> {
         let area = (circle.mobile_count() + 1) as f64 * self.cell_area();
         (self.arrangement == Arrangement::Triangular).then(|| (area / PI).sqrt() + WALL * self.spacing)
     }
 
-    /// The sites nearer to one of them than `reach`, as half spacings along a row, row, and distance.
+    /// The sites nearer than `reach` to the central one, as half spacings along a row, row, and distance.
     fn sites_within(&self, reach: f64) -> Vec<(i64, i64, f64)> {
         // Squared distance in half spacings: x² + 3 y² (triangular), x² + 4 y² (square), both exact.
         let weight = match self.arrangement {

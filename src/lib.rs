@@ -1,8 +1,9 @@
-//! The mechanics of jammed packings: prepare, inflate, relax, and hold the response against exact solutions.
+//! The mechanics of jammed packings: prepare, inflate, relax, and compare the response with exact solutions.
 //!
-//! Soft frictionless disks push each other where they overlap, δ_ij = R_i + R_j − r_ij > 0. A packing is relaxed to a
-//! minimum of its energy, one disk is inflated by d_0, the packing is relaxed again, and the radial part of how far the
-//! disks moved is held against the solution of a continuum between the inflated disk, radius a, and a held rim, radius R:
+//! Soft frictionless disks push each other if they overlap, δ_ij = R_i + R_j − r_ij > 0. A packing is relaxed to a
+//! minimum of its energy, one disk is inflated by d_0, and the packing is relaxed again. The radial part of the
+//! displacements is compared with the solution of a continuum between the inflated disk, radius a, and a held rim,
+//! radius R:
 //!
 //! ```text
 //! E = Σ_(i<j) u(δ_ij)      −∂E/∂r_i = 0 for every mobile disk, before and after
@@ -10,11 +11,11 @@
 //! d_r'' + d_r'/r − d_r/r² + κ² d_r = 0      d_r(a) = d_0,  d_r(R) = 0
 //! ```
 //!
-//! κ = 0 is the elastic medium; κ > 0 is one whose plastic events screen the elastic field, as close to jamming.
+//! κ = 0 is the elastic medium; for κ > 0 plastic events screen the elastic field, as they do close to jamming.
 //!
 //! # Example
 //!
-//! 200 disks far from jamming respond as an elastic medium does.
+//! 200 disks far from jamming respond as an elastic medium.
 //!
 //! ```
 //! use jamscope::preparation::Target;
@@ -27,7 +28,7 @@
 //! let field = DisplacementField::of_inflation(&inflated);
 //! let profile = RadialProfile::of(&field, 1.0);
 //!
-//! // The amplitude d_0^eff of the elastic solution by least squares in r·d_r, and the share of Σ (r·d_r)² it describes.
+//! // The amplitude d_0^eff of the elastic solution by least squares in r·d_r, and the described share of Σ (r·d_r)².
 //! let medium = Elastic::<2>::new(Annulus::new(field.inner_radius, field.outer_radius)?, 1.0)?;
 //! let sum = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
 //!     profile.rings.iter().map(|ring| ring.radius.powi(2) * f(ring.mean, medium.value(ring.radius))).sum()
@@ -51,37 +52,37 @@
 //! | [`processor`] | the vector instructions that the kernels use | [`Processor`](processor::Processor) |
 //! | [`vector`] | vectors of D = 2 or 3 components, error-free sums | [`Vector`](vector::Vector) |
 //! | `sparse` (feature `linear`) | one triangle of a symmetric matrix in compressed columns | `sparse::SymmetricMatrix` |
-//! | [`memory`] | how much of it a count may take | [`Memory`](memory::Memory) |
+//! | [`memory`] | the memory limit for a count | [`Memory`](memory::Memory) |
 //! | [`packing`] | centres, radii, domain, which disks are held | [`Packing`](packing::Packing) |
 //! | [`io`] | packings in files | [`read_packing`](io::read_packing) |
 //! | [`law`] | force and energy of one contact, damping, sites | [`PairLaw`](law::PairLaw), [`Hertzian`](law::Hertzian) |
-//! | [`neighbours`] | which pairs may touch: cells, Verlet lists | [`PairList`](neighbours::PairList) |
-//! | [`forces`] | positions and forces of a packing that moves; the loop over contacts | [`Assembly`](forces::Assembly) |
-//! | [`network`] | who touches whom, rattlers, coordination, pressure | [`ContactNetwork`](network::ContactNetwork) |
+//! | [`neighbours`] | pairs that may touch: cells, Verlet lists | [`PairList`](neighbours::PairList) |
+//! | [`forces`] | positions and forces of a moving packing; the loop over contacts | [`Assembly`](forces::Assembly) |
+//! | [`network`] | contacts, rattlers, coordination, pressure | [`ContactNetwork`](network::ContactNetwork) |
 //! | `linear` (feature `linear`) | Hessian, factorisations, the response to an infinitesimal inflation, elastic moduli, modes | `linear::LinearResponse`, `linear::ElasticModuli` |
-//! | [`relax`] | bringing a packing to rest | [`Relaxer`](relax::Relaxer), [`Fire`](relax::Fire) |
-//! | [`certificate`] | what is known of a state at rest | [`Certificate`](certificate::Certificate) |
-//! | [`preparation`] | random points to a packing at a packing fraction or a pressure | [`prepare`] |
-//! | [`inflation`] | one disk grows, the rest relaxes; and back | [`inflate`] |
-//! | [`lattice`] | lattices whose continuum answer is known | [`Lattice`](lattice::Lattice) |
-//! | [`displacement`] | how far every disk moved | [`DisplacementField`](displacement::DisplacementField) |
-//! | `plastic` (feature `linear`) | what of a response is not in the linear one, and from where on | `plastic::PlasticPart` |
+//! | [`relax`] | relaxation of a packing to rest | [`Relaxer`](relax::Relaxer), [`Fire`](relax::Fire) |
+//! | [`certificate`] | verified properties of a state at rest | [`Certificate`](certificate::Certificate) |
+//! | [`preparation`] | from random points to a packing at a packing fraction or a pressure | [`prepare`] |
+//! | [`inflation`] | inflation of one disk and relaxation of the others; deflation | [`inflate`] |
+//! | [`lattice`] | lattices with known continuum response | [`Lattice`](lattice::Lattice) |
+//! | [`displacement`] | displacements of all disks | [`DisplacementField`](displacement::DisplacementField) |
+//! | `plastic` (feature `linear`) | the part of a response beyond the linear one, and where it begins | `plastic::PlasticPart` |
 //! | [`observe`] | radial and angular profile, angular modes, spectrum and correlation, contact forces and changes, penetration and isostatic length | [`RadialProfile`](observe::RadialProfile), [`AngularCorrelation`](observe::angular::AngularCorrelation) |
 //! | [`reference`](mod@reference) | exact solutions, elastic and screened | [`Annulus`](reference::Annulus) |
 //! | `fit` (feature `fit`) | a profile against both solutions, with errors and a decision; slope and crossover of an angular spectrum; crossings, powers and collapses of ensembles | `fit::profile::fit_radial_profile`, `fit::angular::fit_slope`, `fit::ensemble` |
 //! | `protocol` (feature `linear`) | whether relaxers end in the same minimum | `protocol::ProtocolSensitivity` |
-//! | [`verdict`] | whether states are at rest, hence whether a phase and fits may be given | [`RestVerdict`](verdict::RestVerdict) |
-//! | [`scene`] | everything a run needs, as plain data | [`Scene`](scene::Scene) |
+//! | [`verdict`] | whether states are at rest, so that a phase and fits may be reported | [`RestVerdict`](verdict::RestVerdict) |
+//! | [`scene`] | all settings of a run as plain data | [`Scene`](scene::Scene) |
 //! | [`response`] | all observables of one inflation, and its phase | [`Response`](response::Response) |
-//! | [`analysis`] | the same of states relaxed elsewhere | [`Analysis`](analysis::Analysis) |
-//! | [`run`] | scene to report, one line a stage | [`run::run`] |
+//! | [`analysis`] | the same for states relaxed by other programs | [`Analysis`](analysis::Analysis) |
+//! | [`run`] | from a scene to a report, one line per stage | [`run::run`] |
 //! | [`study`] | an experiment over lists of parameters, resumable | [`study::execute`](study::execute()), [`study::merge`](study::merge()) |
-//! | `transition` (feature `fit`) | p_c, its scaling and lengths from a study, beside what is published | `transition::Transition` |
+//! | `transition` (feature `fit`) | p_c, its scaling and lengths from a study, with published values | `transition::Transition` |
 //! | [`report`] | table, data files, figures, one page | [`report::write`] |
 //! | `precision` (feature `linear`) | error against cost of relaxers and other numerical choices | `precision::measure` |
 //!
-//! What a stage gives has a type that says what is known of it: only a converged relaxation makes a
-//! [`Relaxed`](relax::Relaxed) packing, and only two of those make a displacement field.
+//! The type of the result of a stage states what is known of it: only a converged relaxation makes a
+//! [`Relaxed`](relax::Relaxed) packing, and only two of these make a displacement field.
 //!
 //! # Features
 //!
@@ -89,7 +90,7 @@
 //! |---|---|---|
 //! | `fit` | fits of a measured profile, of a measured spectrum, of ensembles | argmin |
 //! | `linear` | Hessian, factorisations, Newton, linear response, plastic part, moduli, modes, protocol sensitivity | faer |
-//! | `parallel` | the samples of a scene side by side, or the tiles of one large packing; never changes a bit of a result | rayon |
+//! | `parallel` | samples of a scene in parallel, or the tiles of one large packing; never changes a bit of a result | rayon |
 //! | `plot` | figures and the HTML page of a report | plotters |
 //! | `cli` | the program `jamscope`, scenes from TOML | clap, toml, indicatif |
 //!
@@ -97,10 +98,10 @@
 //!
 //! # Further
 //!
-//! The book (`book/src`) has a chapter a module: the question, the equation, how it is computed, how it is checked, and
-//! where it ends. Its snippets are compiled and run by `cargo test --doc`.
+//! The book (`book/src`) has one chapter per module: the question, the equation, the method, its tests and its limits.
+//! Its snippets are compiled and run by `cargo test --doc`.
 
-// Results have no elementary function of the system in them (clippy.toml); tests may.
+// Results must not depend on elementary functions of the system (clippy.toml); tests may use them.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod analysis;

@@ -121,7 +121,7 @@ fn main() -> ExitCode {
     let command = Cli::parse().command;
     let result = threads::check_environment().and_then(|()| run_command(command));
     result.unwrap_or_else(|error| {
-        // Nobody may be there to read it: the exit code tells as well.
+        // The standard error stream may be closed: the exit code contains the same information.
         let _ = writeln!(std::io::stderr(), "jamscope: {error}");
         ExitCode::FAILURE
     })
@@ -173,7 +173,7 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     Err(format!("{scene_name}: {failed} of {} samples failed, see above", report.samples.len()).into())
 }
 
-/// With the flag `--not-at-rest` a phase and fits are given whatever the residual.
+/// With the flag `--not-at-rest` a phase and fits are reported for any residual.
 fn override_limit(settings: &mut VerdictSettings, given: bool) {
     if given {
         settings.above_limit = AboveLimit::Given;
@@ -188,7 +188,7 @@ fn is_refused(result: &SampleOutcome) -> bool {
     }
 }
 
-/// The sample of `--packing`: the file, relaxed after the inflation as the first sample of the scene on the same side of jamming.
+/// The sample of `--packing`: the file, relaxed after the inflation like the first sample of the scene on the same side of jamming.
 fn sample_of_file(path: &std::path::Path, scene: &Scene) -> Sample {
     let stem: String = path
         .file_stem()
@@ -231,7 +231,7 @@ fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
     Ok(ending::of_states(&name.into_iter().collect::<Vec<_>>()))
 }
 
-/// Prints to the standard output; a reader that has gone away (`| head`) is no failure.
+/// Prints to the standard output; a closed pipe (`| head`) is not an error.
 fn print(text: &str) -> Result<ExitCode, Failure> {
     match std::io::stdout().lock().write_all(text.as_bytes()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.into()),

@@ -1,27 +1,27 @@
-//! [`Memory`]: how much of it a count may take, and [`TooLarge`]: a count that is refused before anything is allocated.
+//! [`Memory`]: the memory limit for a count, and [`TooLarge`]: a count refused before any allocation.
 //!
-//! A failed allocation ends a process without a message, and a system that swaps ends in silence. Counts of a user are
-//! therefore checked against index types and against the memory of the machine before the work.
+//! A failed allocation ends a process without a message, and a system that swaps does not respond. Counts from the user
+//! are therefore checked against index types and against the memory of the machine beforehand.
 
 use std::path::Path;
 
-/// Memory taken as the limit where the system does not tell: that of a large workstation \[bytes\].
+/// Memory limit if the system reports none: that of a large workstation \[bytes\].
 pub const FIXED_LIMIT: u64 = 64 << 30;
 
 /// The memory that a process may use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Memory {
-    /// How much \[bytes\].
+    /// The limit \[bytes\].
     pub bytes: u64,
-    /// What sets this limit.
+    /// The origin of this limit.
     pub origin: &'static str,
 }
 
 impl Memory {
-    /// The memory of this machine: the least of what is installed, what a control group (a container, a batch job) allows, and
-    /// the limit on the address space. Outside Linux [`FIXED_LIMIT`].
+    /// The memory of this machine: the minimum of the installed memory, the limit of a control group (a container, a
+    /// batch job), and the limit of the address space. Outside Linux [`FIXED_LIMIT`].
     ///
-    /// Installed and not free memory: what is free changes from minute to minute, and with it what would be refused.
+    /// Installed instead of free memory, because free memory varies with time, and so would the refusals.
     pub fn of_machine() -> Self {
         let read = |path: &str| std::fs::read_to_string(path).ok();
         let mut found = Vec::new();
@@ -33,10 +33,10 @@ impl Memory {
         found.into_iter().min_by_key(|memory| memory.bytes).unwrap_or(fixed)
     }
 
-    /// Whether a count fits, at so many bytes each.
+    /// Checks whether a count fits, with `bytes_each` bytes each.
     ///
     /// # Errors
-    /// [`TooLarge`] with the largest count that does.
+    /// [`TooLarge`] with the largest count that fits.
     pub fn check(self, field: &str, value: usize, bytes_each: f64) -> Result<(), TooLarge> {
         let limit = (self.bytes as f64 / bytes_each) as u64;
         let limit = Limit { largest: limit, reason: self.origin };
@@ -44,20 +44,20 @@ impl Memory {
     }
 }
 
-/// The largest count of a kind, and why.
+/// The largest count of a quantity, with a reason.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limit {
     /// The largest count.
     pub largest: u64,
-    /// What sets it.
+    /// The reason.
     pub reason: &'static str,
 }
 
 impl Limit {
-    /// Whether a count is within the limit; `bytes_each` is what one takes.
+    /// Checks whether a count is within the limit; `bytes_each` is the memory for one.
     ///
     /// # Errors
-    /// [`TooLarge`] with field, value, limit and the memory that it would take.
+    /// [`TooLarge`] with field, value, limit and the memory needed.
     pub fn check(self, field: &str, value: usize, bytes_each: f64) -> Result<(), TooLarge> {
         let Limit { largest, reason } = self;
         if value as u64 <= largest {
@@ -67,23 +67,23 @@ impl Limit {
     }
 }
 
-/// A count beyond what memory or an index type allows.
+/// A count exceeds the memory or an index type.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{field} = {value}: at most {limit} ({reason}); {value} would take {} of memory", amount(*bytes))]
 pub struct TooLarge {
     /// The field of the settings, or the argument.
     pub field: String,
-    /// The count found.
+    /// The count given.
     pub value: usize,
     /// The largest count possible.
     pub limit: u64,
-    /// What sets the limit.
+    /// The reason for the limit.
     pub reason: &'static str,
-    /// The memory it would take \[bytes\].
+    /// The memory needed \[bytes\].
     pub bytes: f64,
 }
 
-/// A number of bytes in a unit in which it is short.
+/// A number of bytes in a suitable unit.
 fn amount(bytes: f64) -> String {
     let units = ["bytes", "kB", "MB", "GB", "TB"];
     let mut unit = 0;
@@ -101,7 +101,7 @@ fn installed(text: &str) -> Option<u64> {
     line.split_whitespace().nth(1)?.parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// The least memory limit of the control group and those above it, version 2 or 1.
+/// The smallest memory limit of the control group and those above it, version 2 or 1.
 fn control_group(text: &str) -> Option<u64> {
     let least = |root: &str, file: &str, group: &str| {
         let limit = |folder: &Path| std::fs::read_to_string(folder.join(file)).ok()?.trim().parse::<u64>().ok();
@@ -150,7 +150,7 @@ mod tests {
         let expected = "disk_count = 1000000000000: at most 16000000 (the memory of this machine); 1000000000000 would take \
                         1000.0 TB of memory";
         assert_eq!(message, expected);
-        // The largest count there is overflows nothing.
+        // The largest count does not overflow.
         assert!(memory.check("disk_count", usize::MAX, 1e3).is_err());
     }
 }

@@ -1,10 +1,12 @@
-//! [`PlasticPart`]: what of a relaxed response is not in the linear one, and up to where there is nothing of it.
+//! [`PlasticPart`]: the difference between the relaxed and the linear response, and the range of inflations without
+//! one.
 //!
 //! ```text
 //! d_plastic = d_relaxed − d_0 u        |d_plastic| = √(Σ_i d_i²)        P = (Σ_i d_i²)² / (N Σ_i d_i⁴)
 //! ```
 //!
-//! A smooth packing leaves d_0² there; contacts that open, close, or rearrange leave what plasticity is.
+//! In a packing whose contacts do not change this is of order d_0². Contacts that open, close or rearrange add the
+//! plastic part.
 
 use crate::displacement::DisplacementField;
 use crate::inflation::{Inflated, displacement};
@@ -19,10 +21,10 @@ use crate::vector::{Vector, difference, dot, scaled};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlasticError {
-    /// The disks themselves are at fault.
+    /// The disks themselves are invalid.
     #[error(transparent)]
     Packing(#[from] PackingError),
-    /// The response is one to forces or displacements.
+    /// The response is to forces or displacements, not to the growth of a disk.
     #[error("the linear response is not one to the growth of a disk")]
     NothingGrows,
     /// A relaxation did not end at rest.
@@ -40,18 +42,18 @@ pub enum PlasticError {
 /// The plastic part of a response.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlasticPart<const D: usize> {
-    /// d_relaxed − d_0 u, disk by disk, on the disks that count in the relaxed field and were solved for.
+    /// d_relaxed − d_0 u per disk, on the disks that count in the relaxed field and were solved for.
     pub field: DisplacementField<D>,
-    /// √(Σ d_i²) over those \[length\].
+    /// √(Σ d_i²) over these disks \[length\].
     pub norm: f64,
-    /// The same over that of the relaxed response \[1\].
+    /// That norm over the norm of the relaxed response \[1\].
     pub share: f64,
-    /// Participation ratio: 1 where all disks take part alike, 1/N where one does; 0 where none does \[1\].
+    /// Participation ratio: 1 if all disks move equally, 1/N if one moves; 0 if none does \[1\].
     pub participation_ratio: f64,
 }
 
 impl<const D: usize> PlasticPart<D> {
-    /// The plastic part of an inflation, whose linear response was made from its state before.
+    /// The plastic part of an inflation. The linear response must be that of its state before.
     ///
     /// # Panics
     /// If the response belongs to another packing.
@@ -75,7 +77,7 @@ impl<const D: usize> PlasticPart<D> {
     }
 }
 
-/// Σ d², Σ d⁴ and how many, the fourth power relative to the largest square so that it does not vanish.
+/// Number of vectors, Σ d² and Σ d⁴. The fourth power is relative to the largest square, so it does not underflow.
 struct Squares {
     count: usize,
     sum: f64,
@@ -104,54 +106,55 @@ impl Squares {
     }
 }
 
-/// Up to where a packing answers an inflation linearly.
+/// The range of inflations with a linear response.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinearRange {
-    /// The largest d_0 found at which |d_relaxed − d_0 u| stays within the tolerance of |d_0 u| \[length\].
+    /// The largest d_0 tried at which |d_relaxed − d_0 u| is within the tolerance of |d_0 u| \[length\].
     pub linear_up_to: f64,
-    /// The smallest d_0 found beyond it \[length\]; none if the largest tried is still linear.
+    /// The smallest d_0 tried above it \[length\]; none if the largest d_0 tried is still linear.
     pub not_linear_from: Option<f64>,
-    /// The largest d_0 found that changes no contact of the backbone \[length\].
+    /// The largest d_0 tried that changes no contact of the backbone \[length\].
     pub contacts_kept_up_to: f64,
-    /// The smallest d_0 found that changes one \[length\]; none if the largest tried changes none.
+    /// The smallest d_0 tried that changes one \[length\]; none if the largest changes none.
     pub contact_change_from: Option<f64>,
-    /// The d_0 at which the linear response itself would open its first contact \[length\]; none if it opens none.
+    /// The d_0 at which the linear response opens its first contact \[length\]; none if it opens none.
     pub first_opening: Option<f64>,
-    /// What the relaxations cost.
+    /// Cost of the relaxations.
     pub cost: Cost,
 }
 
-/// How [`linear_range`] searches.
+/// Settings of [`linear_range`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinearRangeSearch {
-    /// Deviation from the linear response that is still linear \[1\].
+    /// Relative deviation from the linear response that still counts as linear \[1\].
     pub tolerance: f64,
     /// Largest d_0 tried \[length\].
     pub largest: f64,
     /// Smallest d_0 tried \[length\].
     pub smallest: f64,
-    /// Halvings of the logarithm of d_0 between the two.
+    /// Number of bisections of log d_0 between the two.
     pub halving_count: usize,
 }
 
 impl Default for LinearRangeSearch {
-    /// 1 %, between 10⁻⁸ and 0.1, to 7 % of d_0 (8 halvings of seven decades).
+    /// A tolerance of 1 %; d_0 between 10⁻⁸ and 0.1, located to 7 % (8 bisections of seven decades).
     fn default() -> Self {
         LinearRangeSearch { tolerance: 0.01, largest: 0.1, smallest: 1e-8, halving_count: 8 }
     }
 }
 
-/// The largest inflation that a packing answers linearly, and the first that changes a contact, both by bisection.
+/// Finds by bisection the largest inflation with a linear response, and the first that changes a contact.
 ///
-/// Bisection takes for granted that what changes once does not change back; a packing beyond its first plastic event may.
+/// Bisection assumes that a change persists for all larger d_0. Beyond its first plastic event a packing may violate
+/// this.
 ///
-/// `packing` is at rest with its centre and rim held (or neither, in a periodic box), as `response` was made from.
+/// `packing` is at rest with its centre and rim held (or with nothing held, in a periodic box), as for `response`.
 ///
 /// # Errors
-/// A response that is not one to the growth of a disk; a relaxation that does not end at rest.
+/// The response is not that to the growth of a disk; a relaxation does not end at rest.
 ///
 /// # Cost
-/// Two relaxations for the ends and up to twice `halving_count` between, each from the packing given.
+/// Two relaxations for the ends and up to twice `halving_count` between, each from the given packing.
 pub fn linear_range<const D: usize, L: PairLaw>(
     packing: &Relaxed<Packing<D>>,
     response: &LinearResponse<D>,
@@ -169,7 +172,7 @@ pub fn linear_range<const D: usize, L: PairLaw>(
     let before = links(packing)?;
     let linear = Squares::of((0..disk_count).map(|disk| response.displacements[disk])).sum.sqrt();
     let mut cost = Cost::default();
-    // Whether an inflation stays linear, and whether it keeps its contacts.
+    // Whether an inflation is linear, and whether it changes no contact.
     let mut probe = |increase: f64| -> Result<(bool, bool), PlasticError> {
         let grown = packing.clone().with_radius(centre, packing.radii()[centre] + increase)?;
         let outcome = relaxer.relax(grown, law, &mut ())?;

@@ -1,20 +1,20 @@
 //! Random points in a periodic box, quenched to a jammed (or unjammed) packing at a packing fraction or at a pressure.
 //!
 //! At a packing fraction φ the points are drawn uniformly and relaxed once: this is the protocol of the study. At a
-//! pressure, the points are relaxed at the packing fraction that should give it and the box is then scaled, positions
-//! with it, and relaxed again until the pressure is met. Close to jamming
+//! pressure, the points are relaxed at an estimated packing fraction. The box is then scaled together with the
+//! positions, and relaxed again, until the pressure is met. Close to jamming
 //!
 //! ```text
 //! p^(1/(α−1)) ∝ φ − φ_J
 //! ```
 //!
-//! so the search goes by secants in that quantity; where a step ends in an unjammed packing the last jammed one is taken
-//! again with half the step. States on the way are only passed through: they count as at rest at a relative residual of
-//! [`PASSING`], and what meets the pressure is then brought to rest as the relaxer asks. Should its pressure have left the
-//! tolerance, the search goes on with every state at rest.
+//! so the search uses secants in that quantity. If a step ends in an unjammed packing, it is repeated from the last
+//! jammed one with half the length. Intermediate states count as at rest at a relative residual of [`PASSING`]. The
+//! state that meets the pressure is then relaxed to the relaxer's own limit. If its pressure leaves the tolerance, the
+//! search continues with the full limit for every state.
 //!
 //! # Source
-//! O'Hern, Silbert, Liu, Nagel (2003), Phys. Rev. E 68, 011306 (quench, scaling of the pressure); design §4.
+//! O'Hern, Silbert, Liu, Nagel (2003), Phys. Rev. E 68, 011306 (quench, scaling of the pressure).
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -36,7 +36,7 @@ pub enum Target {
     Pressure(f64),
 }
 
-/// How a packing is made.
+/// How to prepare a packing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preparation {
     /// Number of disks.
@@ -59,7 +59,7 @@ impl Default for Preparation {
     }
 }
 
-/// A packing at rest and what it took.
+/// A packing at rest, with its residual and its cost.
 #[derive(Debug, Clone)]
 pub struct Prepared<const D: usize> {
     /// The packing.
@@ -82,17 +82,17 @@ pub struct Prepared<const D: usize> {
     pub cost: Cost,
 }
 
-/// Why a packing could not be had.
+/// Why a packing could not be prepared.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PreparationError {
-    /// The disks themselves are at fault.
+    /// The disks themselves are invalid.
     #[error(transparent)]
     Packing(#[from] PackingError),
-    /// φ must be above 0 and below 4: there every disk overlaps all of a dozen neighbours.
+    /// φ must be above 0 and below 4: at 4 every disk overlaps all of a dozen neighbours.
     #[error("packing_fraction is {packing_fraction}, not a number between 0 and 4")]
     PackingFractionOutOfRange {
-        /// The value asked for.
+        /// The packing fraction given.
         packing_fraction: f64,
     },
     /// p must be positive: p = 0 leaves the packing fraction open.
@@ -100,15 +100,15 @@ pub enum PreparationError {
         "pressure is {pressure}, not a positive number (for an unjammed packing name a packing_fraction below jamming)"
     )]
     PressureNotPositive {
-        /// The value asked for.
+        /// The pressure given.
         pressure: f64,
     },
-    /// p must be below what disks at φ = 4 would give.
+    /// p must be below the pressure of disks at φ = 4.
     #[error(
         "pressure is {pressure}, above {largest}, about that at packing fraction 4, where every disk overlaps all of a dozen neighbours"
     )]
     PressureOutOfReach {
-        /// The value asked for.
+        /// The pressure given.
         pressure: f64,
         /// Estimate of the pressure at φ = 4.
         largest: f64,
@@ -116,7 +116,7 @@ pub enum PreparationError {
     /// The tolerance on the pressure must lie between 0 and 1.
     #[error("pressure tolerance is {tolerance}, not a number between 0 and 1")]
     ToleranceOutOfRange {
-        /// The value asked for.
+        /// The tolerance given.
         tolerance: f64,
     },
     /// A relaxation did not end at rest.
@@ -133,39 +133,37 @@ pub enum PreparationError {
         /// Relative residual reached.
         residual: f64,
     },
-    /// The search for the pressure ended elsewhere.
+    /// The search did not meet the pressure.
     #[error(
         "pressure {target} not met within {tolerance} after {relaxation_count} relaxations: nearest {nearest} at packing fraction {packing_fraction}"
     )]
     PressureNotReached {
-        /// Pressure asked for.
+        /// Target pressure.
         target: f64,
-        /// Tolerance asked for.
+        /// Relative tolerance.
         tolerance: f64,
-        /// Relaxations done.
+        /// Number of relaxations.
         relaxation_count: usize,
-        /// Nearest pressure met.
+        /// Nearest pressure reached.
         nearest: f64,
         /// Packing fraction there.
         packing_fraction: f64,
     },
 }
 
-/// Relaxations a search for a pressure may take; secants need 3 to 8.
+/// Largest number of relaxations in a search for a pressure; secants need 3 to 8.
 const RELAXATION_LIMIT: usize = 60;
 
-/// Relative residual at which a state that the search for a pressure passes through counts as at rest \[1\]; a tenth of the
-/// tolerance on the pressure, if that is less. Changes which packing is found, not what it is. Evaluations of forces against a
-/// search that brings every state to rest, staged relaxer, 1000 disks (`benches/measurements/preparation_cost`): 0.71 at p = 0.1, 0.67 at 1,
-/// 0.97 at 100, 0.91 at 1000; at 10⁻⁴ 0.79, 0.97, 0.95, 0.96; at 10⁻² 0.76, 0.65, 1.02, 0.82.
+/// Relative residual at which an intermediate state of the search for a pressure counts as at rest \[1\]; a tenth of
+/// the tolerance on the pressure, if that is smaller. Changes which packing is found, not its quality.
 pub const PASSING: f64 = 1e-3;
 
-/// Jamming of random bidisperse packings, to start a search from. Source: O'Hern et al. (2003).
+/// Packing fraction at jamming of random bidisperse packings, the start of a search. Source: O'Hern et al. (2003).
 fn jamming_fraction<const D: usize>() -> f64 {
     if D == 2 { 0.842 } else { 0.648 }
 }
 
-/// x^(1/D), the same on every system (the standard library leaves powers to the system's own).
+/// x^(1/D), the same on every system (the power function of the standard library depends on the system).
 fn side_ratio<const D: usize>(x: f64) -> f64 {
     if D == 2 { x.sqrt() } else { libm::cbrt(x) }
 }
@@ -173,7 +171,7 @@ fn side_ratio<const D: usize>(x: f64) -> f64 {
 /// Uniformly random points in a periodic cube at a packing fraction, with radii of a mixture.
 ///
 /// # Errors
-/// A mixture or packing fraction that makes no sense.
+/// An invalid mixture or packing fraction.
 pub fn random_points<const D: usize>(
     disk_count: usize,
     mixture: &Mixture,
@@ -241,7 +239,7 @@ pub fn prepare_with<const D: usize, L: PairLaw>(
     }
 }
 
-/// Pressure that affine compression from jamming would give; packings have about 0.7 of it (a start for the search only).
+/// Pressure after affine compression from jamming. Packings have about 0.7 of it; it only starts the search.
 fn affine_pressure<const D: usize, L: PairLaw>(law: &L, mixture: &Mixture, packing_fraction: f64) -> f64 {
     let total: f64 = mixture.components.iter().map(|kind| kind.share).sum();
     let mean =
@@ -250,17 +248,17 @@ fn affine_pressure<const D: usize, L: PairLaw>(law: &L, mixture: &Mixture, packi
     let density = packing_fraction / mean(&|r| ball_volume::<D>(r));
     let reach = 2.0 * radius;
     let overlap = reach * (side_ratio::<D>(packing_fraction / jamming_fraction::<D>()) - 1.0).max(0.0);
-    // Z / (2 D) contacts a disk and dimension, Z slightly above isostatic.
+    // Z / (2 D) contacts per disk and dimension, Z slightly above isostatic.
     1.15 * density * reach * law.force(law.coefficient(radius, radius), overlap)
 }
 
-/// Packing fraction at which random points are quenched for a pressure.
+/// Packing fraction at which random points are quenched to reach a pressure.
 fn quench_fraction<const D: usize, L: PairLaw>(
     law: &L,
     mixture: &Mixture,
     pressure: f64,
 ) -> Result<f64, PreparationError> {
-    // Quenching closer to jamming than this is slow and often ends unjammed; the search decompresses from here.
+    // A quench closer to jamming is slow and often ends unjammed. The search decompresses from here.
     let lowest = jamming_fraction::<D>() + 0.004;
     let (mut low, mut high) = (lowest, 4.0);
     let largest = 0.7 * affine_pressure::<D, L>(law, mixture, high);
@@ -289,7 +287,7 @@ struct Search<'a, L> {
 }
 
 impl<L: PairLaw> Search<'_, L> {
-    /// Relaxes a packing and measures its pressure.
+    /// Relaxes a packing and computes its pressure.
     fn rest<const D: usize>(
         &mut self,
         packing: Packing<D>,
@@ -338,7 +336,7 @@ impl<L: PairLaw> Search<'_, L> {
         let mut passing = relaxer.passing(PASSING.min(0.1 * tolerance));
         let (prepared, root) = self.rest(points, passing.as_ref().unwrap_or(relaxer), trace)?;
         let mut state = State { prepared, root };
-        // Slope of the root against φ: where it is not known yet, that of a straight line from jamming.
+        // Slope of the root against φ: if unknown, that of a straight line from jamming.
         let mut slope = wanted.max(state.root) / (state.prepared.packing_fraction - jamming_fraction::<D>()).max(0.004);
         let mut nearest = (state.prepared.pressure, state.prepared.packing_fraction);
         let mut step_share = 1.0;
@@ -359,7 +357,7 @@ impl<L: PairLaw> Search<'_, L> {
                 return Ok(state.prepared);
             }
             let mut step = step_share * (wanted - state.root) / slope;
-            // One step changes φ by a tenth at most, and never into what is known to be unjammed.
+            // One step changes φ by a tenth at most, and never reaches a φ known to be unjammed.
             step = step.clamp(-0.1 * fraction, 0.1 * fraction);
             if fraction + step <= unjammed_above {
                 step = 0.5 * (unjammed_above - fraction);
@@ -369,7 +367,7 @@ impl<L: PairLaw> Search<'_, L> {
             let (prepared, root) = self.rest(packing, passing.as_ref().unwrap_or(relaxer), trace)?;
             if root == 0.0 {
                 if state.root == 0.0 {
-                    // Still unjammed on the way up: go on from here with longer steps.
+                    // Still unjammed while compressing: continue from here with longer steps.
                     step_share *= 2.0;
                     state = State { prepared, root };
                 } else {

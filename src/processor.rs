@@ -1,15 +1,16 @@
-//! [`Processor`]: the vectors that our own kernels use, chosen at run time from the features of the processor.
+//! [`Processor`]: the vector width of our kernels, chosen at run time from the features of the processor.
 //!
 //! ```text
 //! vectors    none, NEON (128 bits), AVX2 (256 bits), AVX-512 (512 bits)
-//! roots      by the instructions for roots and quotients, or by refined products, where vectors have 512 bits
+//! roots      by the instructions for roots and quotients, or, for 512 bits, by refined products
 //! ```
 //!
-//! The choice changes the time, never a bit of a result of ours: the order of every sum is fixed, every operation is rounded as IEEE 754
-//! has it, and elementary functions come from `libm`. [`Processor::run`] is for tests of just that.
+//! The choice changes the time but no bit of our results: the order of every sum is fixed, every operation is rounded
+//! by IEEE 754, and elementary functions are from `libm`. [`Processor::run`] serves to test this.
 //!
-//! The matrix factorisations of faer choose their own vectors by the same features, and [`Processor::run`] does not reach them. Their sums
-//! have other orders for other vectors, so what goes through a factorisation differs in its last digits: see the chapter on validation.
+//! The matrix factorisations of faer choose their vector width by the same features, independently of
+//! [`Processor::run`]. The order of their sums depends on the width, so results of a factorisation differ in their last
+//! digits: see the chapter on validation.
 
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -17,11 +18,11 @@ use std::sync::{Mutex, PoisonError};
 use pulp::WithSimd;
 use serde::{Deserialize, Serialize};
 
-/// Vector instructions that the kernels use.
+/// Vector instructions of the kernels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Vectors {
-    /// No more than what every processor of its kind has.
+    /// The minimum of every processor of the architecture.
     None,
     /// 128 bits, AArch64.
     Neon,
@@ -43,33 +44,33 @@ impl Vectors {
     }
 }
 
-/// How vectors of 512 bits find roots and reciprocals. Never changes a bit.
+/// Computation of roots and reciprocals with vectors of 512 bits. Changes no bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Roots {
-    /// Every other root, and reciprocals, by products.
+    /// Every second root, and all reciprocals, by products.
     Products,
-    /// Every other root by products. Reciprocals by the instruction: a quotient of eight numbers takes 9 cycles.
+    /// Every second root by products; reciprocals by the instruction.
     Quotients,
-    /// All by the instructions: two roots and a quotient of eight numbers each take 5 ns together.
+    /// All by the instructions.
     Instructions,
 }
 
-/// What the kernels are chosen by.
+/// The choice of kernels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Processor {
     vectors: Vectors,
     roots: Roots,
 }
 
-/// The choice as a number: 0 before the first one.
+/// The present choice as a number: 0 before the first one.
 static CHOSEN: AtomicU8 = AtomicU8::new(UNKNOWN);
 const UNKNOWN: u8 = 0;
 
-/// Held while a [`Processor::run`] lasts.
+/// Locked during a [`Processor::run`].
 static RUNNING: Mutex<()> = Mutex::new(());
 
 impl Processor {
-    /// What the kernels use now: the processor's own, except within [`Processor::run`].
+    /// The choice in use: that of the processor, except within [`Processor::run`].
     #[inline(always)]
     pub fn here() -> Self {
         match CHOSEN.load(Ordering::Relaxed) {
@@ -78,7 +79,7 @@ impl Processor {
         }
     }
 
-    /// Every choice that this processor can run, its own last.
+    /// All choices that this processor supports; its own is the last.
     pub fn all() -> Vec<Self> {
         let own = Self::own();
         let every = [Vectors::None, Vectors::Neon, Vectors::Avx2, Vectors::Avx512].into_iter().flat_map(|vectors| {
@@ -91,27 +92,27 @@ impl Processor {
             Vectors::Avx2 => own.vectors >= Vectors::Avx2,
             Vectors::Avx512 => own.vectors == Vectors::Avx512,
         };
-        // Without vectors of 512 bits roots are found in one way only.
+        // Without vectors of 512 bits there is only one method for roots.
         let differs = |it: &Processor| it.vectors == Vectors::Avx512 || it.roots == own.roots;
         every.filter(|it| runs(it) && differs(it) && *it != own).chain([own]).collect()
     }
 
-    /// The vectors.
+    /// The vector instructions.
     #[inline(always)]
     pub fn vectors(self) -> Vectors {
         self.vectors
     }
 
-    /// How roots are found.
+    /// The method for roots.
     #[inline(always)]
     pub fn roots(self) -> Roots {
         self.roots
     }
 
-    /// Runs `work` with the kernels of this choice, on all threads of the process: for tests and measurements.
+    /// Runs `work` with the kernels of this choice on all threads of the process, for tests and measurements.
     ///
-    /// One at a time in a process, others wait; `work` must not call it again. Other threads use this choice meanwhile, which changes no
-    /// bit of theirs.
+    /// Only one call runs at a time in a process; others wait. `work` must not call it again. Other threads use this
+    /// choice meanwhile, which does not change their results.
     pub fn run<T>(self, work: impl FnOnce() -> T) -> T {
         struct Back;
         impl Drop for Back {
@@ -119,14 +120,14 @@ impl Processor {
                 CHOSEN.store(UNKNOWN, Ordering::Relaxed);
             }
         }
-        // A test that failed while it held the lock has put the choice back.
+        // A test that failed while it held the lock has restored the choice.
         let _running = RUNNING.lock().unwrap_or_else(PoisonError::into_inner);
         let _back = Back;
         CHOSEN.store(self.code(), Ordering::Relaxed);
         work()
     }
 
-    /// Detects the processor and keeps it, unless another thread has set a choice meanwhile.
+    /// Detects the processor and stores the choice, unless another thread has set one meanwhile.
     #[cold]
     #[inline(never)]
     fn found() -> Self {
@@ -137,7 +138,7 @@ impl Processor {
         }
     }
 
-    /// That of this processor: what reports name, since factorisations go by it as well.
+    /// The choice for this processor, also the one named in reports, since it applies to factorisations too.
     pub fn own() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
@@ -148,7 +149,7 @@ impl Processor {
             } else {
                 Vectors::None
             };
-            // By what marks its maker and its generation: AMD's fourth has SSE4a, the fifth pairs of intersections as well.
+            // By features that mark vendor and generation: AMD's fourth has SSE4a, its fifth also VP2INTERSECT.
             let roots = match std::arch::is_x86_feature_detected!("sse4a") {
                 false => Roots::Products,
                 true if std::arch::is_x86_feature_detected!("avx512vp2intersect") => Roots::Instructions,
@@ -163,7 +164,7 @@ impl Processor {
         }
     }
 
-    /// Two bits for the roots, the vectors above them, and a bit that is never 0.
+    /// Two bits for the roots, the vectors above them, and a bit that is always 1.
     fn code(self) -> u8 {
         let vectors = match self.vectors {
             Vectors::None => 0,
@@ -196,7 +197,7 @@ impl Processor {
     }
 }
 
-/// Runs a kernel, compiled for each width of vectors, with the vectors chosen.
+/// Runs a kernel, compiled for each vector width, with the chosen one.
 #[inline(always)]
 pub(crate) fn dispatch<K: WithSimd>(kernel: K) -> K::Output {
     let vectors = Processor::here().vectors();
@@ -224,7 +225,7 @@ pub(crate) fn dispatch<K: WithSimd>(kernel: K) -> K::Output {
 mod tests {
     use super::*;
 
-    /// The numbers in a vector of the kernel that runs.
+    /// The number of lanes of the running kernel.
     struct Lanes;
 
     impl WithSimd for Lanes {

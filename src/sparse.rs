@@ -1,4 +1,4 @@
-//! [`SymmetricMatrix`]: one triangle of a sparse symmetric matrix in compressed columns.
+//! [`SymmetricMatrix`]: the lower triangle of a sparse symmetric matrix in compressed columns.
 //!
 //! ```text
 //! column j:  rows[starts[j]..starts[j+1]], ascending, the first of them j        A_ij = A_ji
@@ -6,7 +6,7 @@
 
 use crate::vector::{Vector, larger};
 
-/// The lower triangle, diagonal included, of a symmetric matrix in compressed columns.
+/// The lower triangle, including the diagonal, of a symmetric matrix in compressed columns.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SymmetricMatrix {
     pub(crate) starts: Vec<usize>,
@@ -20,12 +20,12 @@ impl SymmetricMatrix {
         self.starts.len().saturating_sub(1)
     }
 
-    /// Number of stored entries: those of one triangle.
+    /// Number of stored entries, those of one triangle.
     pub fn stored_count(&self) -> usize {
         self.values.len()
     }
 
-    /// Where each column starts among the entries, and where the last one ends.
+    /// Index of the first entry of each column, and the number of entries.
     ///
     /// # Shape
     /// One more than [`SymmetricMatrix::dimension`].
@@ -43,7 +43,7 @@ impl SymmetricMatrix {
         &self.values
     }
 
-    /// Whether entries stand in the same places, whatever their values.
+    /// Whether both matrices have the same pattern of entries.
     pub fn has_pattern_of(&self, other: &Self) -> bool {
         self.starts == other.starts && self.rows == other.rows
     }
@@ -75,7 +75,7 @@ impl SymmetricMatrix {
         }
     }
 
-    /// A + shift · 1, entries where they stand.
+    /// A + shift · 1, with the same pattern of entries.
     #[must_use]
     pub fn shifted(&self, shift: f64) -> Self {
         let mut shifted = self.clone();
@@ -84,7 +84,8 @@ impl SymmetricMatrix {
         shifted
     }
 
-    /// Largest sum of absolute values in a row, ‖A‖_∞ \[unit of the entries\]: a bound on the size of every eigenvalue. NaN if an entry is.
+    /// Largest sum of absolute values in a row, ‖A‖_∞ \[unit of the entries\]: a bound of all eigenvalues. NaN if an
+    /// entry is NaN.
     pub fn norm(&self) -> f64 {
         let mut sums = vec![0.0; self.dimension()];
         for column in 0..self.dimension() {
@@ -101,7 +102,7 @@ impl SymmetricMatrix {
     }
 }
 
-/// Who is coupled to whom: both directions of every edge, neighbours of a vertex side by side.
+/// An undirected graph: both directions of every edge are stored; neighbours of a vertex are contiguous.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Graph {
     starts: Vec<usize>,
@@ -112,7 +113,7 @@ impl Graph {
     /// The graph with these edges, each given once in either direction.
     ///
     /// # Panics
-    /// If an edge names a vertex from `vertex_count` on.
+    /// If an edge contains a vertex index of `vertex_count` or more.
     pub fn new(vertex_count: usize, edges: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
         let mut starts = vec![0; vertex_count + 1];
         for (a, b) in edges.clone() {
@@ -138,16 +139,16 @@ impl Graph {
         self.starts.len().saturating_sub(1)
     }
 
-    /// The vertices coupled to one.
+    /// The neighbours of a vertex.
     pub fn neighbours(&self, vertex: u32) -> &[u32] {
         &self.neighbours[self.starts[vertex as usize]..self.starts[vertex as usize + 1]]
     }
 }
 
-/// Collects D × D blocks of a symmetric matrix; its buffers are kept from one matrix to the next.
+/// Collects D × D blocks of a symmetric matrix; its buffers are reused for further matrices.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct BlockPattern {
-    /// Blocks below the diagonal: where those of each block column start.
+    /// Index of the first block below the diagonal of each block column.
     starts: Vec<usize>,
     /// Block row of each, ascending in a column.
     rows: Vec<u32>,
@@ -183,7 +184,7 @@ impl BlockPattern {
         self.rows[range].binary_search(&row).is_ok()
     }
 
-    /// Zeros at the entries of the pattern; whether they stand where they stood.
+    /// Sets the entries of the pattern to zero. Returns whether the pattern is unchanged.
     pub(crate) fn clear_into<const D: usize>(&self, matrix: &mut SymmetricMatrix) -> bool {
         let block_count = self.starts.len() - 1;
         let mut same = matrix.dimension() == D * block_count;

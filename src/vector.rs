@@ -1,7 +1,7 @@
-//! Vectors of D = 2 or 3 components and the error-free sums that positions need.
+//! Vectors of D = 2 or 3 components and the error-free sums for positions.
 //!
-//! A position is kept as an unevaluated sum `high + low` of two vectors, so that the distance of two touching disks is
-//! known to the rounding of the distance itself (2·10⁻¹⁶), not to that of the side of the box (10⁻¹⁴ and more).
+//! A position is an unevaluated sum `high + low` of two vectors. So the distance of two touching disks is known to the
+//! rounding of the distance itself (2·10⁻¹⁶), not to that of the side of the box (10⁻¹⁴ and more).
 
 use std::ops::{Add, Mul, Sub};
 
@@ -10,13 +10,13 @@ use crate::processor;
 /// A vector of D components.
 pub type Vector<const D: usize> = [f64; D];
 
-/// What the loop over contacts may reckon with: `f64`, or `f32` while disks are far from rest.
+/// Number type of the loop over contacts: `f64`, or `f32` while disks are far from rest.
 pub trait Number: Copy + Default + Send + Sync + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 
 impl Number for f32 {}
 impl Number for f64 {}
 
-// Plain loops: a closure a component may stay a call inside the hot loop.
+// Plain loops: one closure per component might not be inlined in the hot loop.
 
 /// `a + b`, component by component.
 #[inline(always)]
@@ -64,13 +64,13 @@ pub fn norm<const D: usize>(a: Vector<D>) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// The larger of two numbers, NaN if either is one (`f64::max` would drop it).
+/// The larger of two numbers; NaN if either is NaN (`f64::max` would drop it).
 #[inline(always)]
 pub fn larger(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }
 
-/// The largest `|a_k − b_k|²` of two columns of vectors, NaN if any is.
+/// The largest `|a_k − b_k|²` of two columns of vectors; NaN if any is NaN.
 pub fn longest_difference_squared<const D: usize>(a: &[Vector<D>], b: &[Vector<D>]) -> f64 {
     processor::dispatch(LongestDifference { a, b })
 }
@@ -102,7 +102,7 @@ impl<const D: usize> pulp::WithSimd for LongestDifference<'_, D> {
     }
 }
 
-/// `a + b` without error: the rounded sum and what rounding took away.
+/// `a + b` without error: the rounded sum and the rounding error.
 ///
 /// # Source
 /// Knuth, The Art of Computer Programming, vol. 2, §4.2.2, theorem B.
@@ -121,7 +121,7 @@ pub fn extended_sum(a: (f64, f64), b: f64) -> (f64, f64) {
     (high, low)
 }
 
-/// `a · b` without error: the rounded product and what rounding took away (no overflow for |a|, |b| < 2⁹⁹⁵).
+/// `a · b` without error: the rounded product and the rounding error (no overflow for |a|, |b| < 2⁹⁹⁵).
 ///
 /// # Source
 /// Dekker (1971), Numer. Math. 18, 224 (no fused operation needed, so the same bits everywhere).
@@ -149,7 +149,8 @@ pub fn extended_norm<const D: usize>(high: Vector<D>, low: Vector<D>) -> (f64, f
     }
     let root = square.0.sqrt();
     let (product, rest) = two_product(root, root);
-    // One Newton step of the root, its residual taken without cancellation; no branch, so a loop over many may take vectors.
+    // One Newton step for the root, with the residual computed without cancellation; no branch, so that loops can be
+    // vectorised.
     let step = ((square.0 - product) - rest + square.1) / (2.0 * root);
     two_sum(root, if root == 0.0 { 0.0 } else { step })
 }

@@ -1,14 +1,15 @@
-//! [`Analysis`]: the observables of two states that somebody else relaxed.
+//! [`Analysis`]: the observables of two states relaxed by another program.
 //!
 //! ```text
-//! before, after  →  disks matched by label, the inflated one found  →  d_i = r_i(after) − r_i(before)  →  Response
+//! before, after  →  disks matched by label, the inflated one identified  →  d_i = r_i(after) − r_i(before)  →
+//! Response
 //! ```
 //!
-//! Whether the states are at rest is not taken on trust: each has a [`Certificate`] with its residual, and a [`RestVerdict`] says
-//! whether there may be a phase and fits. The inflated disk is
-//! the one whose radius changed, unless it is named. A state is unjammed by the rule of the relaxers: its contact forces are those
-//! of rounding. Disks beyond R are held, and so is the centre, where either R is given
-//! or the file says which disks are held; otherwise the box is periodic and R half its shortest side.
+//! Whether the states are at rest is checked: each has a [`Certificate`] with its residual, and a [`RestVerdict`]
+//! decides whether a phase and fits may be reported. The inflated disk is the one whose radius changed, unless it is
+//! given. A state is unjammed by the rule of the relaxers: its contact forces are those of rounding. If R is given or
+//! the file marks held disks, disks beyond R and the centre are held; otherwise the box is periodic and R is half its
+//! shortest side.
 
 mod pair;
 
@@ -29,7 +30,7 @@ use crate::response::{Response, Subject};
 use crate::scene::Observables;
 use crate::verdict::{Place, RestVerdict, VerdictSettings};
 
-/// Two states and what is measured on them.
+/// Two states and their observables.
 #[derive(Debug, Clone, Serialize)]
 pub struct Analysis {
     /// Its name in reports and file names.
@@ -40,17 +41,17 @@ pub struct Analysis {
     pub centre_label: u64,
     /// Its radius before, a \[length\].
     pub inner_radius: f64,
-    /// By how much it grew, d_0 \[length\].
+    /// Increase of its radius, d_0 \[length\].
     pub increase: f64,
     /// R \[length\].
     pub outer_radius: f64,
     /// Number of mobile disks.
     pub mobile_count: usize,
-    /// Before.
+    /// State before.
     pub before: StateAnalysis,
-    /// After.
+    /// State after.
     pub after: StateAnalysis,
-    /// After the deflation, if that state was given.
+    /// State after the deflation, if it was given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deflated: Option<StateAnalysis>,
     /// Δp = p_after − p_before \[force / length\].
@@ -58,34 +59,35 @@ pub struct Analysis {
     /// Δp / p^((α−2)/(α−1)) \[(force / length)^(1/(α−1))\], absent for an unjammed packing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scaled_pressure_change: Option<f64>,
-    /// All that is measured.
+    /// The observables.
     #[serde(flatten)]
     pub response: Response,
-    /// The states, matched.
+    /// The matched states.
     #[serde(skip)]
     pub pair: Pair,
 }
 
-/// One state in numbers.
+/// Summary of one state.
 #[derive(Debug, Clone, Serialize)]
 pub struct StateAnalysis {
-    /// Pressure of the circle or the box, 0 of an unjammed packing \[force / length\].
+    /// Pressure of the circle or the box, 0 for an unjammed packing \[force / length\].
     pub pressure: f64,
     /// Elastic energy \[energy\].
     pub energy: f64,
-    /// Number of contacts, held–held ones left out.
+    /// Number of contacts, without those between held disks.
     pub contact_count: usize,
     /// Number of mobile disks that are rattlers.
     pub rattler_count: usize,
-    /// What is known of it, its residual among it.
+    /// Its certificate, which includes the residual.
     pub certificate: Certificate,
 }
 
 impl Analysis {
-    /// Measures a pair of states; with a phase and fits if they are at rest by `verdict`, or these settings want both all the same.
+    /// Measures a pair of states. A phase and fits are included if the states are at rest by `verdict`, or if its
+    /// settings require them in any case.
     ///
     /// # Errors
-    /// Two disks with the same centre. Settings are expected to have been [checked](Observables::check).
+    /// Two disks with the same centre. The settings must have been [checked](Observables::check).
     pub fn of(
         name: &str,
         pair: Pair,
@@ -130,7 +132,7 @@ impl Analysis {
         })
     }
 
-    /// What keeps the packing in place.
+    /// The boundary.
     pub fn boundary(&self) -> Boundary {
         self.pair.boundary
     }
@@ -157,8 +159,8 @@ impl StateAnalysis {
     }
 }
 
-/// Whether a state is unjammed: without a backbone, or with contact forces that are none in the sense of [`UNJAMMED_FORCE`].
-/// What is left of overlaps in an unjammed packing after rounding may well look like a backbone.
+/// Whether a state is unjammed: without a backbone, or with contact forces that count as zero in the sense of
+/// [`UNJAMMED_FORCE`]. Rounding may leave overlaps in an unjammed packing that resemble a backbone.
 fn is_unjammed<L: PairLaw>(state: &State<'_, 2>, law: &L) -> bool {
     let network = &state.network;
     let radius = state.packing.radii().iter().copied().fold(f64::INFINITY, f64::min);

@@ -1,4 +1,4 @@
-//! [`Pair`]: two states of the same disks, matched, with the inflated one found.
+//! [`Pair`]: two states of the same disks, matched, with the inflated disk identified.
 
 use std::collections::BTreeMap;
 
@@ -6,13 +6,13 @@ use crate::inflation::Boundary;
 use crate::packing::{Packing, PackingError};
 use crate::vector::{norm, two_sum};
 
-/// What the states themselves do not say.
+/// Settings that the states do not contain.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PairSettings {
-    /// Label of the inflated disk; absent, it is the one whose radius changed.
+    /// Label of the inflated disk; if absent, it is the one whose radius changed.
     pub centre_label: Option<u64>,
-    /// R: disks that far from the inflated one before, or farther, are held; absent, held disks are those the states say
-    /// are held \[length\].
+    /// R: disks whose distance before from the inflated one is at least R are held; if absent, the held disks are those
+    /// of the states \[length\].
     pub outer_radius: Option<f64>,
 }
 
@@ -20,17 +20,17 @@ pub struct PairSettings {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AnalysisError {
-    /// One has more disks.
+    /// The numbers of disks differ.
     #[error("{before_count} disks before, {after_count} {state}: the states have to hold the same disks")]
     CountsDiffer {
         /// Which state is compared with the one before.
         state: &'static str,
-        /// Disks before.
+        /// Number of disks before.
         before_count: usize,
-        /// Disks in that state.
+        /// Number of disks in that state.
         after_count: usize,
     },
-    /// A label of one is missing in the other.
+    /// A label of one state is missing in the other.
     #[error("disk {label} is there before but not {state}")]
     LabelMissing {
         /// Which state is compared with the one before.
@@ -38,7 +38,7 @@ pub enum AnalysisError {
         /// Its label.
         label: u64,
     },
-    /// Labels that stand more than once do not match in order.
+    /// Repeated labels do not match in order.
     #[error("label {label} stands more than once, and the disks {state} are in another order than before")]
     LabelsAmbiguous {
         /// Which state is compared with the one before.
@@ -58,22 +58,22 @@ pub enum AnalysisError {
     /// Several radii changed.
     #[error("{count} disks changed their radius, disks {first} and {second} among them: one is inflated")]
     SeveralCentres {
-        /// How many.
+        /// Number of these disks.
         count: usize,
         /// Label of the first.
         first: u64,
         /// Label of the second.
         second: u64,
     },
-    /// No disk, or more than one mobile one, has the label asked for.
+    /// No disk, or more than one mobile disk, has the given label.
     #[error("{count} disks have the label {label} of the inflated one, not one")]
     CentreNotOne {
         /// The label.
         label: u64,
-        /// How many have it.
+        /// Number of disks with it.
         count: usize,
     },
-    /// The disk named as the inflated one has one radius in both states.
+    /// The given inflated disk has equal radii in both states.
     #[error("disk {label} is named as the inflated one, but its radius is {radius} before and after{}", grown_instead(*grown))]
     CentreUnchanged {
         /// Its label.
@@ -83,7 +83,7 @@ pub enum AnalysisError {
         /// Label of a disk whose radius changed.
         grown: Option<u64>,
     },
-    /// R makes no sense.
+    /// R is invalid.
     #[error("the outer radius is {outer_radius}, not above the radius of the inflated disk, {inner_radius}")]
     OuterRadiusOutOfRange {
         /// R given.
@@ -91,49 +91,49 @@ pub enum AnalysisError {
         /// Radius of the inflated disk.
         inner_radius: f64,
     },
-    /// Nothing says where the packing ends.
+    /// The boundary of the packing is unknown.
     #[error("the packing is in the open plane and no disk is held: say the outer radius, beyond which disks are held")]
     NoBoundary,
-    /// Nothing could move.
+    /// No disk could move.
     #[error("no disk lies within the outer radius {outer_radius}")]
     NoMobileDisk {
         /// R.
         outer_radius: f64,
     },
-    /// The disks themselves are at fault.
+    /// The disks themselves are invalid.
     #[error(transparent)]
     Packing(#[from] PackingError),
 }
 
-/// What else may have been meant.
+/// A hint to the disk that was probably meant.
 fn grown_instead(label: Option<u64>) -> String {
     label.map_or(String::new(), |label| format!("; that of disk {label} changed"))
 }
 
-/// States of the same disks in one order.
+/// States of the same disks in the same order.
 #[derive(Debug, Clone)]
 pub struct Pair {
-    /// Before the inflation.
+    /// State before the inflation.
     pub before: Packing<2>,
-    /// After it.
+    /// State after it.
     pub after: Packing<2>,
-    /// After the deflation, if that is known.
+    /// State after the deflation, if it is known.
     pub deflated: Option<Packing<2>>,
     /// Index of the inflated disk in all of them.
     pub centre: usize,
     /// R \[length\].
     pub outer_radius: f64,
-    /// What keeps the packing in place.
+    /// The boundary.
     pub boundary: Boundary,
 }
 
 impl Pair {
-    /// Matches the disks by their labels, finds the inflated one and holds what is to be held.
+    /// Matches the disks by their labels, identifies the inflated one and sets the held disks.
     ///
-    /// Labels that stand more than once, as images of a disk in a rim do, are matched in the order of the disks.
+    /// Repeated labels, as of images of a disk in a rim, are matched in the order of the disks.
     ///
     /// # Errors
-    /// [`AnalysisError`] says what does not fit together.
+    /// [`AnalysisError`].
     pub fn new(
         before: Packing<2>,
         after: &Packing<2>,
@@ -180,7 +180,7 @@ fn matched(first: &Packing<2>, second: &Packing<2>, state: &'static str) -> Resu
     Ok(packing.with_corrections(corrections)?.with_labels(first.labels().to_vec())?)
 }
 
-/// Where the disks of the first state are in the second.
+/// The index in the second state of each disk of the first.
 fn order(first: &Packing<2>, second: &Packing<2>, state: &'static str) -> Result<Vec<usize>, AnalysisError> {
     if first.labels() == second.labels() {
         return Ok((0..first.len()).collect());
@@ -191,12 +191,12 @@ fn order(first: &Packing<2>, second: &Packing<2>, state: &'static str) -> Result
             return Err(AnalysisError::LabelsAmbiguous { state, label });
         }
     }
-    // Each place is taken once: the labels of the second stand once, and there are as many of them as of the first.
+    // Each index is taken once: the labels of the second are unique, and their number is that of the first.
     let mut place = |label: &u64| places.remove(label).ok_or(AnalysisError::LabelMissing { state, label: *label });
     first.labels().iter().map(&mut place).collect()
 }
 
-/// Position and correction of a disk in the second state, in the image nearest to where it was in the first.
+/// Position and correction of a disk in the second state, in the image nearest to its position in the first.
 fn unwrapped(first: &Packing<2>, disk: usize, second: &Packing<2>, place: usize) -> ([f64; 2], [f64; 2]) {
     let ((before, _), (mut position, mut correction)) = (first.centre(disk), second.centre(place));
     for axis in 0..2 {
@@ -218,7 +218,7 @@ fn labelled(packing: &Packing<2>, label: u64) -> Result<usize, AnalysisError> {
     }
 }
 
-/// The disk itself, if its radius changed.
+/// The given disk, if its radius changed.
 fn changed(before: &Packing<2>, after: &Packing<2>, centre: usize) -> Result<usize, AnalysisError> {
     let radius = before.radii()[centre];
     if radius != after.radii()[centre] {
@@ -247,11 +247,11 @@ fn grown(before: &Packing<2>, after: &Packing<2>) -> Result<usize, AnalysisError
     }
 }
 
-/// R and the boundary: as given, where the nearest held disk is, or half of the box.
+/// R and the boundary: given, or from the nearest held disk, or half of the box.
 fn outer(packing: &Packing<2>, centre: usize, given: Option<f64>) -> Result<(f64, Boundary), AnalysisError> {
     let lengths = packing.domain().lengths();
     let shortest = lengths.map(|sides| sides[0].min(sides[1]));
-    // What a map of the circle needs of the boundary is that there is a rim.
+    // A map of the circle only needs to know that there is a rim.
     let rim = |radius: f64| {
         (radius, Boundary::HeldRim { outer_radius_over_side: shortest.map_or(0.5, |side| (radius / side).min(0.5)) })
     };
@@ -271,13 +271,13 @@ fn outer(packing: &Packing<2>, centre: usize, given: Option<f64>) -> Result<(f64
     }
 }
 
-/// Which disks are held: those the packing says, or all from a given R on; the centre with them.
+/// The held disks: those of the packing, or all beyond a given R, and the centre.
 fn held(packing: &Packing<2>, centre: usize, outer_radius: f64, boundary: Boundary, by_radius: bool) -> Vec<bool> {
     if boundary == Boundary::Periodic {
         return vec![false; packing.len()];
     }
     let said = packing.held();
-    // A file that says which disks are held knows better than a radius that may be rounded.
+    // Held disks of a file are more reliable than a radius, which may be rounded.
     let told = said.iter().enumerate().any(|(disk, &held)| held && disk != centre);
     let far = |disk: usize| norm(packing.separation(disk, centre)) >= outer_radius;
     (0..packing.len()).map(|disk| disk == centre || said[disk] || (by_radius && !told && far(disk))).collect()

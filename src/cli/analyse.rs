@@ -1,4 +1,4 @@
-//! `jamscope analyse`: the observables of states that somebody else relaxed.
+//! `jamscope analyse`: the observables of states relaxed by another program.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -13,7 +13,7 @@ use jamscope::verdict::{Decision, VerdictSettings};
 use crate::law_of_file::{self, LawName};
 use crate::{Failure, ending, override_limit, print, scene_file};
 
-/// What `analyse` is asked for.
+/// Arguments of `analyse`.
 #[derive(Args)]
 pub struct AnalyseArguments {
     /// A folder with pairs NAME.before.* and NAME.after.* (or NAME.displacement.*, as a run writes it), and NAME.deflated.*
@@ -43,7 +43,7 @@ pub struct AnalyseArguments {
     out: PathBuf,
 }
 
-/// Files of one packing.
+/// The files of one packing.
 struct Files {
     name: String,
     before: PathBuf,
@@ -51,7 +51,7 @@ struct Files {
     deflated: Option<PathBuf>,
 }
 
-/// Analyses all pairs; fails if one of them could not be, after the others.
+/// Analyses all pairs; if one fails, the others are analysed before the error is returned.
 pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
     let (observables, mut verdict) = match &arguments.scene {
         Some(path) => {
@@ -103,7 +103,7 @@ fn analyse(
 ) -> Result<Analysis, Failure> {
     let law = |path: &Path| law_of_file::law_of(path, arguments.law, arguments.stiffness);
     let (first, second) = (law(&files.before)?, law(&files.after)?);
-    // A file that says nothing has the law of the one that does.
+    // A file without a law has that of the other file.
     let law = match (says_law(&files.before)?, says_law(&files.after)?) {
         (true, true) if first != second => {
             return Err(format!("the files name two laws, {first:?} and {second:?}").into());
@@ -127,7 +127,7 @@ fn says_law(path: &Path) -> Result<bool, Failure> {
     Ok(read_properties(path)?.iter().any(|(key, _)| key.eq_ignore_ascii_case("law")))
 }
 
-/// R where a file of a run says it.
+/// R, if a file of a run contains it.
 fn outer_radius_of(path: &Path) -> Result<Option<f64>, Failure> {
     let properties = read_properties(path)?;
     let Some((_, text)) = properties.iter().find(|(key, _)| key == "outer_radius") else { return Ok(None) };
@@ -135,7 +135,7 @@ fn outer_radius_of(path: &Path) -> Result<Option<f64>, Failure> {
     Ok(Some(text.parse().map_err(|_| wrong())?))
 }
 
-/// What a single pair is called: the file before without its endings.
+/// The name of a single pair: the file before without its endings.
 fn name_of(path: &Path) -> String {
     let name = path.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
     let stem = name.split('.').next().unwrap_or_default();
@@ -144,10 +144,10 @@ fn name_of(path: &Path) -> String {
     if plain.is_empty() { "pair".into() } else { plain }
 }
 
-/// The pairs of a folder by the names of its files, in their order.
+/// The pairs of a folder, from the names of its files, in their order.
 fn pairs_in(folder: &Path) -> Result<Vec<Files>, Failure> {
     let named = |error: std::io::Error| format!("{}: {error}", folder.display());
-    // A run that was killed while it put its files in their place is completed first.
+    // First completes the report of a run that was killed while it moved its files.
     report::output::complete(folder, report::Kind::Report)?;
     let mut names: Vec<String> = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(named)? {

@@ -20,7 +20,7 @@ pub enum Elasticity {
     Refused(String),
 }
 
-/// Elastic moduli in numbers.
+/// Summary of the elastic moduli.
 #[derive(Debug, Serialize)]
 pub struct Moduli {
     affine: Constants,
@@ -29,7 +29,7 @@ pub struct Moduli {
     backward_error: f64,
 }
 
-/// Elastic constants in numbers.
+/// Summary of the elastic constants.
 #[derive(Debug, Serialize)]
 struct Constants {
     /// -V dp/dV.
@@ -38,7 +38,7 @@ struct Constants {
     shear_mean: f64,
     shear_smallest: f64,
     shear_largest: f64,
-    /// C_abcd by its indices, each once.
+    /// C_abcd by its indices, each independent one once.
     constants: BTreeMap<String, f64>,
 }
 
@@ -103,7 +103,7 @@ impl Elasticity {
 pub enum Vibrations {
     /// The modes.
     Found {
-        /// Translations left out.
+        /// Number of translations, which are excluded.
         translation_count: usize,
         /// The modes, ascending.
         lowest: Vec<ModeSummary>,
@@ -112,7 +112,7 @@ pub enum Vibrations {
     Refused(String),
 }
 
-/// One mode in numbers.
+/// Summary of one mode.
 #[derive(Debug, Serialize)]
 pub struct ModeSummary {
     /// λ = ω² for masses 1.

@@ -1,4 +1,4 @@
-//! How the program ends: every exit code, and what it means.
+//! The exit codes of the program.
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -11,15 +11,15 @@ Exit codes:
   2  the command line cannot be parsed
   3  a state is not at rest: all is measured, but there is no phase and no fit";
 
-/// Exit code where states are not at rest.
+/// Exit code if states are not at rest.
 const NOT_AT_REST: u8 = 3;
 
-/// Ends a command that came to results, `not_at_rest` of which (named) have no phase and no fit.
+/// Ends a command with results; the samples named in `not_at_rest` have no phase and no fit.
 pub fn of_states(not_at_rest: &[String]) -> ExitCode {
     if not_at_rest.is_empty() {
         return ExitCode::SUCCESS;
     }
-    // Nobody may be there to read it: the exit code tells as well.
+    // The standard error stream may be closed: the exit code contains the same information.
     let _ = writeln!(
         std::io::stderr(),
         "jamscope: not at rest, so without phase and fit: {}; --not-at-rest gives both all the same",

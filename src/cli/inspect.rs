@@ -1,4 +1,4 @@
-//! `jamscope inspect`: any packing file in numbers.
+//! `jamscope inspect`: properties of a packing file.
 
 use std::path::Path;
 
@@ -18,12 +18,12 @@ use serde::Serialize;
 #[cfg(feature = "linear")]
 use crate::elasticity::{Elasticity, Vibrations};
 
-/// What `inspect` says of a packing.
+/// The properties of a packing.
 #[derive(Debug, Serialize)]
 pub struct Inspection {
-    /// Whether it is at rest, and if not, what is likely.
+    /// Whether it is at rest; otherwise the likely causes.
     pub verdict: RestVerdict,
-    /// The contact law it was looked at with.
+    /// The contact law used.
     law: LawChoice,
     /// Dimension of space.
     dimension: usize,
@@ -39,7 +39,7 @@ pub struct Inspection {
     packing_fraction: Option<f64>,
     /// Elastic energy.
     energy: f64,
-    /// Pressure; absent in the open plane, as all below that are per volume.
+    /// Pressure; absent in the open plane, like all quantities per volume.
     #[serde(skip_serializing_if = "Option::is_none")]
     pressure: Option<f64>,
     /// Stress tensor, positive in compression.
@@ -65,7 +65,7 @@ pub struct Inspection {
     mean_overlap: f64,
     /// Largest overlap.
     largest_overlap: f64,
-    /// What is known of the state.
+    /// Its certificate.
     certificate: Certificate,
     /// Contact forces of the backbone; absent without one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -73,13 +73,13 @@ pub struct Inspection {
     /// Elastic moduli, or why there are none.
     #[cfg(feature = "linear")]
     moduli: Elasticity,
-    /// The lowest vibrational modes, or why there are none; absent where none were asked for.
+    /// The lowest vibrational modes, or why there are none; absent if not requested.
     #[cfg(feature = "linear")]
     #[serde(skip_serializing_if = "Option::is_none")]
     modes: Option<Vibrations>,
 }
 
-/// Reads a packing of either dimension and looks at it under a law.
+/// Reads a packing of either dimension and analyses it under a law.
 pub fn inspect(
     path: &Path,
     law: LawChoice,

@@ -1,11 +1,12 @@
-//! The contact law of a packing: from the file where it says, else the command line, else the model.
+//! The contact law of a packing: from the file if given there, otherwise from the command line, otherwise that of the
+//! model.
 
 use std::path::Path;
 
 use jamscope::io::read_properties;
 use jamscope::law::{Hertzian, Hookean, LawChoice, PairLaw, PowerLaw};
 
-/// A law as the command line names it.
+/// A law on the command line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LawName {
     /// Hertzian.
@@ -39,25 +40,25 @@ impl std::fmt::Display for LawName {
     }
 }
 
-/// Why there is no law.
+/// Why the law is unknown.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LawOfFileError {
-    /// The file names a law nobody here knows, and the command line none.
+    /// The law of the file is unknown, and the command line gives none.
     #[error("{path}: law is `{law}`, not hertz…, hook… or power…: say --law")]
     UnknownLaw {
         /// The file.
         path: String,
-        /// What it says.
+        /// The law in the file.
         law: String,
     },
-    /// A number of the law in the file is none.
+    /// A parameter of the law in the file is invalid.
     #[error("{path}: {key} is `{value}`, not a positive number")]
     NotANumber {
         /// The file.
         path: String,
         /// Its key.
         key: &'static str,
-        /// What it says.
+        /// Its text.
         value: String,
     },
     /// The file contradicts itself.
@@ -65,19 +66,19 @@ pub enum LawOfFileError {
     OwnContradiction {
         /// The file.
         path: String,
-        /// What it says of the law in words.
+        /// The law in words.
         law: String,
-        /// The key that says something else.
+        /// The contradicting key.
         key: &'static str,
         /// Its value.
         value: f64,
     },
-    /// The file says the power law but not its exponent.
+    /// The file gives the power law but not its exponent.
     #[error("{path}: law is `{law}`, without an exponent: say --law power:ALPHA")]
     NoExponent {
         /// The file.
         path: String,
-        /// What it says.
+        /// The law in the file.
         law: String,
     },
     /// File and command line contradict each other.
@@ -85,16 +86,16 @@ pub enum LawOfFileError {
     Contradiction {
         /// The file.
         path: String,
-        /// What they differ in.
+        /// The contradicting quantity.
         what: &'static str,
-        /// What the file says.
+        /// Its value in the file.
         file: String,
-        /// What the command line says.
+        /// Its value on the command line.
         command_line: String,
     },
 }
 
-/// The law a packing file is to be looked at with: what the file says, then what is `asked` for, then the model.
+/// The law of a packing file: from the file, then from `asked`, then that of the model.
 pub fn law_of(
     path: &Path,
     asked: Option<LawName>,
@@ -103,7 +104,7 @@ pub fn law_of(
     let name = path.display().to_string();
     let properties = read_properties(path)?;
     let value = |key: &str| properties.iter().find(|(other, _)| other.eq_ignore_ascii_case(key)).map(|(_, text)| text);
-    // A number of the law by its key, or by a word of the law itself; both only if they agree.
+    // A parameter of the law by its key, or by a word of the law itself; both only if they agree.
     let number = |key: &'static str, word: &str| -> Result<Option<f64>, LawOfFileError> {
         let wrong = |value: &str| LawOfFileError::NotANumber { path: name.clone(), key, value: value.into() };
         let positive = |text: &str| text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
@@ -116,7 +117,7 @@ pub fn law_of(
             (keyed, worded) => Ok(keyed.or(worded)),
         }
     };
-    // A law of one exponent goes with no other.
+    // A law with a fixed exponent allows no other.
     let fixed = |law: &String, own: f64| match number("exponent", "exponent")? {
         Some(value) if value != own => {
             let (path, law) = (name.clone(), law.clone());
@@ -147,7 +148,7 @@ pub fn law_of(
             }
         }
     };
-    // A stiffness belongs to the law beside it.
+    // A stiffness belongs to the law given with it.
     let told_stiffness = match told {
         Some(LawName::Power(_)) => number("stiffness", "scale")?,
         Some(_) => number("stiffness", "stiffness")?,
@@ -166,14 +167,14 @@ pub fn law_of(
     })
 }
 
-/// The number that follows a word of the text, as in "Hertzian contacts, stiffness 200000".
+/// The number after a word of the text, as in "Hertzian contacts, stiffness 200000".
 fn number_after(text: &str, word: &str) -> Option<f64> {
     let mut parts = text.split(|c: char| c.is_whitespace() || matches!(c, ',' | ';' | '=' | ':' | '(' | ')'));
     parts.find(|part| part.eq_ignore_ascii_case(word))?;
     parts.find(|part| !part.is_empty())?.parse().ok()
 }
 
-/// The one that is there; both only if they agree.
+/// The value that is given; both only if they agree.
 fn agreed<T: Copy + PartialEq + std::fmt::Display>(
     path: &str,
     what: &'static str,

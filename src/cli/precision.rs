@@ -65,7 +65,7 @@ pub fn run(arguments: &PrecisionArguments) -> Result<ExitCode, Failure> {
     print(&format!("{} files in {}, start from {}\n", files.len(), arguments.out.display(), shown.display()))
 }
 
-/// One bar for the runs of a sample, on the standard error stream; indicatif hides it where that is no terminal.
+/// One bar for the runs of a sample, on the standard error stream; indicatif hides it if that is not a terminal.
 struct Bar(ProgressBar);
 
 impl Bar {
@@ -73,7 +73,7 @@ impl Bar {
         let style = ProgressStyle::with_template("{prefix:>14} {bar:30} {pos}/{len} {elapsed} {msg}")
             .unwrap_or_else(|_| ProgressStyle::default_bar());
         let bar = ProgressBar::new(1).with_style(style).with_prefix("packings").with_message("preparation");
-        // A run of dynamics may take a minute: the time that has passed shows that it works.
+        // A run of dynamics may take a minute: the elapsed time shows that it works.
         bar.enable_steady_tick(Duration::from_millis(250));
         Bar(bar)
     }

@@ -1,4 +1,5 @@
-//! Progress on a terminal: one bar a sample, its stage, residual and time left. Silent when the output is not a terminal.
+//! Progress on a terminal: one bar per sample with its stage, residual and remaining time. Silent if the output is not
+//! a terminal.
 
 use std::sync::Mutex;
 use std::time::Instant;
@@ -6,14 +7,14 @@ use std::time::Instant;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use jamscope::run::Progress;
 
-/// Parts of a bar; it fills with the logarithm of the residual.
+/// Number of parts of a bar, which fills with the logarithm of the residual.
 const PARTS: u64 = 1000;
 
-/// One bar a sample.
+/// One bar per sample.
 pub struct Bars {
     bars: Vec<ProgressBar>,
     stages: Mutex<Vec<Stage>>,
-    // Draws the bars as long as it lives.
+    // Draws the bars while it exists.
     _all: MultiProgress,
 }
 
@@ -27,7 +28,7 @@ struct Stage {
 }
 
 impl Bars {
-    /// Bars with these names on the standard error stream; indicatif hides them where that is no terminal.
+    /// Bars with these names on the standard error stream; indicatif hides them if that is not a terminal.
     pub fn new<'a>(names: impl Iterator<Item = &'a str>) -> Self {
         let all = MultiProgress::new();
         let style = ProgressStyle::with_template("{prefix:>14} {bar:30} {msg}")
@@ -66,11 +67,11 @@ impl Progress for Bars {
             stage.first = residual.max(1.0);
         }
         let part = (libm::log(stage.first / residual) / libm::log(stage.first / stage.limit)).clamp(0.0, 1.0);
-        // A quench climbs in between; the bar shows how far it ever came.
+        // The residual of a quench also rises; the bar shows the best value so far.
         let position = ((part * PARTS as f64) as u64).max(bar.position());
         bar.set_position(position);
         let part = position as f64 / PARTS as f64;
-        // The residual falls about as fast in its logarithm all the way.
+        // The logarithm of the residual falls at a roughly constant rate.
         let left = match part {
             part if part > 0.02 => {
                 format!("about {:.0} s left", stage.start.elapsed().as_secs_f64() * (1.0 - part) / part)

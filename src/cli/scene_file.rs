@@ -4,9 +4,9 @@ use std::path::Path;
 
 use jamscope::scene::{Scene, SceneError};
 
-/// The scene `jamscope scene` prints: every field with its default, its unit and its meaning.
+/// The text of `jamscope scene`: every field with its default, its unit and its meaning.
 ///
-/// Tables are parted by blank lines; those this build knows nothing of are left out.
+/// Tables are separated by blank lines; those of features missing in this build are left out.
 pub fn commented_scene() -> String {
     let known = |table: &&str| {
         let fitted = ["[observables.profile_fit]", "[observables.spectrum_fit]", "[observables.elastic_modes]"]
@@ -20,7 +20,7 @@ pub fn commented_scene() -> String {
     text.replace("protocol = \"study\"", &default)
 }
 
-/// Why a scene file cannot be used; names the file.
+/// Why a scene file cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneFileError {
     /// The file cannot be read.
@@ -28,28 +28,29 @@ pub enum SceneFileError {
     Io {
         /// The file.
         path: String,
-        /// Why.
+        /// The error of the system.
         source: std::io::Error,
     },
-    /// Not TOML, an unknown field, or a value of another type; the message shows the line.
+    /// Not TOML, an unknown field, or a value with the wrong type; the message shows the line.
     #[error("{path}: {message}")]
     Toml {
         /// The file.
         path: String,
-        /// What the parser says, with line and field.
+        /// The message of the parser, with line and field.
         message: String,
     },
-    /// A number that makes no sense.
+    /// A number is invalid.
     #[error("{path}: {source}")]
     Scene {
         /// The file.
         path: String,
-        /// Which one.
+        /// The error.
         source: SceneError,
     },
 }
 
-/// Refuses a text whose last line has no line break: what is left of a file that was cut may be another scene, a pressure of 1 for 1000.
+/// Refuses a text whose last line has no line break. A truncated file may be another valid scene, such as a pressure of
+/// 1 for 1000.
 pub fn refuse_cut(text: &str) -> Result<(), String> {
     if text.is_empty() || text.ends_with('\n') {
         return Ok(());

@@ -19,7 +19,7 @@ use crate::scene_file::refuse_cut;
 use crate::threads::set_threads;
 use crate::{Failure, print};
 
-/// What `study` is asked for.
+/// Arguments of `study`.
 #[derive(Args)]
 pub struct StudyArguments {
     /// Study file (TOML).
@@ -60,7 +60,7 @@ pub struct StudyArguments {
     threads: Option<usize>,
 }
 
-/// What `merge` is asked for.
+/// Arguments of `merge`.
 #[derive(Args)]
 pub struct MergeArguments {
     /// Folder of a study.
@@ -102,7 +102,7 @@ fn parse_shard(text: &str) -> Result<Shard, String> {
     Ok(Shard { index: index - 1, count })
 }
 
-/// The part of a Slurm array task; all where there is none.
+/// The part of a Slurm array task; the whole study otherwise.
 fn shard_of_environment() -> Result<Shard, Failure> {
     let number = |name: &str| -> Result<Option<usize>, Failure> {
         match std::env::var(name) {
@@ -148,7 +148,7 @@ fn read_study(path: &Path) -> Result<Study, Failure> {
 
 /// Runs the study, or prints its plan.
 ///
-/// Where every sample is there at the end, as after a run of all parts, the study is merged too.
+/// If all samples exist at the end, as after a run of all parts, the study is also merged.
 pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
     let study = match (&arguments.study, arguments.recipe) {
         (Some(path), _) => read_study(path)?,
@@ -193,7 +193,7 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
             .map_err(|error| error.to_string()),
     };
     bar.bar.finish_and_clear();
-    // The lock is held until the report is written, so that it is of this study.
+    // The lock is held until the report is written, so that the report is of this study.
     let (done, merged, _lock) = executed?;
     let mut text = format!(
         "{} samples: {} run, {} there before, in {}\n",
@@ -216,13 +216,13 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Merges the folder and prints what is in it.
+/// Merges the folder and prints the results.
 pub fn merge(arguments: &MergeArguments) -> Result<ExitCode, Failure> {
     let merged = study::merge(&arguments.folder).map_err(|error| error.to_string())?;
     print(&results(&merged, &arguments.folder)?)
 }
 
-/// Writes the report of a merged study; what is in it, and the files, in words.
+/// Writes the report of a merged study; returns a text on the results and the files.
 fn results(merged: &Merged, folder: &Path) -> Result<String, Failure> {
     let mut text = format!("{} of {} samples in {}\n", merged.record_count, merged.sample_count, folder.display());
     if let Some(mixed) = merged.mixed_vectors() {
@@ -265,12 +265,12 @@ fn results(merged: &Merged, folder: &Path) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// What a study says of the transition.
+/// The results of a study on the transition.
 #[cfg(feature = "fit")]
 mod transition {
     use jamscope::transition::{Comparison, Transition, TransitionPressure};
 
-    /// p̂_c of every series, and every number beside the published one.
+    /// p̂_c of every series, and every number with the published one.
     pub fn text(transition: &Transition) -> String {
         let mut text = String::new();
         for series in &transition.series {
@@ -322,7 +322,7 @@ fn problems(what: &str, problems: &[Problem]) -> String {
     format!("{} files {what}:\n{}", problems.len(), each.collect::<String>())
 }
 
-/// One bar: packings done, samples a minute, failures, time left.
+/// One bar: packings done, samples per minute, failures, remaining time.
 struct Bar {
     bar: ProgressBar,
     counts: Mutex<Counts>,
@@ -354,7 +354,7 @@ impl StudyProgress for Bar {
             }
         }
         if seconds.is_none() {
-            // What was there before says nothing of how long the rest takes.
+            // Packings that already existed do not count in the estimate of the remaining time.
             self.bar.set_length(self.bar.length().unwrap_or(1).saturating_sub(1));
         } else {
             self.bar.inc(1);
@@ -366,12 +366,12 @@ impl StudyProgress for Bar {
     }
 }
 
-/// What a plan costs.
+/// The cost of a plan.
 mod cost {
     use super::{Path, Plan, Shard, Task};
     use jamscope::study::measured_seconds;
 
-    /// The plan, cell by cell, with the seconds its finished packings took, or else those expected.
+    /// The plan, cell by cell, with the times of finished packings or else the expected times.
     pub fn text(plan: &Plan, folder: &Path, shard: Shard) -> String {
         let mut text = String::new();
         for cell in cells(plan, folder, shard) {
@@ -393,7 +393,7 @@ mod cost {
         text + &summary(plan, folder, shard)
     }
 
-    /// What is left of it, in a line.
+    /// The remaining work, in a line.
     pub fn summary(plan: &Plan, folder: &Path, shard: Shard) -> String {
         let cells = cells(plan, folder, shard);
         let left: f64 = cells.iter().map(Cell::left).sum();
@@ -407,13 +407,13 @@ mod cost {
         )
     }
 
-    /// Packings that differ in the seed alone.
+    /// Packings that differ only in the seed.
     struct Cell<'a> {
         first: &'a Task,
-        /// Those of the part asked for.
+        /// Number of packings in the requested part.
         count: usize,
         done: usize,
-        /// Seconds of one.
+        /// Time of one packing \[s\].
         each: f64,
     }
 
@@ -428,7 +428,7 @@ mod cost {
             let of = |task: &Task| (task.law, task.disk_count, task.boundary());
             a.target == b.target && of(a) == of(b)
         };
-        // A name is a hash of its scene: where there are no samples none is computed.
+        // A file name is a hash of a scene: without any samples none is computed.
         let samples = folder.join("samples").is_dir();
         let measured = |task: &&Task| if samples { measured_seconds(folder, task) } else { None };
         let cell = |tasks: &'a [Task]| {
@@ -443,7 +443,7 @@ mod cost {
         plan.tasks.chunk_by(alike).map(cell).collect()
     }
 
-    /// A time in the unit it is read in.
+    /// A time in a suitable unit.
     fn words(seconds: f64) -> String {
         match seconds {
             s if s > 0.0 && s < 1.0 => format!("{s:.2} s"),

@@ -1,11 +1,12 @@
-//! `--threads`: how many threads a command takes.
+//! `--threads`: the number of threads of a command.
 
 #[cfg(feature = "parallel")]
 use jamscope::memory::Limit;
 
 use crate::Failure;
 
-/// Threads that are useful: more of them than processors gain nothing, and thousands spend their time waiting for each other.
+/// Largest useful number of threads: more than the number of processors gain nothing, and thousands wait for each
+/// other.
 #[cfg(feature = "parallel")]
 fn limit() -> Limit {
     let processors = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
@@ -16,7 +17,7 @@ fn limit() -> Limit {
 #[cfg(feature = "parallel")]
 const STACK: f64 = 2.0 * 1024.0 * 1024.0;
 
-/// The variable that says how many threads there are where no argument does; zero and what is no number mean one a processor.
+/// The variable that sets the number of threads without an argument; zero and invalid values mean one per processor.
 #[cfg(feature = "parallel")]
 const VARIABLE: &str = "RAYON_NUM_THREADS";
 
@@ -25,14 +26,14 @@ fn of_environment() -> usize {
     std::env::var(VARIABLE).ok().and_then(|text| text.parse().ok()).unwrap_or(0)
 }
 
-/// Whether the environment asks for a number of threads that can be had, for commands that have no argument for it.
+/// Checks the number of threads of the environment, for commands without an argument for it.
 pub fn check_environment() -> Result<(), Failure> {
     #[cfg(feature = "parallel")]
     limit().check(VARIABLE, of_environment(), STACK)?;
     Ok(())
 }
 
-/// Starts the threads: as many as asked for, or as the environment says, or one a processor.
+/// Starts the threads: as many as given, or as the environment sets, or one per processor.
 #[cfg(feature = "parallel")]
 pub fn set_threads(threads: Option<usize>) -> Result<(), Failure> {
     let (field, count) = match threads {

@@ -1,19 +1,19 @@
-//! The regularised incomplete beta function, with the functions of `libm`: the same bits on every processor.
+//! The regularised incomplete beta function, computed with `libm`: the same bits on every processor.
 //!
 //! ```text
 //! I_x(a, b) = x^a (1 − x)^b / (a B(a, b)) · 1/(1 + d_1/(1 + d_2/(1 + …)))        x ≤ (a + 1)/(a + b + 2)
 //! d_2m = m (b − m) x / ((a + 2m − 1)(a + 2m))        d_(2m+1) = −(a + m)(a + b + m) x / ((a + 2m)(a + 2m + 1))
 //! ```
 //!
-//! Above that x, I_x(a, b) = 1 − I_(1−x)(b, a). The fraction takes some √max(a, b) terms.
+//! For larger x, I_x(a, b) = 1 − I_(1−x)(b, a). The continued fraction takes about √max(a, b) terms.
 //!
 //! # Source
 //! DLMF 8.17.22 and 8.17.4; Lentz's method as in Thompson, Barnett (1986), J. Comput. Phys. 64, 490.
 
-/// Terms of the fraction: enough for a and b up to 10⁸.
+/// Limit of terms of the fraction: enough for a and b up to 10⁸.
 const TERM_LIMIT: usize = 100_000;
 
-/// I_x(a, b) for a, b > 0 and 0 ≤ x ≤ 1; none outside, and where the fraction has not converged.
+/// I_x(a, b) for a, b > 0 and 0 ≤ x ≤ 1; none for other arguments or if the fraction has not converged.
 ///
 /// # Accuracy
 /// Relative 10⁻¹⁵ times 10 + a + b, by the logarithm of the gamma function.
@@ -35,7 +35,7 @@ pub(crate) fn incomplete_beta(a: f64, b: f64, x: f64) -> Option<f64> {
 
 /// The continued fraction.
 fn fraction(a: f64, b: f64, x: f64) -> Option<f64> {
-    // In place of a denominator that vanishes.
+    // Replaces a vanishing denominator.
     let kept = |value: f64| if value.abs() < f64::MIN_POSITIVE { f64::MIN_POSITIVE } else { value };
     let (mut above, mut below, mut value) = (f64::INFINITY, 1.0, 1.0);
     for place in 1..TERM_LIMIT {
@@ -58,7 +58,7 @@ fn fraction(a: f64, b: f64, x: f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// What the doc comment claims.
+    /// The accuracy stated in the doc comment.
     fn near(found: f64, expected: f64, a: f64, b: f64) -> bool {
         (found - expected).abs() <= 1e-15 * (10.0 + a + b) * expected
     }
@@ -84,7 +84,7 @@ mod tests {
         for (a, b) in [(0.5, 0.5), (7.5, 0.5), (19.0, 1.0), (44.25, 1.5), (350.0, 0.5), (3.0, 12.0)] {
             for x in [0.02, 0.2, 0.6, 0.9, 0.999] {
                 let found = incomplete_beta(a, b, x).expect("in range");
-                // Where there are closed forms puruspe is 3·10⁻¹² off.
+                // Compared with closed forms, the error of puruspe is 3·10⁻¹².
                 let expected = puruspe::betai(a, b, x);
                 assert!((found - expected).abs() <= 1e-11 * (1.0 + a + b) * expected, "{found:e}, {expected:e}");
             }

@@ -1,8 +1,8 @@
-//! Fits of what was measured to what is exactly known, with errors, evidence, and a refusal where neither holds.
+//! Fits of measured profiles and spectra to exact solutions, with errors and decisions.
 //!
-//! Start from [`profile::fit_radial_profile`]: one radial profile against the elastic and the screened solution; or from
-//! [`angular::fit_slope`] and [`angular::fit_crossover`]: angular power spectra; or from [`modes::fit_elastic_modes`]: angular
-//! modes against the elastic ones. Over ensembles: [`ensemble`].
+//! Start from [`profile::fit_radial_profile`]: one radial profile against the elastic and the screened solution; from
+//! [`angular::fit_slope`] and [`angular::fit_crossover`]: angular power spectra; or from [`modes::fit_elastic_modes`]:
+//! angular modes against the elastic ones. For ensembles see [`ensemble`].
 
 pub mod angular;
 pub mod ensemble;
@@ -26,37 +26,37 @@ use crate::reference::ReferenceError;
 pub struct Estimate {
     /// The best value \[unit of the number\].
     pub value: f64,
-    /// One standard error \[the same\].
+    /// One standard error \[unit of the number\].
     pub standard_error: f64,
 }
 
-/// Why there is nothing to fit. That no solution describes the data is an outcome, not an error:
+/// Why data could not be fitted. If no solution describes the data, that is an outcome, not an error:
 /// [`Decision::Neither`](profile::Decision::Neither).
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FitError {
-    /// Fewer rings in the range than the fit can judge.
+    /// Too few rings in the range.
     #[error("{ring_count} rings between {from} and {to}: at least {needed} are needed")]
     TooFewRings {
-        /// Rings in the range.
+        /// Number of rings in the range.
         ring_count: usize,
-        /// Rings needed.
+        /// Number of rings required.
         needed: usize,
         /// Inner end of the range \[length\].
         from: f64,
         /// Outer end of the range \[length\].
         to: f64,
     },
-    /// Every ring in the range is at rest, to less than 10⁻¹⁰⁰ of the errors.
+    /// The displacement of every ring in the range is zero, to less than 10⁻¹⁰⁰ of the errors.
     #[error("all {ring_count} rings of the range have zero displacement")]
     NoDisplacement {
-        /// Rings in the range.
+        /// Number of rings in the range.
         ring_count: usize,
     },
-    /// Radii further apart than numbers reach.
+    /// The ratio of the radii is out of range.
     #[error("the annulus: {0}")]
     Annulus(#[from] ReferenceError),
-    /// A ring whose numbers cannot be used.
+    /// A ring has invalid numbers.
     #[error(
         "ring {ring}: radius {radius} (positive), mean {mean} (up to 1e200), standard error {standard_error} (not negative, \
          up to 1e200) of {disk_count} disks (at least one)"
@@ -70,10 +70,10 @@ pub enum FitError {
         mean: f64,
         /// Standard error of that mean \[length\].
         standard_error: f64,
-        /// Number of its disks.
+        /// Its number of disks.
         disk_count: usize,
     },
-    /// The margins leave nothing of the annulus.
+    /// The margins cover the whole annulus.
     #[error("the range of the fit is empty: from {from} to {to}")]
     RangeEmpty {
         /// Inner end of the range \[length\].
@@ -89,13 +89,13 @@ pub enum FitError {
         /// The margin at the rim \[diameters\].
         rim: f64,
     },
-    /// Less than two rings to a wavelength cannot tell it from a longer one.
+    /// The setting must be at least two rings per wavelength, for the wavelength to be resolved.
     #[error("the shortest wavelength searched must span at least 2 rings, it spans {rings_per_wavelength}")]
     WavelengthUnresolved {
         /// The setting.
         rings_per_wavelength: f64,
     },
-    /// Poisson's ratio of two dimensions is not between −1 and 1.
+    /// Poisson's ratio in two dimensions is not between −1 and 1.
     #[error("poisson_ratio is {ratio}, not between -1 and 1")]
     PoissonRatioOutside {
         /// The ratio given.
@@ -106,7 +106,7 @@ pub enum FitError {
     LevelOutOfRange {
         /// The level of significance.
         significance: f64,
-        /// The least share of variance.
+        /// The minimum share of variance.
         least_share: f64,
     },
 }

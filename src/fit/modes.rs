@@ -1,16 +1,16 @@
-//! Measured angular modes against the exact elastic ones: [`fit_elastic_modes`].
+//! Fits of the exact elastic angular modes to measured ones: [`fit_elastic_modes`].
 //!
 //! ```text
 //! U_n(r), V_n(r): mode n of an elastic annulus from r_1 to R, rim held        unknown: U_n(r_1), V_n(r_1) of each n, one ν
 //! χ²_n = Σ_rings (|U − U_n|²/σ_U² + |V − V_n|²/σ_V²)
 //! ```
 //!
-//! For a given ν the fit is linear: each mode is the sum of the two solutions with (1, 0) and (0, 1) at r_1. ν is the one at
-//! which Σ_n χ²_n is least. An elastic medium has no other freedom: what happens between r_1 and R follows from r_1. The mean
-//! over the angle, n = 0, follows [`Elastic`](crate::reference::elastic::Elastic) and knows nothing of ν.
+//! For a given ν the fit is linear: each mode is the sum of the two solutions with (1, 0) and (0, 1) at r_1. ν
+//! minimises Σ_n χ²_n. An elastic medium has no other parameters: its values at r_1 determine those between r_1 and R.
+//! The mean over the angle, n = 0, is that of [`Elastic`](crate::reference::elastic::Elastic) and does not depend on ν.
 //!
-//! The standard errors of the measured modes take disks as independent; where they are not, χ² per degree of freedom is
-//! above 1 even for an elastic medium, so that what is told is the share of Σ |U|²/σ² + |V|²/σ² described.
+//! The standard errors of the measured modes assume independent disks. Correlated disks make χ² per degree of freedom
+//! exceed 1 even for an elastic medium. The result therefore includes the described share of Σ |U|²/σ² + |V|²/σ².
 
 use serde::{Deserialize, Serialize};
 
@@ -21,28 +21,28 @@ use crate::reference::Annulus;
 use crate::reference::angular_modes::elastic::ElasticMode;
 use crate::reference::angular_modes::{AngularSolution, Complex, ModeAmplitudes};
 
-/// Rings a fit needs: two are taken up by the amplitudes.
+/// Minimum number of rings of a fit: the amplitudes use up two.
 pub const LEAST_RING_COUNT: usize = 4;
 
-/// Poisson's ratios tried first: evenly from −0.95 on.
+/// First Poisson's ratio of the grid, and its step.
 const RATIO_GRID: [f64; 2] = [-0.95, 0.05];
 
-/// How many of them: up to 0.95.
+/// Number of Poisson's ratios of the grid: up to 0.95.
 const RATIO_COUNT: usize = 39;
 
-/// What is fitted.
+/// Settings of the fit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ElasticModeSettings {
-    /// r_1, where rings begin \[length\].
+    /// r_1, the smallest radius of a ring \[length\].
     pub from: f64,
-    /// ν, if it is known \[1\]; absent, the best one.
+    /// ν, if it is known \[1\]; if absent, it is fitted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub poisson_ratio: Option<f64>,
 }
 
 impl ElasticModeSettings {
-    /// Whether every number makes sense.
+    /// Checks the settings.
     pub(crate) fn check(&self) -> Result<(), FitError> {
         if !(self.from > 0.0 && self.from.is_finite()) {
             return Err(FitError::RangeEmpty { from: self.from, to: f64::INFINITY });
@@ -55,7 +55,7 @@ impl ElasticModeSettings {
 }
 
 impl Default for ElasticModeSettings {
-    /// From a radius of two diameters of a small disk on, as the radial profile is fitted; ν as it comes.
+    /// From a radius of two diameters of a small disk on, as in the fit of the radial profile; ν is fitted.
     fn default() -> Self {
         ElasticModeSettings { from: 2.0, poisson_ratio: None }
     }
@@ -64,10 +64,10 @@ impl Default for ElasticModeSettings {
 /// Elastic modes fitted to measured ones.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ElasticModesFit {
-    /// ν in two dimensions \[1\]; without error where it was given or the rings do not tell.
+    /// ν in two dimensions \[1\]; without error if it was given or the rings do not determine it.
     pub poisson_ratio: f64,
-    /// Where Σ χ² has risen by its mean per degree of freedom to either side of ν; absent where ν was given or an end is beyond
-    /// (−1, 1).
+    /// Where Σ χ² has risen by its mean per degree of freedom on either side of ν; absent if ν was given or an end is
+    /// outside (−1, 1).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub poisson_ratio_range: Option<[f64; 2]>,
     /// r_1 and R \[length\].
@@ -89,15 +89,16 @@ pub struct ElasticModeFit {
     pub transverse: [f64; 2],
     /// χ²_n.
     pub chi_squared: f64,
-    /// Degrees of freedom: numbers measured less those fitted.
+    /// Degrees of freedom: number of data minus number of parameters.
     pub freedom: usize,
-    /// 1 − (χ²/freedom)/(χ²_0/numbers), χ²_0 that of no displacement \[1\]; absent where nothing moves.
+    /// 1 − (χ²/freedom)/(χ²_0/numbers), with χ²_0 for zero displacement \[1\]; absent if nothing moves.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub share_described: Option<f64>,
 }
 
 impl ElasticModesFit {
-    /// The fitted amplitudes of mode n at a distance \[length\]; none outside the annulus or for a mode that was not fitted.
+    /// The fitted amplitudes of mode n at a distance \[length\]; none outside the annulus or for a mode that was not
+    /// fitted.
     pub fn at(&self, mode: usize, radius: f64) -> Option<ModeAmplitudes> {
         let fit = self.modes.iter().find(|fit| fit.mode == mode)?;
         let annulus = Annulus::new(self.annulus[0], self.annulus[1]).ok()?;
@@ -124,7 +125,7 @@ struct Point {
 /// Lengths as in the rings.
 ///
 /// # Errors
-/// Fewer than four rings between `from` and R with modes; an annulus that is none.
+/// Fewer than four rings with modes between `from` and R; an invalid annulus.
 pub fn fit_elastic_modes(
     multipoles: &Multipoles,
     outer_radius: f64,
@@ -148,7 +149,7 @@ pub fn fit_elastic_modes(
             let grid: Vec<f64> = (0..RATIO_COUNT).map(|i| RATIO_GRID[0] + RATIO_GRID[1] * i as f64).collect();
             let best = grid.iter().map(|&ratio| total(ratio)).fold(f64::INFINITY, f64::min);
             let freedom: usize = fit(0.0).iter().skip(1).map(|mode| mode.freedom).sum();
-            // One standard error, each error scaled so that χ² per degree of freedom is 1.
+            // One standard error, with each error scaled so that χ² per degree of freedom is 1.
             let found = minimum(&grid, (best / freedom.max(1) as f64).max(f64::MIN_POSITIVE), total);
             (found.at, found.lower.zip(found.upper).map(|(low, high)| [low, high]))
         }
@@ -163,7 +164,7 @@ pub fn fit_elastic_modes(
 }
 
 impl ElasticModesFit {
-    /// ν with half of its range as error, where it has one.
+    /// ν with half of its range as error, if it has a range.
     pub fn poisson_estimate(&self) -> Option<Estimate> {
         let [low, high] = self.poisson_ratio_range?;
         Some(Estimate { value: self.poisson_ratio, standard_error: 0.5 * (high - low) })
@@ -178,7 +179,7 @@ fn points(multipoles: &Multipoles, from: f64, to: f64) -> Vec<Vec<Point>> {
         modes.resize_with(radial.modes.len().max(modes.len()), Vec::new);
         for (mode, (u, v)) in modes.iter_mut().zip(radial.modes.iter().zip(&transverse.modes)) {
             let weights = [weight(u), weight(v)];
-            // A ring that tells nothing or everything is none.
+            // A ring with zero or infinite weight is left out.
             if weights.iter().all(|weight| weight.is_finite()) {
                 mode.push(Point { radius: ring.radius, values: [complex(u), complex(v)], weights });
             }
@@ -192,7 +193,7 @@ fn complex(fit: &ModeFit) -> Complex<f64> {
     Complex::new(fit.cosine, -fit.sine)
 }
 
-/// 1/σ², σ² the mean over both numbers; n = 0 has one.
+/// 1/σ², with σ² the mean over both numbers; n = 0 has a single one.
 fn weight(fit: &ModeFit) -> f64 {
     let [a, b] = fit.standard_errors;
     if fit.mode == 0 { 1.0 / (a * a) } else { 2.0 / (a * a + b * b) }

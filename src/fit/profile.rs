@@ -1,30 +1,31 @@
-//! One sample's radial profile against the elastic and the screened solution: [`fit_radial_profile`].
+//! Fits of the elastic and the screened solution to the radial profile of one sample: [`fit_radial_profile`].
 //!
-//! Fitted is the rescaled displacement r·d_r, ring by ring:
+//! The fit is to the rescaled displacement r·d_r of every ring:
 //!
 //! ```text
 //! elastic    r·d_r = d_0^eff a (r² − R²)/(a² − R²)                                     one parameter
 //! screened   r·d_r = d_0^eff r [Y_1(κr)J_1(κR) − J_1(κr)Y_1(κR)] / [same at a]         two parameters
 //! ```
 //!
-//! A curve of one sample is what they describe; a mean over samples mixes amplitudes and wavenumbers and is neither.
+//! These describe the curve of a single sample. A mean over samples mixes amplitudes and wavenumbers and is not such a
+//! curve.
 //!
-//! **Weights.** Each ring counts with its standard error, drawn towards the pooled one where a ring has few disks
-//! (`rings`). These errors are too small: d_r has dipolar and quadrupolar parts, so disks of a ring are not independent,
-//! and neighbouring rings share them. Hence every standard error is scaled by √(χ²/(n_eff − p)), at least 1, with n_eff
-//! the number of independent rings estimated from the autocorrelation of the residuals (`significance`). With
-//! independent rings the true value then lies within one standard error in 67 to 75 % of samples (68 % would be exact);
-//! with noise of which half is left one ring further on, in 60 to 70 %. Noise that wanders slowly over the whole range
-//! cannot be told from a screened profile and is not.
+//! **Weights.** Each ring is weighted by its standard error, shrunk towards the pooled one if the ring has few disks
+//! (`rings`). These errors are too small: d_r has dipolar and quadrupolar parts, so the disks of a ring are not
+//! independent, and neighbouring rings are correlated. Every standard error is therefore scaled by √(χ²/(n_eff − p)),
+//! at least 1. n_eff is the number of independent rings, estimated from the autocorrelation of the residuals
+//! (`significance`). With independent rings, the true value is then within one standard error in 67 to 75 % of samples
+//! (68 % would be exact). With noise whose correlation is one half between neighbouring rings, it is in 60 to 70 %.
+//! Noise that varies slowly over the whole range cannot be distinguished from a screened profile.
 //!
-//! **Search.** All branches up to κ_max, on the rim solution, which is smooth through the poles (`screening`). Hence
-//! d_0^eff passes through zero at a pole and may come out negative; it is reported as it comes.
+//! **Search.** All branches up to κ_max, with the rim solution, which is smooth through the poles (`screening`). So
+//! d_0^eff passes through zero at a pole and may be negative; it is reported with its sign.
 //!
-//! **Decision.** Screened if the drop of χ² against elastic is significant (F test with n_eff − 2 degrees of freedom,
-//! corrected for the number of branches searched). Else elastic. Neither, if the one chosen is not significantly better
-//! than no displacement at all, or describes too little of the variance. A κ below about κ_1/3 changes
-//! d_r by at most (κR)²/8 ≈ 20 %, and that at the rim, where it vanishes: unless the rings are that good, the decision is
-//! elastic and the bound on κ says what is excluded.
+//! **Decision.** Screened if the decrease of χ² against elastic is significant (F test with n_eff − 2 degrees of
+//! freedom, corrected for the number of branches). Otherwise elastic. Neither, if the selected one is not significantly
+//! better than zero displacement, or describes too little of the variance. A κ below about κ_1/3 changes d_r by at most
+//! (κR)²/8 ≈ 20 %, at the rim, where d_r vanishes. Unless the rings are that accurate, the decision is elastic, and the
+//! bound on κ states what is excluded.
 
 use std::f64::consts::PI;
 
@@ -41,32 +42,32 @@ use crate::observe::radial_profile::RadialProfile;
 use crate::reference::Annulus;
 use crate::reference::poles::pole_count_below;
 
-/// Rings needed: below it neither an autocorrelation nor two parameters can be judged.
+/// Minimum number of rings for an autocorrelation and two parameters.
 pub const LEAST_RING_COUNT: usize = 8;
 
-/// 95 % of a normal variate lie below √2.706 standard deviations: the rise of χ² at a one-sided bound.
+/// 95 % of a normal variate are below √2.706 standard deviations: the rise of χ² at a one-sided bound.
 const BOUND_RISE: f64 = 2.705_543_454_095_404;
 
-/// What of a profile is fitted, and what counts as evidence.
+/// Range of the fit, and levels of evidence.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ProfileFitSettings {
-    /// What is left out around the inflated disk, in its diameters 2a before inflation \[1\]. Changes results.
+    /// Width excluded around the inflated disk, in its diameters 2a before inflation \[1\]. Changes results.
     pub inner_margin: f64,
-    /// What is left out at the rim, in the same diameters \[1\]. Changes results.
+    /// Width excluded at the rim, in the same diameters \[1\]. Changes results.
     pub rim_margin: f64,
-    /// Rings the shortest wavelength searched spans \[1\]: κ_max is 2π over that length, at most one branch a ring.
-    /// Changes results.
+    /// Number of rings per shortest wavelength \[1\], which sets κ_max; at most one branch per ring. Changes results.
     pub rings_per_wavelength: f64,
-    /// Level below which a probability counts as evidence \[1\]. Changes decisions, no numbers.
+    /// Level of significance \[1\]. Changes decisions, no numbers.
     pub significance: f64,
-    /// Least share of the variance of r·d_r a solution must describe to be chosen \[1\]. Changes decisions, no numbers.
+    /// Minimum share of the variance of r·d_r that the selected solution must describe \[1\]. Changes decisions, no
+    /// numbers.
     pub least_share: f64,
 }
 
 impl Default for ProfileFitSettings {
-    /// Two diameters at the disk, where the packing is not a continuum; one at the rim, where held disks mix in; eight
-    /// rings to a wavelength, four to a sign; 1 %; half of the variance.
+    /// Two diameters at the disk, where the packing is not a continuum; one at the rim, where held disks contribute;
+    /// eight rings per wavelength; 1 %; half of the variance.
     fn default() -> Self {
         ProfileFitSettings {
             inner_margin: 2.0,
@@ -78,17 +79,16 @@ impl Default for ProfileFitSettings {
     }
 }
 
-/// Fits the profile of one sample to the elastic and the screened solution in `annulus`, and decides.
+/// Fits the elastic and the screened solution in `annulus` to the profile of one sample, and decides between them.
 ///
 /// # Units
 /// Lengths as in the profile; d_0^eff in lengths, κ in 1/length.
 ///
 /// # Errors
-/// Too few rings in the range, a ring with numbers that cannot be used, no displacement at all, settings out of range.
+/// Too few rings in the range, a ring with invalid numbers, no displacement at all, settings out of range.
 ///
 /// # Cost
-/// Some 16 evaluations of the profile per branch searched and 100 more to polish: 1.4 ms for
-/// 42 rings, 13 ms for 171, one diameter wide each (measured at opt-level 2).
+/// About 16 evaluations of the profile per branch, and 100 more for the refinement.
 ///
 /// # Example
 /// ```
@@ -124,9 +124,9 @@ pub fn fit_radial_profile(
     let ring_count = rings.len() as f64;
     let shortest_wavelength = settings.rings_per_wavelength * (to - from) / ring_count;
     let branch_width = PI / (annulus.outer_radius() - annulus.inner_radius());
-    // Never more branches than rings, however narrow the range.
+    // At most as many branches as rings, even for a narrow range.
     let largest_wavenumber = (2.0 * PI / shortest_wavelength).min(ring_count * branch_width);
-    // One shape to each branch searched, of either sign of the amplitude at the disk.
+    // One shape per branch, with either sign of the amplitude at the disk.
     let trial_count = 2.0 * (pole_count_below::<2>(annulus, largest_wavenumber) + 1) as f64;
 
     let grid = landscape.grid(largest_wavenumber);
@@ -149,7 +149,7 @@ pub fn fit_radial_profile(
 }
 
 impl ProfileFitSettings {
-    /// Whether every number makes sense, whatever the profile.
+    /// Checks the settings, independently of the profile.
     pub(crate) fn check(&self) -> Result<(), FitError> {
         let margin = |margin: f64| margin.is_finite() && margin >= 0.0;
         if !(margin(self.inner_margin) && margin(self.rim_margin)) {
@@ -166,7 +166,7 @@ impl ProfileFitSettings {
         Ok(())
     }
 
-    /// The range of radii that checked settings leave of `annulus`.
+    /// The range of radii in `annulus`, for checked settings.
     fn range(&self, annulus: Annulus) -> Result<[f64; 2], FitError> {
         self.check()?;
         let diameter = 2.0 * annulus.inner_radius();
@@ -176,15 +176,15 @@ impl ProfileFitSettings {
     }
 }
 
-/// What both fits are measured by.
+/// The common criteria for both fits.
 struct Judge<'a> {
     rings: &'a Rings,
-    /// χ² of no displacement at all.
+    /// χ² for zero displacement.
     at_rest: f64,
 }
 
 impl Judge<'_> {
-    /// By how much the variances exceed those of the rings' errors.
+    /// The factor by which the variances exceed those from the errors of the rings.
     fn scale(&self, at: &Projection, effective_count: f64, parameter_count: usize) -> f64 {
         let reduced = at.chi_squared / freedom(effective_count, parameter_count);
         if self.rings.errors_known { reduced.max(1.0) } else { reduced }
@@ -214,7 +214,7 @@ fn fit_elastic(landscape: &Landscape<'_>, judge: &Judge<'_>, grid: &[(f64, f64)]
     }
 }
 
-/// The screened solution at the minimum `at`; none if the rings cannot tell κ from the amplitude there.
+/// The screened solution at the minimum `at`; none if the rings cannot separate κ from the amplitude there.
 fn fit_screened(
     landscape: &Landscape<'_>,
     judge: &Judge<'_>,
@@ -227,7 +227,7 @@ fn fit_screened(
     let scale = judge.scale(at, count, 2);
     let curvature = landscape.curvature(at);
     let [[slope_variance, covariance], [_, wavenumber_variance]] = curvature.inverse;
-    // Rings all at one radius: the matrix is singular to rounding.
+    // With all rings at one radius the matrix is singular to rounding.
     if !(wavenumber_variance > 0.0 && wavenumber_variance.is_finite()) {
         return None;
     }
@@ -254,13 +254,13 @@ fn fit_screened(
     })
 }
 
-/// The κ above the minimum of the first basin where χ² has risen by `rise`.
+/// The κ above the minimum of the first basin at which χ² has risen by `rise`.
 fn wavenumber_bound(landscape: &Landscape<'_>, grid: &[(f64, f64)], rise: f64) -> Option<f64> {
     let bottom = (1..grid.len()).take_while(|&i| grid[i].1 < grid[i - 1].1).last().unwrap_or(0);
     let level = grid[bottom].1 + rise;
     let above = (bottom + 1..grid.len()).find(|&i| grid[i].1 > level)?;
     let (mut low, mut high) = (grid[above - 1].0, grid[above].0);
-    // 30 halvings of a sixteenth of a branch: 10⁻¹⁰ of it.
+    // 30 bisections of a sixteenth of a branch: 10⁻¹⁰ of it.
     for _ in 0..30 {
         let middle = 0.5 * (low + high);
         if landscape.project(middle).chi_squared > level {

@@ -1,4 +1,4 @@
-//! [`ProfileFit`]: what fits of a radial profile give.
+//! [`ProfileFit`]: the results of the fits to a radial profile.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::fit::Estimate;
 pub struct ElasticFit {
     /// d_0^eff \[length\].
     pub amplitude: Estimate,
-    /// Largest κ compatible with the profile, one-sided, 95 % \[1/length\]; none if the search ended before one.
+    /// Largest κ compatible with the profile, one-sided, 95 % \[1/length\]; none if it is above the search range.
     pub wavenumber_bound: Option<f64>,
     /// Σ (residual/error)² over the rings.
     pub chi_squared: f64,
@@ -17,7 +17,7 @@ pub struct ElasticFit {
     pub share_described: f64,
     /// Number of independent rings n_eff, from its residuals.
     pub effective_ring_count: f64,
-    /// Probability that no displacement at all would fit so much worse by chance (F test).
+    /// Probability that zero displacement would fit this much worse by chance (F test).
     pub chance_of_nothing: f64,
 }
 
@@ -38,35 +38,35 @@ pub struct ScreenedFit {
     pub share_described: f64,
     /// Number of independent rings n_eff, from its residuals.
     pub effective_ring_count: f64,
-    /// Probability that no displacement at all would fit so much worse by chance (F test, corrected for the branches).
+    /// Probability that zero displacement would fit this much worse by chance (F test, corrected for the branches).
     pub chance_of_nothing: f64,
-    /// Probability that κ = 0 would fit so much worse by chance (F test, corrected for the branches).
+    /// Probability that κ = 0 would fit this much worse by chance (F test, corrected for the branches).
     pub chance_of_elastic: f64,
 }
 
-/// What describes the profile.
+/// The solution that describes the profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Decision {
     /// The elastic solution; κ is consistent with zero, below [`ElasticFit::wavenumber_bound`].
     Elastic,
-    /// The screened one, with κ ≠ 0.
+    /// The screened solution, with κ ≠ 0.
     Screened,
-    /// None of the two.
+    /// Neither of the two.
     Neither,
 }
 
-/// Both fits and which of them to believe.
+/// Both fits and the decision between them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ProfileFit {
-    /// What describes the profile.
+    /// The solution that describes the profile.
     pub decision: Decision,
     /// The elastic solution.
     pub elastic: ElasticFit,
-    /// The screened solution; absent if no κ > 0 up to the largest searched fits better than κ = 0, or the rings
-    /// cannot tell κ from the amplitude.
+    /// The screened solution. Absent if no κ > 0 up to the largest searched fits better than κ = 0, or if the rings
+    /// cannot separate κ from the amplitude.
     pub screened: Option<ScreenedFit>,
-    /// Rings used.
+    /// Number of rings used.
     pub ring_count: usize,
     /// Inner and outer end of the range used \[length\].
     pub range: [f64; 2],

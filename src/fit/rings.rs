@@ -1,11 +1,11 @@
-//! The rings a fit uses, their rescaled displacements r·d_r, and how far each can be trusted.
+//! The rings used in a fit, their rescaled displacements r·d_r and the errors of these.
 
 use crate::fit::FitError;
 use crate::observe::radial_profile::Ring;
 
-/// Degrees of freedom of the pooled variance mixed into each ring's: as if four more disks of the common spread had been
-/// seen. A ring of a hundred disks hardly notices, one of two disks is ruled by it, and the choice of four is no more
-/// than that.
+/// Degrees of freedom of the pooled variance mixed into that of each ring, equivalent to four more disks with the
+/// common spread. It has little effect on a ring of a hundred disks but dominates one of two. The value four is a
+/// choice.
 const PRIOR_FREEDOM: f64 = 4.0;
 
 /// Rescaled displacements in the order of their radii.
@@ -15,7 +15,7 @@ pub(crate) struct Rings {
     pub radii: Vec<f64>,
     /// r_i ⟨d_r⟩_i \[length²\].
     pub rescaled: Vec<f64>,
-    /// Standard error of it \[length²\]; 1/√(number of disks), of unknown unit, if no ring has any spread.
+    /// Standard error of it \[length²\]; 1/√(number of disks), with unknown unit, if no ring has any spread.
     pub errors: Vec<f64>,
     /// Whether `errors` are errors, or only relative to each other.
     pub errors_known: bool,
@@ -24,8 +24,8 @@ pub(crate) struct Rings {
 impl Rings {
     /// The rings with `from` ≤ r ≤ `to`.
     ///
-    /// The error of a ring is moderated: the variance s_i² of r·d_r within a ring of n_i disks, itself uncertain when
-    /// n_i is small (and zero for one disk, or where nothing moves), is drawn towards the pooled one S²,
+    /// The error of a ring is moderated. The variance s_i² of r·d_r within a ring of n_i disks is uncertain for small
+    /// n_i (and zero for one disk, or if nothing moves). It is therefore shrunk towards the pooled one S²,
     ///
     /// ```text
     /// σ_i² = [ (n_i − 1) s_i² + ν S² ] / (n_i − 1 + ν) / n_i        S² = Σ (n_i − 1) s_i² / Σ (n_i − 1),  ν = 4
@@ -46,8 +46,8 @@ impl Rings {
         let variance = |ring: &Ring| (ring.radius * ring.standard_error).powi(2) * ring.disk_count as f64;
         let total: f64 = used.iter().map(|ring| freedom(ring)).sum();
         let pooled = used.iter().map(|ring| freedom(ring) * variance(ring)).sum::<f64>() / total;
-        // No ring of two disks or no spread in any: 0/0 or 0. In the units of the fit the largest number is about 1, and an
-        // error of 10⁻¹⁰⁰ is none.
+        // No ring with two disks, or no spread in any: 0/0 or 0. In the units of the fit the largest number is about 1,
+        // and an error of 10⁻¹⁰⁰ counts as zero.
         let errors_known = pooled > 1e-200;
         let error = |ring: &Ring| {
             let moderated = if errors_known {

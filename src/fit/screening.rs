@@ -1,9 +1,9 @@
-//! The search for the screening wavenumber: one dimension, every branch.
+//! The one-dimensional search for the screening wavenumber over all branches.
 //!
-//! With the rim solution v(r; κ) as the shape, the model is r·d_r = B r v(r; κ). The amplitude B is linear, so for each κ
-//! its best value and χ²(κ) are known in closed form (variable projection; Golub & Pereyra (1973), SIAM J. Numer. Anal.
-//! 10, 413). Because v has no poles in κ, χ²(κ) is smooth through all of them: the branches join, and a minimum beside a
-//! pole is found like any other.
+//! With the rim solution v(r; κ) as the shape, the model is r·d_r = B r v(r; κ). It is linear in the amplitude B. For
+//! each κ, the best B and χ²(κ) therefore have closed forms (variable projection; Golub & Pereyra (1973), SIAM J.
+//! Numer. Anal. 10, 413). v has no poles in κ, so χ²(κ) is smooth through all of them. The branches are connected, and
+//! a minimum near a pole is found like any other.
 
 use argmin::core::{CostFunction, Error, Executor, State};
 use argmin::solver::brent::BrentOpt;
@@ -12,22 +12,22 @@ use crate::fit::rings::Rings;
 use crate::reference::rim::RimSolution;
 use crate::reference::{Annulus, RadialSolution};
 
-/// Grid points between two poles. χ² has at most a few extrema a branch, one per node of v that enters.
+/// Grid points between two poles. χ² has at most a few extrema per branch, one per node of v in the range.
 const POINTS_PER_BRANCH: f64 = 16.0;
 
-/// The lowest minima of the grid that are polished.
+/// Number of the lowest minima of the grid that are refined.
 const POLISHED_COUNT: usize = 4;
 
-/// Brent's absolute tolerance on κR; the relative one is argmin's, √ε, below which a minimum is flat to rounding.
+/// Brent's absolute tolerance on κR; the relative one is argmin's, √ε, at which a minimum is flat to rounding.
 const BRENT_TOLERANCE: f64 = 1e-10;
 
-/// Brent needs 10 to 30 steps; the interval is exhausted by golden section after 60.
+/// Brent needs 10 to 30 steps; golden section alone would need 60.
 const BRENT_STEP_LIMIT: u64 = 100;
 
-/// A κR below this is zero: it changes the profile by (κR)²/8 ≈ 10⁻⁷, and the error of κ grows as 1/κ.
+/// A κR below this counts as zero: it changes the profile by (κR)²/8 ≈ 10⁻⁷, and the error of κ grows as 1/κ.
 const LEAST_ARGUMENT: f64 = 1e-3;
 
-/// Step on κR of the central difference ∂v/∂κ: errs by 10⁻¹⁰/6 (third derivative) and 10⁻¹⁶/10⁻⁵ (rounding).
+/// Step in κR of the central difference ∂v/∂κ, with errors 10⁻¹⁰/6 (third derivative) and 10⁻¹⁶/10⁻⁵ (rounding).
 const DIFFERENCE_STEP: f64 = 1e-5;
 
 /// B and χ² at one κ.
@@ -36,7 +36,7 @@ pub(crate) struct Projection {
     pub wavenumber: f64,
     /// B: minus the slope d_r' at the rim \[1\].
     pub slope: f64,
-    /// Variance of B when the errors of the rings are right and κ is known.
+    /// Variance of B if the errors of the rings are correct and κ is known.
     pub slope_variance: f64,
     pub chi_squared: f64,
     /// Residuals in units of the errors of the rings.
@@ -92,7 +92,7 @@ impl<'a> Landscape<'a> {
         let mut basins: Vec<&[(f64, f64)]> = grid
             .windows(3)
             .filter(|basin| basin[1].1 <= basin[0].1 && basin[1].1 <= basin[2].1)
-            // χ² is even in κ, so a minimum may hide between 0 and the first point; it is then the lowest nearby.
+            // χ² is even in κ, so a minimum may lie between 0 and the first point; it is then the lowest nearby.
             .chain((grid[0].1 <= grid[1].1).then_some(&grid[..2]))
             .collect();
         let lowest = |basin: &[(f64, f64)]| basin.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
@@ -108,14 +108,14 @@ impl<'a> Landscape<'a> {
             })
     }
 
-    /// χ² of residuals that are rounding alone: where κ = 0 leaves no more, a lower χ² says nothing of κ.
+    /// χ² of residuals that are only rounding. If κ = 0 leaves no more than that, a lower χ² is not significant.
     fn rounding(&self) -> f64 {
-        // Of a ring: the profile's 3.2·10⁻¹⁵ twice (in the value and in the amplitude), and a few ulps of products.
+        // For a ring: the profile's 3.2·10⁻¹⁵ twice (in the value and in the amplitude), and some ulps of products.
         const RESIDUAL: f64 = 1e-14;
         RESIDUAL * RESIDUAL * self.rings.weighted(&self.rings.rescaled, &self.rings.rescaled)
     }
 
-    /// The minimum between `low` and `high`: Brent, then one step of Gauss and Newton, kept if it goes down.
+    /// The minimum between `low` and `high`: Brent, then one Gauss–Newton step, kept if it reduces χ².
     fn polish(&self, low: f64, high: f64) -> Projection {
         let outer = self.annulus.outer_radius();
         let solver = BrentOpt::new(low * outer, high * outer).set_tolerance(f64::EPSILON.sqrt(), BRENT_TOLERANCE);
@@ -124,7 +124,7 @@ impl<'a> Landscape<'a> {
             .run()
             .ok()
             .and_then(|result| result.state().get_best_param().copied())
-            // The cost never fails; were it to, the middle of the basin stands.
+            // The cost function never fails; otherwise the middle of the basin is used.
             .unwrap_or(0.5 * (low + high) * outer);
         let rough = self.project(found / outer);
         let curvature = self.curvature(&rough);
@@ -137,7 +137,7 @@ impl<'a> Landscape<'a> {
         if refined.chi_squared <= rough.chi_squared { refined } else { rough }
     }
 
-    /// Gauss and Newton's matrix at `at`: its inverse and its step, in (B, κ).
+    /// The Gauss–Newton matrix at `at`: its inverse and its step, in (B, κ).
     pub(crate) fn curvature(&self, at: &Projection) -> Curvature {
         let step = DIFFERENCE_STEP / self.annulus.outer_radius();
         // v is even in κ.
@@ -152,7 +152,7 @@ impl<'a> Landscape<'a> {
             self.rings.weighted(&shape, &bend),
             self.rings.weighted(&bend, &bend),
         );
-        // Eliminating B first keeps the determinant from cancelling by its scale: bb − sb²/ss is the curvature of χ²/2.
+        // Eliminating B first avoids cancellation in the determinant: bb − sb²/ss is the curvature of χ²/2.
         let reduced = bb - sb * sb / ss;
         let (var_bend, ratio) = (1.0 / reduced, sb / ss);
         let inverse = [[1.0 / ss + ratio * ratio * var_bend, -ratio * var_bend], [-ratio * var_bend, var_bend]];
@@ -169,12 +169,12 @@ impl<'a> Landscape<'a> {
     }
 }
 
-/// What χ² looks like around a minimum, and how B goes over into d_0 = B v(a; κ) there.
+/// Quadratic approximation of χ² at a minimum, and the factors from B to d_0 = B v(a; κ).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Curvature {
-    /// Inverse of JᵀWJ in (B, κ): the covariance of both when the errors of the rings are right.
+    /// Inverse of JᵀWJ in (B, κ): the covariance of both if the errors of the rings are correct.
     pub inverse: [[f64; 2]; 2],
-    /// Step to the minimum of the quadratic.
+    /// Step to the minimum of the quadratic approximation.
     pub step: [f64; 2],
     /// v(a; κ).
     pub inner_value: f64,

@@ -7,7 +7,7 @@ use argmin::solver::goldensectionsearch::GoldenSectionSearch;
 /// Brent needs 10 to 30 steps.
 const STEP_LIMIT: u64 = 100;
 
-/// The end of an interval to this share of a grid step, or this rise of the function.
+/// Tolerance for the end of an interval: this share of a grid step, or this rise of the function.
 const EDGE_TOLERANCE: f64 = 1e-7;
 
 /// False position needs 6 to 10 steps.
@@ -24,7 +24,7 @@ impl<F: Fn(f64) -> f64> CostFunction for Cost<F> {
     }
 }
 
-/// Where the function is least between two points, by golden sections.
+/// The minimum of the function between two points, by golden-section search.
 pub(super) fn golden(low: f64, high: f64, tolerance: f64, function: impl Fn(f64) -> f64) -> f64 {
     let middle = 0.5 * (low + high);
     let Ok(solver) = GoldenSectionSearch::new(low, high).and_then(|solver| solver.with_tolerance(tolerance)) else {
@@ -38,19 +38,20 @@ pub(super) fn golden(low: f64, high: f64, tolerance: f64, function: impl Fn(f64)
         .unwrap_or(middle)
 }
 
-/// The least value on a grid, polished, and where the function has risen by `rise` to either side.
+/// The refined minimum on a grid, and where the function has risen by `rise` on either side.
 pub(super) struct Minimum {
     pub at: f64,
     pub value: f64,
-    /// The lowest point of the function's rise below `rise` that joins on to the minimum; none at the end of the grid.
+    /// Lower end of the connected interval around the minimum in which the rise is below `rise`; none at the end of the
+    /// grid.
     pub lower: Option<f64>,
-    /// The highest one.
+    /// Upper end of this interval.
     pub upper: Option<f64>,
 }
 
 /// Minimum and interval on an ascending grid of at least three points.
 ///
-/// The interval ends where the function is above for good: humps inside it are in it.
+/// The interval ends where the function stays above; humps inside it are included.
 pub(super) fn minimum(grid: &[f64], rise: f64, function: impl Fn(f64) -> f64) -> Minimum {
     let values: Vec<f64> = grid.iter().map(|&at| function(at)).collect();
     let lowest = (0..grid.len()).fold(0, |best, i| if values[i] < values[best] { i } else { best });
@@ -72,8 +73,8 @@ pub(super) fn minimum(grid: &[f64], rise: f64, function: impl Fn(f64) -> f64) ->
     Minimum { at, value, lower, upper }
 }
 
-/// Where the function passes `level` between a point above it and one not above it: false position, halving the value of
-/// an end that stays (Illinois; Dowell, Jarratt (1971), BIT 11, 168).
+/// Where the function crosses `level` between a point above it and one not above it: false position, halving the value
+/// of an end that does not move (Illinois method; Dowell, Jarratt (1971), BIT 11, 168).
 fn edge(out: f64, inside: f64, level: f64, function: impl Fn(f64) -> f64) -> f64 {
     let excess = |at: f64| function(at) - level;
     let (mut high, mut low) = ((out, excess(out)), (inside, excess(inside)));

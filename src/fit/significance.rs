@@ -1,4 +1,4 @@
-//! How many independent rings there are, and what a better fit is worth.
+//! The number of independent rings, and the significance of a better fit.
 
 use crate::fit::incomplete_beta::incomplete_beta;
 
@@ -8,9 +8,9 @@ use crate::fit::incomplete_beta::incomplete_beta;
 /// n_eff = n / (1 + 2 Σ_k (1 − k/n) ρ_k)        ρ_k = Σ e_i e_(i+k) / Σ e_i² + p/n
 /// ```
 ///
-/// summed up to the first ρ_k that is not positive; never more than n. A fit of p parameters takes from independent
-/// residuals just what makes their correlations −p/n in the mean; that is put back. Source: Bayley & Hammersley (1946),
-/// Suppl. J. R. Stat. Soc. 8, 184; the end of the sum as in Geyer (1992), Stat. Sci. 7, 473.
+/// summed up to the first ρ_k that is not positive; at most n. A fit of p parameters changes the correlations of
+/// independent residuals by −p/n on average, which is added back. Source: Bayley & Hammersley (1946), Suppl. J. R.
+/// Stat. Soc. 8, 184; truncation of the sum as in Geyer (1992), Stat. Sci. 7, 473.
 pub(crate) fn effective_count(residuals: &[f64], parameter_count: usize) -> f64 {
     let n = residuals.len() as f64;
     let square: f64 = residuals.iter().map(|e| e * e).sum();
@@ -29,12 +29,12 @@ pub(crate) fn effective_count(residuals: &[f64], parameter_count: usize) -> f64 
     n / (1.0 + 2.0 * sum)
 }
 
-/// Degrees of freedom that `parameter_count` parameters leave, never less than one.
+/// Degrees of freedom left by `parameter_count` parameters, at least one.
 pub(crate) fn freedom(effective_count: f64, parameter_count: usize) -> f64 {
     (effective_count - parameter_count as f64).max(1.0)
 }
 
-/// Probability that `more` extra parameters lower χ² from `simple` to `full` or below by chance: the F test.
+/// Probability that `more` extra parameters lower χ² from `simple` to `full` or less by chance: the F test.
 ///
 /// With F = ((simple − full)/more) / (full/freedom) the tail is the incomplete beta function
 /// `I_x(freedom/2, more/2)` at x = full/simple, which needs no infinite F for an exact fit.
@@ -42,11 +42,11 @@ pub(crate) fn chance(simple: f64, full: f64, more: usize, freedom: f64) -> f64 {
     if !(simple > 0.0 && full < simple) {
         return 1.0;
     }
-    // The arguments are in range: freedom ≥ 1, more ≥ 1, 0 ≤ x < 1; NaN, if it ever came, must not look significant.
+    // The arguments are in range: freedom ≥ 1, more ≥ 1, 0 ≤ x < 1; NaN must not count as significant.
     incomplete_beta(0.5 * freedom, 0.5 * more as f64, full / simple).unwrap_or(1.0)
 }
 
-/// The same probability when the best of `trial_count` independent tries was taken (Šidák).
+/// The same probability for the best of `trial_count` independent trials (Šidák).
 pub(crate) fn corrected(chance: f64, trial_count: f64) -> f64 {
     // 1 − (1 − p)^T without losing a small p.
     -libm::expm1(trial_count * libm::log1p(-chance))
@@ -79,7 +79,7 @@ mod tests {
         let blocks: Vec<f64> = (0..40).map(|i| if i < 20 { 1.0 } else { -1.0 }).collect();
         let sum: f64 = (1..=13).map(|k| (1.0 - f64::from(k) / 40.0) * f64::from(40 - 3 * k) / 40.0).sum();
         assert!((effective_count(&blocks, 0) - 40.0 / (1.0 + 2.0 * sum)).abs() < 1e-12);
-        // What two parameters take is put back: 2/40 is added to each.
+        // The effect of two parameters is added back: 2/40 to each.
         assert!(effective_count(&blocks, 2) < effective_count(&blocks, 0));
     }
 

@@ -1,18 +1,18 @@
-//! The units a profile is fitted in: powers of two near its own lengths and displacements, so that squares neither overflow
-//! nor vanish whatever the profile's units, and no number is rounded on the way in or out.
+//! The units of a fit: powers of two near the lengths and displacements of the profile. So squares neither overflow nor
+//! underflow in any units of the profile, and the conversion is exact.
 
 use crate::fit::profile_fit::{ElasticFit, ProfileFit, ScreenedFit};
 use crate::fit::{Estimate, FitError};
 use crate::observe::radial_profile::Ring;
 use crate::reference::{Annulus, ReferenceError};
 
-/// Displacements below this share of their errors are none: their squares would vanish beside those of the errors.
+/// Displacements below this share of their errors count as zero: their squares would vanish beside those of the errors.
 const LEAST_DISPLACEMENT: f64 = 1e-100;
 
-/// Beyond this d_0^eff, which is larger by up to R/a, might overflow \[length\].
+/// Above this, d_0^eff, which is larger by up to R/a, might overflow \[length\].
 const LARGEST_DISPLACEMENT: f64 = 1e200;
 
-/// One unit of length and one of displacement \[length\].
+/// Units of length and of displacement \[length\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Units {
     length: f64,
@@ -28,7 +28,7 @@ impl Units {
     /// The units of the rings of an annulus with `from` ≤ r ≤ `to`.
     ///
     /// # Errors
-    /// A ring whose numbers cannot be used; no displacement to speak of beside the errors.
+    /// A ring with invalid numbers; displacements that are negligible compared with the errors.
     pub(crate) fn of(rings: &[Ring], annulus: Annulus, [from, to]: [f64; 2]) -> Result<Self, FitError> {
         for (index, ring) in rings.iter().enumerate() {
             let usable = ring.radius > 0.0
@@ -56,7 +56,7 @@ impl Units {
         Ok(Units { length: power_of_two(annulus.outer_radius().max(f64::MIN_POSITIVE)), displacement })
     }
 
-    /// Rings in these units.
+    /// Converts rings to these units.
     pub(crate) fn rings(&self, rings: &[Ring]) -> Vec<Ring> {
         let scaled = |ring: &Ring| Ring {
             radius: ring.radius / self.length,
@@ -68,12 +68,12 @@ impl Units {
         rings.iter().map(scaled).collect()
     }
 
-    /// The annulus in these units; none if one of its radii is beyond numbers there.
+    /// Converts the annulus to these units; an error if a radius is out of range there.
     pub(crate) fn annulus(&self, annulus: Annulus) -> Result<Annulus, ReferenceError> {
         Annulus::new(annulus.inner_radius() / self.length, annulus.outer_radius() / self.length)
     }
 
-    /// A refusal of rings in these units, in the caller's.
+    /// Converts an error from these units to those of the caller.
     pub(crate) fn error(&self, error: FitError) -> FitError {
         match error {
             FitError::TooFewRings { ring_count, needed, from, to } => {
@@ -83,7 +83,7 @@ impl Units {
         }
     }
 
-    /// A fit made in these units, in the caller's. χ² has units only where the rings have no errors.
+    /// Converts a fit from these units to those of the caller. χ² has units only if the rings have no errors.
     pub(crate) fn fit(&self, fit: ProfileFit, errors_known: bool) -> ProfileFit {
         let estimate = |value: Estimate, unit: f64| Estimate {
             value: value.value * unit,

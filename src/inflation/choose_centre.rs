@@ -12,7 +12,7 @@ use crate::packing::Packing;
 /// Picks the disk to inflate.
 ///
 /// # Errors
-/// A label that no disk has; two disks with the same centre.
+/// No disk has the label; two disks have the same centre.
 pub fn choose_centre<const D: usize, L: PairLaw>(
     packing: &Packing<D>,
     law: &L,

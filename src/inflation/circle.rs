@@ -1,9 +1,9 @@
 //! The circle cut out of a periodic packing: mobile disks inside, a held rim around, the disk to inflate in the middle.
 //!
-//! The centre of the chosen disk becomes the origin of the open plane. Disks nearer than `r_out` are mobile; all images
-//! of disks from `r_out` outwards, as far as a mobile disk can reach, are held. Images matter: at the sides of the box
-//! the rim would otherwise have holes as soon as r_out plus the contact range exceeds half a side, so a label can occur
-//! twice in it.
+//! The centre of the chosen disk becomes the origin of the open plane. Disks nearer than `r_out` are mobile. All images
+//! of disks at `r_out` or beyond are held, as far as a mobile disk can reach. Images are needed if r_out plus the
+//! contact range exceeds half a side of the box: without them the rim would have holes. So a label can occur twice in
+//! the rim.
 
 use crate::inflation::error::InflationError;
 use crate::network::ContactNetwork;
@@ -29,7 +29,8 @@ impl<const D: usize> Circle<D> {
     /// Cuts the circle of this radius around a disk of a periodic packing.
     ///
     /// # Errors
-    /// The packing must be periodic and `outer_radius` must leave mobile disks one image each (at most half a side).
+    /// The packing must be periodic. `outer_radius` must be at most half a side, so that each mobile disk has one
+    /// image.
     pub fn cut(packing: &Packing<D>, centre: usize, outer_radius: f64) -> Result<Self, InflationError> {
         let lengths = packing.domain().lengths().ok_or(InflationError::NotPeriodic)?;
         let half = 0.5 * lengths.iter().copied().fold(f64::INFINITY, f64::min);
@@ -56,7 +57,7 @@ impl<const D: usize> Circle<D> {
                 }
             }
         }
-        // The images of the centre itself lie outside as long as r_out is below half a side; near it they can be rim.
+        // The images of the centre lie outside r_out if r_out is below half a side; they may belong to the rim.
         for shift in images::<D>().filter(|&shift| shift != [0.0; D]) {
             let position: Vector<D> = std::array::from_fn(|d| shift[d] * lengths[d]);
             if dot(position, position) < reach * reach {
@@ -82,16 +83,16 @@ impl<const D: usize> Circle<D> {
         self.centre
     }
 
-    /// Label and distance from the centre of the mobile disk farthest out, if it has left the circle through the rim: if a disk of the
-    /// largest radius would have room between it and r_out.
+    /// Label and distance from the centre of the outermost mobile disk, if it has left the circle through the rim. It
+    /// has if a disk of the largest radius fits between it and r_out.
     pub(super) fn beyond_rim(&self, packing: &Packing<D>) -> Option<(u64, f64)> {
         let largest = packing.radii().iter().copied().fold(0.0, f64::max);
         let mobile = (0..self.centre).map(|disk| (packing.labels()[disk], norm(packing.positions()[disk])));
         mobile.filter(|&(_, distance)| distance > self.outer_radius + 2.0 * largest).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Pressure of the circle: virial of its disks over π r_out², contacts with the rim counted half
-    /// \[force / length^(D−1)\].
+    /// Pressure of the circle: virial of its disks over π r_out². Contacts with the rim count half \[force /
+    /// length^(D−1)\].
     pub fn pressure_of(&self, network: &ContactNetwork<D>) -> f64 {
         network.cluster_pressure(ball_volume::<D>(self.outer_radius), |disk| disk > self.centre)
     }

@@ -1,37 +1,37 @@
-//! [`InflationError`]: why an inflation could not be done.
+//! [`InflationError`]: why an inflation failed.
 
 use crate::inflation::rest::Stage;
 use crate::packing::PackingError;
 use crate::relax::Stop;
 
-/// Why an inflation could not be done.
+/// Why an inflation failed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InflationError {
-    /// The disks themselves are at fault.
+    /// The disks themselves are invalid.
     #[error(transparent)]
     Packing(#[from] PackingError),
-    /// A circle is cut from a periodic box only.
+    /// A circle can only be cut from a periodic box.
     #[error("the packing is not periodic: a circle with its held rim is cut from a periodic box")]
     NotPeriodic,
-    /// r_out must leave every mobile disk one image.
+    /// r_out must be such that every mobile disk has one image.
     #[error("outer radius {outer_radius} is not between 0 and half the shortest side of the box, {half_side}")]
     OuterRadiusOutOfRange {
-        /// The radius asked for.
+        /// The outer radius given.
         outer_radius: f64,
         /// Half the shortest side.
         half_side: f64,
     },
-    /// Nothing could move.
+    /// No disk could move.
     #[error("no disk lies within the outer radius {outer_radius}")]
     NoMobileDisk {
-        /// The radius asked for.
+        /// The outer radius given.
         outer_radius: f64,
     },
     /// d_0 must be finite and leave a positive radius.
     #[error("increase is {increase}, which leaves no positive radius of a disk of radius {radius}")]
     IncreaseNotPossible {
-        /// d_0 asked for.
+        /// d_0.
         increase: f64,
         /// Radius of the disk.
         radius: f64,
@@ -42,31 +42,31 @@ pub enum InflationError {
         nearest - radius
     )]
     IncreaseTooLarge {
-        /// d_0 asked for.
+        /// d_0.
         increase: f64,
         /// Radius of the disk.
         radius: f64,
         /// Distance of the nearest centre.
         nearest: f64,
     },
-    /// Γ must be a number.
+    /// Γ must be finite.
     #[error("on_site_coupling is {coupling}, not a finite number")]
     CouplingNotFinite {
-        /// The value asked for.
+        /// The coupling given.
         coupling: f64,
     },
-    /// There is no disk with the label asked for.
+    /// No disk has this label.
     #[error("no disk has the label {label}")]
     NoSuchLabel {
-        /// The label asked for.
+        /// The label given.
         label: u64,
     },
-    /// A mobile disk was pushed through the held rim: its centre is farther out than the rim and a disk.
+    /// A mobile disk was pushed through the held rim: a disk fits between it and r_out.
     #[error(
         "{stage}: disk {label} was pushed through the rim: it is at {distance} from the centre, and disks from {outer_radius} on are held"
     )]
     BeyondRim {
-        /// Which of the relaxations.
+        /// Stage of the relaxation.
         stage: Stage,
         /// Label of the disk.
         label: u64,
@@ -78,7 +78,7 @@ pub enum InflationError {
     /// A relaxation did not end at rest.
     #[error("{stage}: the relaxation stopped with {stop:?} after {step_count} steps, residual {residual:e}")]
     NotAtRest {
-        /// Which of the relaxations.
+        /// Stage of the relaxation.
         stage: Stage,
         /// Why it stopped.
         stop: Stop,

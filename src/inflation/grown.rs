@@ -1,4 +1,4 @@
-//! [`Grown`]: the moment of an inflation at which the disk has grown and nothing has moved yet.
+//! [`Grown`]: a packing whose disk has grown, before any disk has moved.
 
 use crate::inflation::choose_centre::choose_centre;
 use crate::inflation::circle::Circle;
@@ -11,9 +11,9 @@ use crate::packing::{Packing, PackingError};
 use crate::relax::{Criterion, Outcome, Relaxer, Stop, Trace};
 use crate::vector::{norm, scaled, sum};
 
-/// A packing at rest whose disk has grown: what any relaxer can start from.
+/// A packing at rest before the inflation, and the same packing with the grown disk: the start of any relaxer.
 ///
-/// Where disks have sites the law is one with them ([`OnSite`](crate::law::on_site::OnSite)), here and below.
+/// If disks have sites, the law here and below is one with sites ([`OnSite`](crate::law::on_site::OnSite)).
 #[derive(Debug, Clone)]
 pub struct Grown<const D: usize> {
     experiment: Experiment<D>,
@@ -25,17 +25,17 @@ pub struct Grown<const D: usize> {
     pub outer_radius: f64,
     /// Number of mobile disks.
     pub mobile_count: usize,
-    /// At rest before.
+    /// The state at rest before the inflation.
     pub before: Rest<D>,
-    /// The same disks in the same places, one of them larger.
+    /// The same disks at the same positions, one of them larger.
     pub packing: Packing<D>,
 }
 
 impl<const D: usize> Grown<D> {
-    /// Chooses the disk, cuts the circle if there is one, brings that to rest and lets the disk grow.
+    /// Chooses the disk, cuts the circle if the boundary is a rim, relaxes the packing and lets the disk grow.
     ///
     /// # Errors
-    /// [`InflationError`] says what cannot be done, with numbers.
+    /// [`InflationError`].
     pub fn new<L: PairLaw>(
         inflation: &Inflation,
         packing: &Packing<D>,
@@ -66,10 +66,10 @@ impl<const D: usize> Grown<D> {
         Ok(Grown { experiment, centre, inner_radius, outer_radius, mobile_count, before, packing: grown })
     }
 
-    /// Relaxes disks in the geometry of this inflation, wherever that ends.
+    /// Relaxes disks in the geometry of this inflation. The outcome need not be at rest.
     ///
     /// # Errors
-    /// Only what makes forces undefined.
+    /// Only conditions that make forces undefined.
     pub fn relax<L: PairLaw>(
         &self,
         packing: Packing<D>,
@@ -119,7 +119,7 @@ impl<const D: usize> Experiment<D> {
     fn start(&self) -> Packing<D> {
         match self {
             Experiment::HeldRim(circle) => circle.packing.clone(),
-            // Sites of an earlier relaxation are not those of this one.
+            // Sites of an earlier relaxation do not apply here.
             Experiment::Periodic { packing, .. } => packing.clone().without_sites(),
         }
     }
@@ -150,8 +150,8 @@ impl<const D: usize> Experiment<D> {
         trace: &mut impl Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         match self {
-            // Contact forces add up to nothing, so sites are at rest only where the centre of mass has not moved: nothing to
-            // undo.
+            // Contact forces add up to zero. With sites the centre of mass must stay where it was; without, its
+            // displacement is removed.
             Experiment::Periodic { .. } if !law.has_sites() => {
                 let mut outcome = relaxer.relax(packing.clone(), law, trace)?;
                 outcome.state = with_centre_of_mass_of(&packing, outcome.state);
@@ -205,7 +205,7 @@ impl<const D: usize> Experiment<D> {
     }
 }
 
-/// The second packing moved as a whole so that its disks have moved by nothing on average.
+/// Translates the second packing so that the mean displacement of its disks is zero.
 pub(crate) fn with_centre_of_mass_of<const D: usize>(before: &Packing<D>, mut after: Packing<D>) -> Packing<D> {
     let mut mean = [0.0; D];
     for disk in 0..before.len() {
@@ -218,7 +218,7 @@ pub(crate) fn with_centre_of_mass_of<const D: usize>(before: &Packing<D>, mut af
     after
 }
 
-/// How far a disk moved, to the rounding of that distance (positions are sums of two numbers).
+/// Displacement of a disk, exact to the rounding of that distance (positions are sums of two numbers).
 pub(crate) fn displacement<const D: usize>(before: &Packing<D>, after: &Packing<D>, disk: usize) -> [f64; D] {
     let ((a, a_low), (b, b_low)) = (after.centre(disk), before.centre(disk));
     std::array::from_fn(|d| (a[d] - b[d]) + (a_low[d] - b_low[d]))

@@ -1,8 +1,8 @@
-//! One disk is inflated, the rest relaxes.
+//! One disk is inflated; the other disks relax.
 //!
-//! Two geometries: a [`Circle`] with a held rim, in which the centre is held at the origin (the experiment of the study),
-//! and the whole periodic box, in which nothing is held and the centre of mass stays where it is. Deflation takes the
-//! inflated state, gives the disk its first radius back and relaxes again.
+//! There are two geometries: a [`Circle`] with a held rim, in which the centre is held at the origin (the experiment of
+//! the study), and the whole periodic box, in which nothing is held and the centre of mass does not move. Deflation
+//! starts from the inflated state, restores the radius of the disk and relaxes again.
 
 mod choose_centre;
 pub mod circle;
@@ -24,7 +24,7 @@ use crate::law::power_laws::Hertzian;
 use crate::packing::Packing;
 use crate::relax::{Fire, Relaxer, Trace};
 
-/// An inflation done: the states before, after, and after deflation if asked for.
+/// The result of an inflation: the states before and after it, and after the deflation if there was one.
 #[derive(Debug, Clone)]
 pub struct Inflated<const D: usize> {
     /// Index of the inflated disk in the packings below.
@@ -35,11 +35,11 @@ pub struct Inflated<const D: usize> {
     pub outer_radius: f64,
     /// Number of mobile disks.
     pub mobile_count: usize,
-    /// At rest before.
+    /// The state at rest before the inflation.
     pub before: Rest<D>,
-    /// At rest with the disk inflated.
+    /// The state at rest with the disk inflated.
     pub after: Rest<D>,
-    /// At rest with the disk deflated again.
+    /// The state at rest after the deflation.
     pub deflated: Option<Rest<D>>,
 }
 

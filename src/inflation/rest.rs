@@ -1,4 +1,4 @@
-//! [`Rest`]: one state of an inflation at rest, and [`Stage`], which of them.
+//! [`Rest`]: a state at rest of an inflation, and [`Stage`]: which of the states it is.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::relax::{Cost, Criterion, Relaxed, Residual};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stage {
-    /// Before anything is inflated (at once at rest if the packing was).
+    /// Before the inflation; takes no steps if the packing is at rest.
     Before,
     /// After the inflation.
     Inflated,
@@ -27,16 +27,16 @@ impl std::fmt::Display for Stage {
     }
 }
 
-/// One state of an inflation at rest.
+/// A state at rest of an inflation.
 #[derive(Debug, Clone)]
 pub struct Rest<const D: usize> {
     /// The disks.
     pub packing: Relaxed<Packing<D>>,
     /// Pressure of the circle or the box \[force / length^(D−1)\].
     pub pressure: f64,
-    /// Elastic energy, with that of the sites where there are some \[energy\].
+    /// Elastic energy, including that of the sites if there are any \[energy\].
     pub energy: f64,
-    /// Number of contacts, held–held ones left out.
+    /// Number of contacts, without those between held disks.
     pub contact_count: usize,
     /// Number of mobile disks that are rattlers.
     pub rattler_count: usize,
@@ -48,6 +48,6 @@ pub struct Rest<const D: usize> {
     pub rounding_floor: f64,
     /// Which limit was met.
     pub criterion: Criterion,
-    /// What it cost.
+    /// Cost of the relaxation.
     pub cost: Cost,
 }

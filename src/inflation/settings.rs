@@ -10,17 +10,17 @@ use crate::law::pair_law::PairLaw;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Boundary {
-    /// A circle is cut out; disks from this radius outwards are held, and so is the centre.
+    /// A circle is cut out. Disks outside this radius and the centre are held.
     HeldRim {
         /// r_out over the shortest side of the box, at most 1/2 \[1\].
         outer_radius_over_side: f64,
     },
-    /// The periodic box; nothing is held, the centre of mass stays.
+    /// The periodic box. Nothing is held; the centre of mass does not move.
     Periodic,
 }
 
 impl Default for Boundary {
-    /// Source: design §4, r_out/L for 5548 disks (0.486 and 0.491 for 22184 and 88776).
+    /// Source: the study, r_out/L for 5548 disks (0.486 and 0.491 for 22184 and 88776).
     fn default() -> Self {
         Boundary::HeldRim { outer_radius_over_side: 0.480 }
     }
@@ -30,7 +30,7 @@ impl Default for Boundary {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Centre {
-    /// A random one of the smallest disks on the backbone (of all the smallest disks where there is no backbone).
+    /// A random one of the smallest disks on the backbone; of all the smallest disks if there is no backbone.
     #[default]
     Backbone,
     /// A random one of the smallest disks, rattler or not.
@@ -43,7 +43,7 @@ pub enum Centre {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Inflation {
-    /// d_0, by which the radius grows at once \[length\].
+    /// d_0, the increase of the radius in one step \[length\].
     pub increase: f64,
     /// What keeps the packing in place.
     pub boundary: Boundary,
@@ -51,19 +51,19 @@ pub struct Inflation {
     pub centre: Centre,
     /// Whether the disk is deflated again afterwards.
     pub deflate: bool,
-    /// Γ of an energy −Γu²/2 on every mobile disk, u its displacement from where it was in the packing given; absent, there
-    /// is none \[force / length\]. The packing itself is prepared without it.
+    /// Γ of an energy −Γu²/2 of every mobile disk, u its displacement from its position in the packing given
+    /// \[force / length\]. The packing itself is prepared without it. Absent: no such energy.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on_site_coupling: Option<f64>,
 }
 
 impl Inflation {
-    /// A law with the sites of the inflation, if disks have any.
+    /// The law with the sites of the inflation, if disks have any.
     pub fn law_with_sites<L: PairLaw>(&self, law: &L) -> OnSite<L> {
         OnSite { law: *law, coupling: self.on_site_coupling.unwrap_or(0.0) }
     }
 
-    /// The same.
+    /// Like [`Inflation::law_with_sites`], but checks the coupling.
     ///
     /// # Errors
     /// A coupling that is not finite.
@@ -76,7 +76,7 @@ impl Inflation {
 }
 
 impl Default for Inflation {
-    /// Source: design §4 (d_0 = 0.1).
+    /// Source: the study (d_0 = 0.1).
     fn default() -> Self {
         Inflation {
             increase: 0.1,

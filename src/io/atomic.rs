@@ -1,4 +1,4 @@
-//! [`write_atomically`]: a file is there whole or not at all.
+//! [`write_atomically`]: a file is written either completely or not at all.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -6,25 +6,25 @@ use std::path::{Path, PathBuf};
 
 use crate::io::unfinished::temporary;
 
-/// Why a file was not written. A file of that name from before is then untouched.
+/// Why a file was not written. An earlier file with that name is then unchanged.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {
-    /// The folder, the disk or the writer refused.
+    /// An error of the folder, the disk or the writer.
     #[error("{path}: {source}")]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: io::Error,
     },
-    /// A folder or device of that name, which a file must not replace.
+    /// A folder or device has that name; a file must not replace it.
     #[error("{path}: there is something of that name that is not a file")]
     NotAFile {
         /// The path.
         path: PathBuf,
     },
-    /// A column with another number of values than disks × width.
+    /// The number of values of a column differs from disks × width.
     #[error("{path}: column {column} has {found} values, expected {expected} (disks × width)")]
     ColumnLength {
         /// The file.
@@ -36,7 +36,7 @@ pub enum WriteError {
         /// Number of values given.
         found: usize,
     },
-    /// A column or key that is taken or cannot be written.
+    /// The name of a column or key is reserved, repeated or invalid.
     #[error("{path}: name `{name}` is reserved, repeated or not made of letters, digits, `_`, `-` and `.`")]
     Name {
         /// The file.
@@ -44,7 +44,7 @@ pub enum WriteError {
         /// Name of the column or key.
         name: String,
     },
-    /// A value with a line break or another control character.
+    /// A value contains a line break or another control character.
     #[error("{path}: the value of `{key}` has a line break or control character: {value:?}")]
     PropertyValue {
         /// The file.
@@ -54,24 +54,24 @@ pub enum WriteError {
         /// The value.
         value: String,
     },
-    /// What the format cannot say, and a reader would not know of.
+    /// The packing has data that the format cannot contain and whose loss a reader would not notice.
     #[error("{path}: LAMMPS data has no place for {what}")]
     NoPlaceFor {
         /// The file.
         path: PathBuf,
-        /// What of the packing would be lost.
+        /// The data that would be lost.
         what: &'static str,
     },
 }
 
-/// Writes a file by way of a temporary one in the same folder, renamed when it is complete and on disk.
+/// Writes a temporary file in the same folder, and renames it when it is complete and on disk.
 ///
-/// Whoever opens `path` sees the old content or the new one, also when the program is stopped half-way or the power
-/// fails. A symbolic link is replaced, not followed.
+/// A reader of `path` sees either the old or the new content, even if the program is stopped or the power fails. A
+/// symbolic link is replaced, not followed.
 ///
 /// # Errors
-/// [`WriteError::Io`] with the path, from the folder, the disk or `write` itself; [`WriteError::NotAFile`] for folders
-/// and devices.
+/// [`WriteError::Io`] with the path, for errors of the folder, the disk or `write`; [`WriteError::NotAFile`] for
+/// folders and devices.
 ///
 /// # Example
 /// ```
@@ -111,7 +111,7 @@ where
     drop(writer);
     temporary.as_file().sync_all()?;
     temporary.persist(path).map_err(|error| error.error)?;
-    // The name itself reaches the disk with its folder. Not every system can do that, and the content is safe already.
+    // Writes the directory entry to disk. Not every system supports it, and the content is already safe.
     #[cfg(unix)]
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
     Ok(())

@@ -1,7 +1,7 @@
-//! The second line of extended XYZ: `key=value` pairs, values quoted where they hold blanks.
+//! The second line of extended XYZ: `key=value` pairs, with values quoted if they contain blanks.
 //!
-//! Read as ASE does: quotes are `"` or `'` with `\` before a quote inside, lists stand in `[ ]` or `{ }`, blanks on both
-//! sides of `=` are allowed, a key alone is a flag. Keys are found without regard to case, so that `PBC` is not overlooked.
+//! Parsed as in ASE: quotes are `"` or `'` with `\` before a quote inside, lists are in `[ ]` or `{ }`, blanks on both
+//! sides of `=` are allowed, a key alone is a flag. Keys are case-insensitive, so that `PBC` is recognised.
 
 /// The pairs of a comment line.
 pub(super) struct CommentLine {
@@ -11,16 +11,16 @@ pub(super) struct CommentLine {
 /// Why a comment line cannot be read: the key concerned and the reason.
 #[derive(Debug, PartialEq)]
 pub(super) enum Problem {
-    /// A quote or bracket is never closed.
+    /// A quote or bracket is not closed.
     Unclosed { key: String, value: String },
-    /// A key stands twice.
+    /// A key occurs twice.
     Repeated { key: String },
 }
 
 impl CommentLine {
     pub fn parse(text: &str) -> Result<Self, Problem> {
         let mut pairs: Vec<(String, String)> = Vec::new();
-        // Which of them stand alone.
+        // Which keys have no value.
         let mut flags: Vec<bool> = Vec::new();
         let mut rest = text.trim_start();
         while !rest.is_empty() {
@@ -34,13 +34,13 @@ impl CommentLine {
                         pairs.push((key, "T".into()));
                         flags.push(true);
                     }
-                    // Free text is a row of flags, in which words may repeat.
+                    // Free text is a sequence of flags, in which words may repeat.
                     Some(place) if flags[place] => {}
                     Some(_) => return Err(Problem::Repeated { key }),
                 }
                 continue;
             };
-            // `key = value` has a blank on both sides; a blank on the right alone is how ASE writes an empty value.
+            // `key = value` has blanks on both sides; ASE writes an empty value with a blank on the right only.
             let after = if spaced { after.trim_start() } else { after };
             let value;
             (value, rest) = word(after, false).map_err(|value| Problem::Unclosed { key: key.clone(), value })?;
@@ -58,19 +58,19 @@ impl CommentLine {
         self.pairs.iter().find(|(name, _)| name.eq_ignore_ascii_case(key)).map(|(_, value)| value.as_str())
     }
 
-    /// All pairs, in their order.
+    /// All pairs, in the order of the line.
     pub fn into_pairs(self) -> Vec<(String, String)> {
         self.pairs
     }
 
-    /// The keys there are, for messages.
+    /// All keys, for messages.
     pub fn keys(&self) -> String {
         let keys: Vec<&str> = self.pairs.iter().map(|(key, _)| key.as_str()).collect();
         if keys.is_empty() { "no key".into() } else { keys.join(" ") }
     }
 }
 
-/// The parts of a list: numbers or flags parted by blanks, commas or brackets.
+/// The elements of a list: numbers or flags separated by blanks, commas or brackets.
 pub(super) fn list(value: &str) -> Vec<&str> {
     value
         .split(|c: char| c.is_whitespace() || matches!(c, ',' | '[' | ']' | '{' | '}'))
@@ -78,14 +78,14 @@ pub(super) fn list(value: &str) -> Vec<&str> {
         .collect()
 }
 
-/// The next key or value and what follows it; the error is the text that is never closed.
+/// The next key or value and the rest of the text; the error is the unclosed text.
 fn word(text: &str, is_key: bool) -> Result<(String, &str), String> {
     match text.chars().next() {
         Some(quote @ ('"' | '\'')) => quoted(&text[1..], quote).ok_or_else(|| text.to_owned()),
         Some('[' | '{') if !is_key => bracketed(text).ok_or_else(|| text.to_owned()),
         _ => {
             let end = text.find(|c: char| c.is_whitespace() || (is_key && c == '=')).unwrap_or(text.len());
-            // A stray `=` is a key of its own, so that every turn takes at least one character.
+            // A stray `=` counts as a key, so that every call consumes at least one character.
             let end = if end == 0 && !text.is_empty() && is_key { 1 } else { end };
             Ok((text[..end].to_owned(), &text[end..]))
         }

@@ -1,4 +1,4 @@
-//! Extended XYZ as ASE and OVITO read and write it, to a [`Packing`].
+//! Reads extended XYZ, as written by ASE and OVITO, to a [`Packing`].
 //!
 //! ```text
 //! 2
@@ -11,20 +11,20 @@
 //! |---|---|---|
 //! | `pos:R:3` (`R:2` for D = 2) | centre \[length\]; for D = 2 z must be 0 | yes |
 //! | `radius:R:1` | radius \[length\] | yes |
-//! | `id:I:1` | label, no two alike | no |
-//! | `label:I:1` | label, repeats allowed; goes before `id` | no |
+//! | `id:I:1` | label, unique | no |
+//! | `label:I:1` | label, repeats allowed; has precedence over `id` | no |
 //! | `held:I:1` or `held:L:1` | 1 or T: held in place | no |
 //! | `correction:R:D` | low part of the centre, below the spacing of numbers there \[length\], [`Packing::corrections`] | no |
 //! | `site:R:D` | site of the disk \[length\], [`Packing::sites`] | no |
-//! | `site_correction:R:D` | low part of the site, as small \[length\]; goes with `site` | no |
+//! | `site_correction:R:D` | low part of the site \[length\]; requires `site` | no |
 //!
-//! Columns stand in any order, others are ignored. `pbc` is all T in the directions of the packing (a periodic box, its
-//! sides from `Lattice`, its corner from `Origin`) or all F (the open plane, whatever the lattice). Without `pbc` a
-//! lattice is periodic, as in ASE; without either the file is refused. For D = 2 the third direction counts for
-//! nothing. `dimension`, where given, must be D. A key or a column given twice is refused.
+//! Columns may be in any order; others are ignored. `pbc` is all T in the directions of the packing (a periodic box,
+//! with sides from `Lattice` and corner from `Origin`) or all F (the open plane; the lattice is ignored). Without `pbc`
+//! a lattice is periodic, as in ASE; without both the file is refused. For D = 2 the third direction is ignored.
+//! `dimension`, if given, must be D. Duplicate keys and columns are refused.
 //!
-//! ASE reads all digits of a file but writes eight decimals: a packing that went through it is no longer at rest, and its
-//! corrections are gone.
+//! ASE reads all digits of a file but writes eight decimals. A packing written by it is no longer at rest, and its
+//! corrections are lost.
 //!
 //! # Source
 //! ASE, `ase.io.extxyz`; OVITO manual, "XYZ file reader".
@@ -72,7 +72,7 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
         .with_held(extras.iter().map(|&(held, _)| held).collect())
         .map_err(|error| ReadError::Packing { path: source.path.into(), source: error })?;
     for (disk, (_, correction)) in extras.iter().enumerate() {
-        // A correction of nothing is left out: adding it would turn a coordinate −0 into 0.
+        // A correction of zero is left out: adding it would turn a coordinate −0 into 0.
         if correction.iter().any(|&low| low != 0.0) {
             packing.displace(disk, *correction);
         }
@@ -103,7 +103,7 @@ fn comment_of(source: &Source, line: usize) -> Result<CommentLine, ReadError> {
     })
 }
 
-/// Line of the comment and number of disks of every frame.
+/// Line index of the comment and number of disks of every frame.
 fn frames(source: &Source) -> Result<Vec<(usize, usize)>, ReadError> {
     let mut frames = Vec::new();
     let mut line = 0;

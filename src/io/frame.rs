@@ -1,11 +1,11 @@
-//! [`Frame`]: which of the packings in one file.
+//! [`Frame`]: selects a packing of a file with several frames.
 
-/// Which of the packings in one file.
+/// Selects a packing of a file with several frames.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Frame {
     /// The last one.
     #[default]
     Last,
-    /// By position in the file, from 0.
+    /// By index in the file, from 0.
     Index(usize),
 }

@@ -1,4 +1,4 @@
-//! LAMMPS data files of `atom_style sphere` (from `write_data`, or ours), to a [`Packing`].
+//! Reads LAMMPS data files of `atom_style sphere` (from `write_data` or from jamscope) to a [`Packing`].
 //!
 //! ```text
 //! free text
@@ -15,11 +15,11 @@
 //! 2 1 1.4 1.0 2.1 2.0 0.0
 //! ```
 //!
-//! Columns of `Atoms`: id, type, diameter \[length\], density, x, y, z \[length\] and, if given, three image flags, which
-//! are counted and left aside. Another style named after `#` is refused; a file that names none is taken as `sphere`,
-//! and then types must be those announced, densities positive. For D = 2 z must be 0. A data file does not say which
-//! directions are periodic: all are, which is LAMMPS's own default. Other sections are passed over. A header line or a
-//! section that stands twice is refused: LAMMPS would take the last. Disks come in ascending order of their ids.
+//! Columns of `Atoms`: id, type, diameter \[length\], density, x, y, z \[length\] and optionally three image flags,
+//! which are ignored. A style other than `sphere` after `#` is refused. Without a style `sphere` is assumed, and then
+//! types must be within the announced number and densities positive. For D = 2 z must be 0. A data file does not
+//! contain the periodicity: all directions are periodic, the default of LAMMPS. Other sections are skipped. Duplicate
+//! header lines and sections are refused, where LAMMPS would use the last. Disks are in ascending order of their ids.
 //!
 //! # Source
 //! LAMMPS manual, commands `read_data` and `write_data`.
@@ -35,15 +35,15 @@ const COLUMN_COUNTS: [usize; 2] = [7, 10];
 /// Names of the sides of the box.
 const SIDES: [&str; 3] = ["xlo xhi", "ylo yhi", "zlo zhi"];
 
-/// Whether a line of a data file opens a section: these start with a letter, all other lines with a number.
+/// Whether a line of a data file starts a section: these begin with a letter, all other lines with a number.
 pub(super) fn opens_section(line: &str) -> bool {
     line.trim_start().starts_with(|c: char| c.is_ascii_alphabetic())
 }
 
-/// Reads the one frame there is.
+/// Reads the only frame.
 pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Packing<D>, ReadError> {
     source.frame(frame, 1)?;
-    // The first line is free text and may look like anything.
+    // The first line is free text and may resemble anything.
     let sections: Vec<usize> = (1..source.lines.len()).filter(|&line| opens_section(source.lines[line])).collect();
     let header_end = sections.first().copied().unwrap_or(source.lines.len());
     let header = Header::<D>::new(source, header_end)?;
@@ -54,7 +54,7 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
         }
     }
     let Some(place) = names.iter().position(|name| name == "Atoms") else {
-        // Not `missing`: a file cut before its first disk ends up here.
+        // Not `missing`: a file cut before its first disk also ends here.
         return Err(source.truncated(source.lines.len(), "disks of section Atoms", header.count, 0));
     };
     let start = sections[place];
@@ -108,7 +108,7 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
     source.packing(header.domain, &disks, true)
 }
 
-/// What stands before the first section.
+/// The lines before the first section.
 struct Header<const D: usize> {
     count: usize,
     type_count: Option<u64>,
@@ -171,7 +171,7 @@ impl<const D: usize> Header<D> {
     }
 }
 
-/// What a header line is about: its words after the last number.
+/// The keyword of a header line: its words after the last number.
 fn keyword(values: &[&str]) -> String {
     let start = values.iter().rposition(|word| !word.starts_with(|c: char| c.is_ascii_alphabetic()));
     values[start.map_or(0, |last| last + 1)..].join(" ")

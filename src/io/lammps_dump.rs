@@ -1,4 +1,4 @@
-//! LAMMPS text dumps (`dump custom`), to a [`Packing`].
+//! Reads LAMMPS text dumps (`dump custom`) to a [`Packing`].
 //!
 //! ```text
 //! ITEM: TIMESTEP
@@ -14,20 +14,20 @@
 //! 2 2.1 2.0 0.0 0.7
 //! ```
 //!
-//! Needed: `id`, `radius` or `diameter` (the radius goes first), and a position in one of four kinds. Where several kinds
-//! are complete the first of this list is taken:
+//! Required: `id`, `radius` or `diameter` (`radius` has precedence), and a position in one of four forms. If several
+//! forms are complete, the first of this list is used:
 //!
 //! | columns | position |
 //! |---|---|
-//! | `x y z` | as it stands |
-//! | `xu yu zu` | as it stands; unwrapped, so perhaps outside the box, which the nearest image takes care of |
+//! | `x y z` | the value |
+//! | `xu yu zu` | the value; unwrapped, so possibly outside the box, which nearest images take into account |
 //! | `xs ys zs`, `xsu ysu zsu` | lower end of the box + value × side |
 //!
-//! For D = 2 no z is needed, and one that is there must be 0. Other columns are ignored. LAMMPS writes six digits unless
-//! told otherwise (`dump_modify format float %.17g`). Disks come in ascending order of their ids. An item that stands twice in
-//! a frame is refused.
+//! For D = 2 z is not required, and must be 0 if given. Other columns are ignored. LAMMPS writes six digits by default
+//! (see `dump_modify format float %.17g`). Disks are in ascending order of their ids. Duplicate items in a frame are
+//! refused.
 //!
-//! A box that is not periodic in the directions of the packing is refused, as a dump does not tell its walls.
+//! A box that is not periodic in the directions of the packing is refused, because a dump does not contain its walls.
 //!
 //! # Source
 //! LAMMPS manual, commands `dump` and `dump_modify`.
@@ -37,11 +37,11 @@ use crate::io::read_error::ReadError;
 use crate::io::source::{Disk, Source};
 use crate::packing::{Domain, Packing};
 
-/// The kinds of position, the one preferred first, and whether they are fractions of the box.
+/// The forms of a position, in order of preference, and whether they are fractions of the box.
 const KINDS: [([&str; 3], bool); 4] =
     [(["x", "y", "z"], false), (["xu", "yu", "zu"], false), (["xs", "ys", "zs"], true), (["xsu", "ysu", "zsu"], true)];
 
-/// Largest |z| / height at which a scaled z counts as 0 in two dimensions: six digits are what LAMMPS writes by default.
+/// Largest |z| / height at which a scaled z counts as 0 in two dimensions; LAMMPS writes six digits by default.
 const SCALED_ZERO: f64 = 1e-5;
 
 /// Reads one frame.
@@ -78,7 +78,7 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
     source.packing(domain, &disks, true)
 }
 
-/// What has been read of a frame.
+/// The items of a frame read so far.
 struct Parts<const D: usize> {
     count: Option<usize>,
     bounds: Option<Bounds<D>>,
@@ -92,7 +92,7 @@ impl<const D: usize> Default for Parts<D> {
 }
 
 impl<const D: usize> Parts<D> {
-    /// Takes in the item whose title is in line `title` and whose values are in the lines after it, before `end`.
+    /// Reads the item whose title is at line `title` and whose values are in the lines after it, before `end`.
     fn take(&mut self, source: &Source, item: &str, title: usize, end: usize) -> Result<(), ReadError> {
         let first = title + 1;
         if item == "NUMBER OF ATOMS" {
@@ -157,7 +157,7 @@ fn bounds<const D: usize>(source: &Source, flags: &str, title: usize, end: usize
     Ok((Domain::Periodic { corner, lengths }, sides))
 }
 
-/// Refuses what stands after the last value of an item.
+/// Refuses lines after the last value of an item.
 fn expect_end(source: &Source, item: &str, first: usize, end: usize) -> Result<(), ReadError> {
     match (first..end).find(|&line| !source.lines[line].trim().is_empty()) {
         Some(line) => Err(source.bad(line, item, source.lines[line], "no further value")),
@@ -165,7 +165,7 @@ fn expect_end(source: &Source, item: &str, first: usize, end: usize) -> Result<(
     }
 }
 
-/// Where the columns stand in a row.
+/// Indices of the columns in a row.
 struct Columns {
     total: usize,
     id: usize,
@@ -173,7 +173,7 @@ struct Columns {
     position: Position,
 }
 
-/// The columns of the kind of position taken.
+/// The columns of the selected form of the position.
 struct Position {
     names: [&'static str; 3],
     columns: [Option<usize>; 3],
@@ -196,7 +196,7 @@ impl Columns {
             (None, None) => return Err(missing("column radius or diameter")),
         };
         let mut kinds = KINDS.iter().map(|&(names, scaled)| Position { names, columns: names.map(find), scaled });
-        // Complete in x and y is enough for two dimensions; a missing z is reported below for three.
+        // x and y are sufficient in two dimensions; a missing z in three is reported below.
         let Some(position) = kinds.find(|kind| kind.columns[0].is_some() && kind.columns[1].is_some()) else {
             return Err(missing("columns x and y (or xu yu, xs ys, xsu ysu)"));
         };

@@ -1,4 +1,4 @@
-//! Packings in files: [`read_packing`] tells the format from the content, [`write_packing`] writes extended XYZ,
+//! Packings in files: [`read_packing`] recognises the format by the content, [`write_packing`] writes extended XYZ,
 //! [`write_lammps_data`] LAMMPS data.
 //!
 //! | format | read | written | radii from |
@@ -7,12 +7,11 @@
 //! | LAMMPS data, `atom_style sphere` | yes | yes, without corrections | column `diameter` |
 //! | LAMMPS text dump | yes | no | column `radius` or `diameter` |
 //!
-//! What a file does not say is an error and not a guess: radii, the sides of the box, which directions are periodic. What
-//! it says twice is refused as well: a key, a header line, a section, an item of a frame. So are coordinates a million of the
-//! largest radii away: a number keeps 16 digits, and six of them are lost there.
-//! Each [`ReadError`] names the file, the line, the field and what stood there. A file must end with a line break, as
-//! all these programs write it: without one, a file cut in the middle of its last number could not be told from a
-//! whole one.
+//! Missing information is an error and never guessed: radii, sides of the box, periodic directions. Duplicate
+//! information is also refused: a key, a header line, a section, an item of a frame. So are coordinates beyond a
+//! million of the largest radii: a number has 16 digits, and six of them are lost there. Each [`ReadError`] contains
+//! the file, the line, the field and the text found. A file must end with a line break, as all these programs write it.
+//! Otherwise a file cut in the middle of its last number could not be distinguished from a complete one.
 
 pub mod atomic;
 mod comment_line;
@@ -47,18 +46,17 @@ enum Format {
     LammpsDump,
 }
 
-/// Reads a packing: extended XYZ, LAMMPS data or LAMMPS text dump, told apart by their content. Of several frames the
-/// last is taken.
+/// Reads a packing from extended XYZ, LAMMPS data or a LAMMPS text dump, recognised by the content. Of several frames
+/// the last is read.
 ///
-/// Disks are in the order of the file for extended XYZ, in ascending order of their ids for LAMMPS (whose own order
-/// changes from one output to the next); ids become [`Packing::labels`]. Positions are kept as they stand, also outside
-/// the box.
+/// Disks are in the order of the file for extended XYZ, and in ascending order of their ids for LAMMPS (whose own order
+/// changes between outputs). Ids become [`Packing::labels`]. Positions are not wrapped into the box.
 ///
 /// # Errors
-/// [`ReadError`] names the file, the line, the field and the value.
+/// [`ReadError`] with the file, the line, the field and the value.
 ///
 /// # Cost
-/// The whole file is held in memory, once.
+/// The whole file is in memory, once.
 ///
 /// # Example
 /// ```
@@ -70,10 +68,10 @@ pub fn read_packing<const D: usize>(path: impl AsRef<Path>) -> Result<Packing<D>
     read_frame(path, Frame::Last)
 }
 
-/// As [`read_packing`], one frame of the caller's choice.
+/// Like [`read_packing`], for a given frame.
 ///
 /// # Errors
-/// As [`read_packing`], and [`ReadError::NoSuchFrame`].
+/// See [`read_packing`]; also [`ReadError::NoSuchFrame`].
 pub fn read_frame<const D: usize>(path: impl AsRef<Path>, frame: Frame) -> Result<Packing<D>, ReadError> {
     const { assert!(D == 2 || D == 3, "packings have two or three dimensions") };
     with_source(path.as_ref(), |source, format| match format {
@@ -83,11 +81,11 @@ pub fn read_frame<const D: usize>(path: impl AsRef<Path>, frame: Frame) -> Resul
     })
 }
 
-/// The key-value pairs that go with the packing [`read_packing`] would read: those of the comment line of extended XYZ, in
-/// its order; other formats have none.
+/// The key-value pairs of the packing that [`read_packing`] would read: those of the comment line of extended XYZ, in
+/// its order; none in other formats.
 ///
 /// # Errors
-/// [`ReadError`] as of [`read_packing`], for the comment line alone.
+/// [`ReadError`] as for [`read_packing`], for the comment line alone.
 ///
 /// # Example
 /// ```
@@ -102,7 +100,7 @@ pub fn read_properties(path: impl AsRef<Path>) -> Result<Vec<(String, String)>, 
     })
 }
 
-/// Hands over a file with its format.
+/// Opens a file, recognises its format and calls `read`.
 fn with_source<T>(path: &Path, read: impl FnOnce(&Source, Format) -> Result<T, ReadError>) -> Result<T, ReadError> {
     let bytes = std::fs::read(path).map_err(|source| ReadError::Io { path: path.into(), source })?;
     let text = std::str::from_utf8(&bytes).map_err(|error| ReadError::NotText {
@@ -122,13 +120,13 @@ fn with_source<T>(path: &Path, read: impl FnOnce(&Source, Format) -> Result<T, R
     read(&source, format)
 }
 
-/// The format of a file by its first lines; `first` is the first that is not blank.
+/// The format of a file, from its first lines; `first` is the first that is not blank.
 fn recognise(lines: &[&str], first: &str) -> Option<Format> {
     if first.starts_with("ITEM:") {
         return Some(Format::LammpsDump);
     }
     let is_count = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    // A data file opens with a line of free text, perhaps a number, but never goes on with one that has `=` in it.
+    // A data file begins with a line of free text, possibly a number, but its next line never contains `=`.
     if is_count(first.trim()) && lines.get(1).is_none_or(|comment| comment.contains('=')) {
         return Some(Format::ExtendedXyz);
     }

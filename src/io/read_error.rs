@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::packing::PackingError;
 
-/// Why a file was not read as a packing. Lines count from 1; long values are shortened.
+/// Why a file was not read as a packing. Line numbers start at 1; long values are shortened.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
@@ -13,16 +13,16 @@ pub enum ReadError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: std::io::Error,
     },
-    /// Nothing but blank lines.
+    /// The file contains only blank lines.
     #[error("{path}: the file is empty")]
     Empty {
         /// The file.
         path: PathBuf,
     },
-    /// Not UTF-8, so none of the text formats.
+    /// The file is not UTF-8 text.
     #[error("{path}, line {line}: not text; binary and compressed files are not read")]
     NotText {
         /// The file.
@@ -30,7 +30,7 @@ pub enum ReadError {
         /// Line, from 1.
         line: usize,
     },
-    /// None of the formats known.
+    /// The format is unknown.
     #[error(
         "{path}: no known format; it starts with `{first_line}`. Known are extended XYZ (first line: the number of disks), LAMMPS data (a line `N atoms` before the sections) and LAMMPS text dump (first line: `ITEM: ...`)"
     )]
@@ -40,7 +40,7 @@ pub enum ReadError {
         /// Its first line that is not blank.
         first_line: String,
     },
-    /// No line break at the end.
+    /// There is no line break at the end.
     #[error(
         "{path}, line {line}: the last line has no line break, so the file may have been cut; add one if it is complete"
     )]
@@ -55,26 +55,26 @@ pub enum ReadError {
     Truncated {
         /// The file.
         path: PathBuf,
-        /// The last line there is, from 1.
+        /// The last line, from 1.
         line: usize,
-        /// What was being counted.
+        /// The counted items.
         what: &'static str,
         /// Number announced.
         expected: usize,
         /// Number found.
         found: usize,
     },
-    /// More disks than announced.
+    /// There are more disks than announced.
     #[error("{path}, line {line}: a disk more than the {expected} announced")]
     TooManyRows {
         /// The file.
         path: PathBuf,
-        /// The first line too many, from 1.
+        /// The first additional line, from 1.
         line: usize,
         /// Number announced.
         expected: usize,
     },
-    /// A row with more or fewer values than there are columns.
+    /// The number of values of a row differs from that of the columns.
     #[error("{path}, line {line}: {found} values, expected {expected}")]
     ColumnCount {
         /// The file.
@@ -86,7 +86,7 @@ pub enum ReadError {
         /// Number found.
         found: usize,
     },
-    /// A value that is not what it must be.
+    /// A value is invalid.
     #[error("{path}, line {line}: {field} is `{value}`, expected {expected}")]
     Value {
         /// The file.
@@ -97,36 +97,36 @@ pub enum ReadError {
         field: String,
         /// The text found.
         value: String,
-        /// What it must be.
+        /// A valid value.
         expected: &'static str,
     },
-    /// Something the packing cannot be known without.
+    /// Required information is missing.
     #[error("{path}, line {line}: {field} is missing; found: {found}")]
     Missing {
         /// The file.
         path: PathBuf,
-        /// Line where it belongs, from 1.
+        /// Expected line, from 1.
         line: usize,
         /// The column, key or header line.
         field: &'static str,
-        /// What there is instead.
+        /// What was found instead.
         found: String,
     },
-    /// An id, column, key, header line, section or item that stands twice.
+    /// A duplicate id, column, key, header line, section or item.
     #[error("{path}, line {line}: {field} `{value}` stands already in line {first_line}")]
     Repeated {
         /// The file.
         path: PathBuf,
         /// The later line, from 1.
         line: usize,
-        /// What is repeated.
+        /// The repeated field.
         field: &'static str,
         /// Its value.
         value: String,
         /// The earlier line, from 1.
         first_line: usize,
     },
-    /// A low part of a coordinate that is too large for one.
+    /// The low part of a coordinate is too large.
     #[error(
         "{path}, line {line}: {field} {axis} is `{value}`, expected a low part of the coordinate {coordinate:?}: below {:e}, the spacing of numbers there", spacing(*.coordinate)
     )]
@@ -141,10 +141,10 @@ pub enum ReadError {
         axis: char,
         /// The text found.
         value: String,
-        /// The coordinate it belongs to \[length\].
+        /// The coordinate \[length\].
         coordinate: f64,
     },
-    /// A coordinate so far out that its rounding is not small.
+    /// A coordinate is so large that its rounding is not negligible.
     #[error(
         "{path}, line {line}: {field} is {value:?}, beyond {limit:?}, a million times {unit}: six of its 16 digits are lost there, and overlaps with them"
     )]
@@ -157,12 +157,12 @@ pub enum ReadError {
         field: String,
         /// Its value \[length\].
         value: f64,
-        /// Largest value on either side of the origin \[length\].
+        /// Largest absolute value \[length\].
         limit: f64,
-        /// The length it is a million times of.
+        /// The length of which the limit is a million times.
         unit: &'static str,
     },
-    /// A box that is not a rectangle along the axes.
+    /// The box is not a rectangle along the axes.
     #[error(
         "{path}, line {line}: the box is tilted ({field} is `{value}`, not 0); only rectangular boxes are supported"
     )]
@@ -176,7 +176,7 @@ pub enum ReadError {
         /// Its value.
         value: String,
     },
-    /// A direction that is not periodic while others are, or a LAMMPS box with walls or free sides.
+    /// A direction is not periodic while others are, or a LAMMPS box has walls or free sides.
     #[error(
         "{path}, line {line}: {field} is `{value}`, so axis {axis} is not periodic; a packing is periodic in all its directions or lies in the open plane (extended XYZ with pbc=\"F F F\")"
     )]
@@ -192,51 +192,51 @@ pub enum ReadError {
         /// The axis: x, y or z.
         axis: char,
     },
-    /// A packing of another dimension.
+    /// The packing has another dimension.
     #[error("{path}, line {line}: {field} is `{value}`: this is not a packing in {dimension} dimensions")]
     Dimension {
         /// The file.
         path: PathBuf,
         /// Line, from 1.
         line: usize,
-        /// What shows it.
+        /// The field that shows it.
         field: &'static str,
         /// Its value.
         value: String,
-        /// The dimension asked for.
+        /// The dimension requested.
         dimension: usize,
     },
-    /// A LAMMPS data file of another atom style.
+    /// A LAMMPS data file has another atom style.
     #[error("{path}, line {line}: atom style is `{style}`, only `sphere` has diameters of disks that can be read")]
     AtomStyle {
         /// The file.
         path: PathBuf,
         /// Line, from 1.
         line: usize,
-        /// The style named.
+        /// The style given.
         style: String,
     },
-    /// A frame beyond the last.
+    /// The frame does not exist.
     #[error("{path}: no frame {frame} (counted from 0), the file has {frame_count}")]
     NoSuchFrame {
         /// The file.
         path: PathBuf,
-        /// The frame asked for, from 0.
+        /// The frame requested, from 0.
         frame: usize,
         /// Number of frames.
         frame_count: usize,
     },
-    /// The disks do not make a packing.
+    /// The disks are invalid.
     #[error("{path}: {source}")]
     Packing {
         /// The file.
         path: PathBuf,
-        /// What is wrong with them.
+        /// The problem.
         source: PackingError,
     },
 }
 
-/// From a number to the next one that is larger in size.
+/// The distance from a number to the next larger one in absolute value.
 pub(super) fn spacing(number: f64) -> f64 {
     number.abs().next_up() - number.abs()
 }

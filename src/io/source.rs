@@ -1,4 +1,4 @@
-//! The lines of a file and their values, with errors that say where they stood.
+//! The lines of a file and their values, with errors that contain the position.
 
 use std::path::Path;
 
@@ -10,26 +10,27 @@ use crate::vector::Vector;
 /// Names of the axes.
 pub(super) const AXES: [char; 3] = ['x', 'y', 'z'];
 
-/// Largest coordinate over the largest radius, and corner of a box over its side \[1\].
+/// Largest coordinate over the largest radius, and largest corner of a box over its side \[1\].
 ///
-/// The rounding of such a coordinate is 2·10⁻¹⁰ radii, overlaps at the lowest pressures of the study are 10⁻⁵ radii. No
-/// packing near the origin comes so far: a box of a million radii has room for 10¹¹ disks, more than there are indices.
+/// The rounding of such a coordinate is 2·10⁻¹⁰ radii; overlaps at the lowest pressures of the study are 10⁻⁵ radii. No
+/// packing near the origin extends so far: a box of a million radii has space for 10¹¹ disks, more than there are
+/// indices.
 const FARTHEST: f64 = 1e6;
 
-/// A file cut into lines. Lines are counted from 0 here and from 1 in errors.
+/// A file split into lines. Line indices start at 0 here and at 1 in errors.
 pub(super) struct Source<'a> {
     pub path: &'a Path,
     pub lines: Vec<&'a str>,
 }
 
-/// The values of one line, parted by blanks.
+/// The values of one line, separated by blanks.
 pub(super) struct Row<'a> {
     source: &'a Source<'a>,
     line: usize,
     pub values: Vec<&'a str>,
 }
 
-/// A disk as read, with the line it stood in.
+/// A disk with its line.
 pub(super) struct Disk<const D: usize> {
     pub label: u64,
     pub line: usize,
@@ -59,7 +60,7 @@ impl<'a> Source<'a> {
         Row { source: self, line, values: self.lines[line].split_ascii_whitespace().collect() }
     }
 
-    /// A line up to its comment, parted by blanks.
+    /// A line without its comment, separated by blanks.
     pub fn row_without_comment(&'a self, line: usize) -> Row<'a> {
         let text = self.lines[line].split('#').next().unwrap_or("");
         Row { source: self, line, values: text.split_ascii_whitespace().collect() }
@@ -106,7 +107,7 @@ impl<'a> Source<'a> {
         ReadError::Dimension { path: self.path.into(), line: line + 1, field, value, dimension }
     }
 
-    /// A finite number.
+    /// Parses a finite number.
     pub fn number(&self, line: usize, field: &str, value: &str) -> Result<f64, ReadError> {
         match value.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
@@ -114,7 +115,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// A positive finite number.
+    /// Parses a positive finite number.
     pub fn positive(&self, line: usize, field: &str, value: &str) -> Result<f64, ReadError> {
         match value.parse::<f64>() {
             Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
@@ -122,12 +123,12 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// A whole number, 0 or more.
+    /// Parses a non-negative integer.
     pub fn whole(&self, line: usize, field: &str, value: &str) -> Result<u64, ReadError> {
         value.parse().map_err(|_| self.bad(line, field, value, "a whole number, 0 or more"))
     }
 
-    /// The two ends of one side of the box; the lower end and the length of the side.
+    /// Parses the two ends of a side of the box; returns the lower end and the length of the side.
     pub fn side(&self, line: usize, field: &str, low: &str, high: &str) -> Result<(f64, f64), ReadError> {
         let start = self.number(line, field, low)?;
         let length = self.number(line, field, high)? - start;
@@ -138,7 +139,7 @@ impl<'a> Source<'a> {
         Err(self.bad(line, field, &format!("{low} {high}"), "a lower end below the upper one"))
     }
 
-    /// Position of the frame asked for among `count`.
+    /// Index of the requested frame among `count`.
     pub fn frame(&self, frame: Frame, count: usize) -> Result<usize, ReadError> {
         let index = match frame {
             Frame::Last => count.saturating_sub(1),
@@ -179,7 +180,7 @@ impl<'a> Source<'a> {
         Err(ReadError::TooFar { path, line: line + 1, field, value, limit, unit: unit.1 })
     }
 
-    /// The packing of disks in their order.
+    /// The packing of disks in the given order.
     pub fn packing<const D: usize>(
         &self,
         domain: Domain<D>,
@@ -198,7 +199,7 @@ impl<'a> Source<'a> {
         packing.map_err(|source| ReadError::Packing { path: self.path.into(), source })
     }
 
-    /// The places of the disks in ascending order of their labels, none of which may stand twice.
+    /// The indices of the disks in ascending order of their labels, which must be unique.
     pub fn order_by_id<const D: usize>(&self, disks: &[Disk<D>]) -> Result<Vec<usize>, ReadError> {
         let mut order: Vec<usize> = (0..disks.len()).collect();
         order.sort_by_key(|&place| disks[place].label);

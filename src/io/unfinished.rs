@@ -1,18 +1,18 @@
 //! Temporary files of processes that ended before their file was complete: [`remove_unfinished`].
 //!
-//! A temporary file `.NAMEXXXXXX.part` is locked by the process that writes it, and the system releases the lock when that
-//! process ends. So a file that can be locked belongs to nobody.
+//! A temporary file `.NAMEXXXXXX.part` is locked by the process that writes it, and the system releases the lock when
+//! that process ends. So a file that can be locked is abandoned.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-/// Letters and digits between the name and the ending.
+/// Number of letters and digits between the name and the ending.
 const RANDOM_LENGTH: usize = 6;
 
 /// The ending.
 const ENDING: &str = ".part";
 
-/// The name of the file that a temporary file stands for.
+/// The final name of a temporary file.
 pub(super) fn final_name(temporary: &str) -> Option<&str> {
     let stem = temporary.strip_prefix('.')?.strip_suffix(ENDING)?;
     let at = stem.len().checked_sub(RANDOM_LENGTH).filter(|&at| at > 0 && stem.is_char_boundary(at))?;
@@ -20,9 +20,9 @@ pub(super) fn final_name(temporary: &str) -> Option<&str> {
     random.bytes().all(|byte| byte.is_ascii_alphanumeric()).then_some(name)
 }
 
-/// A new temporary file beside `name` in `folder`, locked until it is closed.
+/// Creates a temporary file for `name` in `folder`, locked until it is closed.
 ///
-/// Where the system has no locks the file is not locked, and [`remove_unfinished`] leaves it alone.
+/// If the system does not support locks, the file is not locked, and [`remove_unfinished`] does not remove it.
 pub(super) fn temporary(folder: &Path, name: &std::ffi::OsStr) -> std::io::Result<tempfile::NamedTempFile> {
     let mut prefix = std::ffi::OsString::from(".");
     prefix.push(name);
@@ -30,13 +30,13 @@ pub(super) fn temporary(folder: &Path, name: &std::ffi::OsStr) -> std::io::Resul
     builder.prefix(&prefix).suffix(ENDING).rand_bytes(RANDOM_LENGTH);
     #[cfg(unix)]
     {
-        // As any new file, less the umask; the crate's own default would keep other users of a group from reading it.
+        // The permissions of any new file, by the umask; the default of the crate would exclude other users of a group.
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     loop {
         let file = builder.tempfile_in(folder)?;
-        // Between the two lines above and below, a cleaning process may have taken it for one that belongs to nobody.
+        // Between creation and lock, a process that removes abandoned files may have locked it.
         match file.as_file().try_lock() {
             Err(std::fs::TryLockError::WouldBlock) => {}
             _ if !file.path().exists() => {}
@@ -45,21 +45,23 @@ pub(super) fn temporary(folder: &Path, name: &std::ffi::OsStr) -> std::io::Resul
     }
 }
 
-/// Whether [`write_atomically`](crate::io::write_atomically) could make a file of this name; leaves nothing behind.
+/// Checks whether [`write_atomically`](crate::io::write_atomically) could create a file with this name; leaves no file
+/// behind.
 ///
 /// # Errors
-/// What the system says: no permission, no room, a name too long.
+/// The error of the system: no permission, no space, a name that is too long.
 pub fn try_name(folder: &Path, name: &std::ffi::OsStr) -> std::io::Result<()> {
     temporary(folder, name)?.close()
 }
 
-/// Removes the temporary files in `folder` that belong to no process; `known` tells whether the file that one was to become is a
-/// file of the caller's.
+/// Removes the abandoned temporary files in `folder`; `known` decides whether a final name is one of the caller's
+/// files.
 ///
-/// Files that are still written are left, and all where the system has no locks. Gives what was removed.
+/// Files still being written are kept, and so are all files if the system does not support locks. Returns the removed
+/// files.
 ///
 /// # Errors
-/// A folder that cannot be read. A file that cannot be removed is left.
+/// A folder that cannot be read. A file that cannot be removed is kept.
 pub fn remove_unfinished(folder: &Path, known: impl Fn(&str) -> bool) -> std::io::Result<Vec<PathBuf>> {
     let mut removed = Vec::new();
     for entry in std::fs::read_dir(folder)? {
@@ -69,7 +71,7 @@ pub fn remove_unfinished(folder: &Path, known: impl Fn(&str) -> bool) -> std::io
         if ours && entry.file_type()?.is_file() {
             let path = entry.path();
             let free = File::options().write(true).open(&path).is_ok_and(|file| {
-                // Removed while locked: who has just made it sees that it is gone and makes another one.
+                // Removed while locked: a process that has just created it notices the removal and creates another one.
                 file.try_lock().is_ok() && std::fs::remove_file(&path).is_ok()
             });
             removed.extend(free.then_some(path));

@@ -7,22 +7,23 @@ use std::path::Path;
 use crate::io::atomic::{WriteError, write_atomically};
 use crate::packing::{Domain, Packing};
 
-/// Volume of a ball of radius 1 \[1\]: `atom_style sphere` has the density of balls, in two dimensions too.
+/// Volume of a ball of radius 1 \[1\]: `atom_style sphere` uses the density of balls, also in two dimensions.
 const UNIT_BALL: f64 = 4.0 / 3.0 * std::f64::consts::PI;
 
 /// Writes a periodic packing as LAMMPS data, `atom_style sphere`, which `read_data` of LAMMPS and
 /// [`read_packing`](crate::io::read_packing) read.
 ///
-/// One atom type a radius, from the smallest on; densities that make every mass 1, as in the model. Numbers are the shortest
-/// decimals that give the same `f64` again. Ids are the labels, where these are positive and no two alike, else 1, 2, 3, … in the
-/// order of the packing; who reads sorts by id. For D = 2 a coordinate z = 0 and a height from −0.5 to 0.5 are added.
+/// One atom type per radius, in ascending order; densities for which every mass is 1, as in the model. Numbers are the
+/// shortest decimals that reproduce the `f64`. Ids are the labels if these are positive and unique, otherwise 1, 2, 3,
+/// … in the order of the packing; readers sort by id. For D = 2 a coordinate z = 0 and a height from −0.5 to 0.5 are
+/// added.
 ///
-/// Not in such a file: corrections, so that overlaps are off by the rounding of coordinates; and sides of the box, which are
-/// differences of its ends: to the bit if the corner is the origin, else to a rounding of the larger end.
+/// The file does not contain corrections, so overlaps change by the rounding of coordinates. It contains the ends of
+/// the box, so sides are exact if the corner is the origin, and otherwise exact to the rounding of the larger end.
 ///
 /// # Errors
-/// [`WriteError`] names the file and what is wrong, and nothing is written then: a packing in the open plane, with held disks or
-/// with sites is another one without them, and the format has no place for these.
+/// [`WriteError`] with the file and the problem; nothing is written then. A packing in the open plane, with held disks
+/// or with sites is refused, because the format cannot contain these.
 ///
 /// # Example
 /// ```
@@ -51,7 +52,7 @@ pub fn write_lammps_data<const D: usize>(path: impl AsRef<Path>, packing: &Packi
     if (0..D).any(|axis| !ends(axis).1.is_finite() || ends(axis).1 <= ends(axis).0) {
         return refused("a box whose end is not a number, or its corner");
     }
-    // Beyond this LAMMPS has no type or mass that is a number.
+    // Outside this range LAMMPS has no valid type or mass.
     if packing.radii().iter().any(|&radius| !density(radius).is_normal()) {
         return refused("a radius whose cube is no number");
     }

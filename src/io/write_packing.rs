@@ -1,4 +1,4 @@
-//! [`write_packing`]: a packing, with columns and key-value pairs of the caller, as extended XYZ.
+//! [`write_packing`]: writes a packing, with columns and key-value pairs of the caller, as extended XYZ.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -7,42 +7,42 @@ use std::path::Path;
 use crate::io::atomic::{WriteError, write_atomically};
 use crate::packing::{Domain, Packing};
 
-/// Columns that [`write_packing`] writes itself or to which programs give a meaning of their own (Z: atomic number).
+/// Columns that [`write_packing`] itself writes, or that have a meaning in other programs (Z: atomic number).
 const RESERVED_COLUMNS: [&str; 10] =
     ["species", "pos", "radius", "id", "label", "held", "correction", "site", "site_correction", "Z"];
 
-/// Keys that [`write_packing`] writes itself.
+/// Keys that [`write_packing`] itself writes.
 const RESERVED_KEYS: [&str; 5] = ["Lattice", "Origin", "pbc", "Properties", "dimension"];
 
-/// A further column of numbers, one row a disk: a displacement, a force.
+/// An additional column of numbers, one row per disk: a displacement, a force.
 #[derive(Debug, Clone, Copy)]
 pub struct Column<'a> {
     /// Its name: letters, digits, `_`, `-` and `.`.
     pub name: &'a str,
-    /// Number of values a disk, 1 or more.
+    /// Number of values per disk, at least 1.
     pub width: usize,
     /// The values, disk by disk \[the caller's unit\].
     pub values: &'a [f64],
 }
 
-/// Writes a packing as extended XYZ, which ASE and OVITO open and [`read_packing`](crate::io::read_packing) reads back
+/// Writes a packing as extended XYZ, which ASE and OVITO can open and [`read_packing`](crate::io::read_packing) reads
 /// to the same bits.
 ///
-/// Numbers are the shortest decimals that give the same `f64` again. Columns `species pos radius id`, then `held` if a
-/// disk is held, `correction` if a centre has one, `site` if disks have sites (`site_correction` if one of those has a low
-/// part), then `columns`. Labels that repeat (the periodic images of a rim) are
-/// written as `label`, as programs expect an `id` to be unique. For D = 2 a coordinate z = 0 and a lattice of height 1
-/// are added. In the open plane there is no lattice and `pbc="F F F"`.
+/// Numbers are the shortest decimals that reproduce the `f64`. The columns are `species pos radius id`, then `held` if
+/// a disk is held, `correction` if a centre has one, `site` if disks have sites (`site_correction` if one of those has
+/// a low part), then `columns`. Labels that repeat (the periodic images of a rim) are written as `label`, since
+/// programs expect a unique `id`. For D = 2 a coordinate z = 0 and a lattice of height 1 are added. In the open plane
+/// there is no lattice and `pbc="F F F"`.
 ///
 /// `properties` are key-value pairs for the comment line: law, seed, provenance.
 ///
 /// # Shape
 /// Every column has `packing.len() * width` values, disk by disk.
 ///
-/// Centres a million of the largest radii away, and such a corner of the box, are written, but the reader refuses them.
+/// Centres, or a corner of the box, beyond a million of the largest radii are written, but the reader refuses them.
 ///
 /// # Errors
-/// [`WriteError`] names the file and what is wrong; nothing is written then.
+/// [`WriteError`] with the file and the problem; nothing is written then.
 pub fn write_packing<const D: usize>(
     path: impl AsRef<Path>,
     packing: &Packing<D>,
@@ -123,7 +123,7 @@ fn write<const D: usize>(
     let mut line = String::new();
     for disk in 0..packing.len() {
         line.clear();
-        // X is ASE's element without a name; OVITO takes any word.
+        // X is ASE's symbol for an unknown element; OVITO accepts any word.
         line.push('X');
         numbers(&mut line, &packing.positions()[disk]);
         if D == 2 {
@@ -152,7 +152,7 @@ fn write<const D: usize>(
     Ok(())
 }
 
-/// Appends numbers that are read back to the same bits (NaN and infinities of the caller's columns by name).
+/// Appends numbers that are read to the same bits (NaN and infinities of the caller's columns by name).
 fn numbers(line: &mut String, values: &[f64]) {
     for value in values {
         write!(line, " {value:?}").expect("a String takes all that is written to it");
@@ -176,7 +176,7 @@ fn boundary<const D: usize>(domain: &Domain<D>) -> String {
     )
 }
 
-/// The value as it is, or in quotes where it would not be read back as one word.
+/// The value, quoted if it would not be read as one word.
 fn quoted(value: &str) -> String {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"_-+./:".contains(&byte);
     if !value.is_empty() && value.bytes().all(plain) {

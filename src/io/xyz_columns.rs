@@ -1,14 +1,14 @@
-//! The columns of extended XYZ by the key `Properties`, and what the rows hold in them.
+//! The columns of extended XYZ, from the key `Properties`, and their values in the rows.
 
 use crate::io::comment_line::CommentLine;
 use crate::io::read_error::{ReadError, spacing};
 use crate::io::source::{AXES, Disk, Row, Source, excerpt};
 use crate::vector::Vector;
 
-/// Largest number of values one property may have; far above any use, far below an overflow of their sum.
+/// Largest number of values of a property; far above any use, far below an overflow of their sum.
 const WIDTH_LIMIT: usize = 65_535;
 
-/// Where the columns stand in a row.
+/// Indices of the columns in a row.
 pub(super) struct Columns<const D: usize> {
     position: usize,
     position_width: usize,
@@ -23,7 +23,7 @@ pub(super) struct Columns<const D: usize> {
 }
 
 impl<const D: usize> Columns<D> {
-    /// From the key `Properties`.
+    /// Parses the key `Properties`.
     pub fn new(source: &Source, line: usize, comment: &CommentLine) -> Result<Self, ReadError> {
         let Some(properties) = comment.value("Properties") else {
             return Err(source.missing(line, "Properties", comment.keys()));
@@ -78,12 +78,12 @@ impl<const D: usize> Columns<D> {
         })
     }
 
-    /// Whether rows have labels of either kind.
+    /// Whether rows have labels or ids.
     pub fn has_labels(&self) -> bool {
         self.label.or(self.id).is_some()
     }
 
-    /// Whether labels are ids, no two alike.
+    /// Whether labels are ids, which are unique.
     pub fn has_ids(&self) -> bool {
         self.label.is_none() && self.id.is_some()
     }
@@ -114,14 +114,14 @@ impl<const D: usize> Columns<D> {
         flag(value).ok_or_else(|| source.bad(line, "held", value, "1 or T, 0 or F"))
     }
 
-    /// The low part of the centre of a disk; 0 where there is no such column.
+    /// The low part of the centre of a disk; 0 without such a column.
     pub fn correction(&self, source: &Source, row: &Row, disk: &Disk<D>) -> Result<Vector<D>, ReadError> {
         let low = self.vector(row, self.correction, "correction")?;
         self.check_low(source, row, (self.correction, "correction"), (disk.line, &disk.position, &low))?;
         Ok(low)
     }
 
-    /// The site of a disk and its low part, where there are sites.
+    /// The site of a disk and its low part, if there are sites.
     pub fn site(&self, source: &Source, row: &Row, line: usize) -> Result<Option<(Vector<D>, Vector<D>)>, ReadError> {
         if self.site.is_none() {
             return Ok(None);
@@ -132,7 +132,8 @@ impl<const D: usize> Columns<D> {
         Ok(Some((site, low)))
     }
 
-    /// Refuses a low part that is not below the spacing of numbers at its coordinate: what is written is half of it at most.
+    /// Refuses a low part that is not below the spacing of numbers at its coordinate; a written low part is at most
+    /// half of it.
     fn check_low(
         &self,
         source: &Source,
@@ -157,7 +158,7 @@ impl<const D: usize> Columns<D> {
         Ok(())
     }
 
-    /// The D values from a column on; nothing where there is no such column.
+    /// The D values from a column on; zero without such a column.
     fn vector(&self, row: &Row, start: Option<usize>, name: &str) -> Result<Vector<D>, ReadError> {
         let mut vector = [0.0; D];
         if let Some(column) = start {

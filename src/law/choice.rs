@@ -24,26 +24,26 @@ impl Default for LawChoice {
     }
 }
 
-/// A number of a law that makes no sense.
+/// An invalid parameter of a law.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LawError {
     /// The stiffness or energy scale must be positive and finite.
     #[error("the stiffness of the contact law is {stiffness}, not a positive number")]
     StiffnessNotPositive {
-        /// The value found.
+        /// The value given.
         stiffness: f64,
     },
     /// The energy must have a continuous force: α ≥ 2.
     #[error("the exponent of the contact law is {exponent}, not a number of at least 2")]
     ExponentTooSmall {
-        /// The value found.
+        /// The value given.
         exponent: f64,
     },
 }
 
 impl LawChoice {
-    /// What it is called in a scene.
+    /// Its name in a scene.
     pub fn name(&self) -> &'static str {
         match self {
             LawChoice::Hertzian(_) => "hertzian",
@@ -52,10 +52,10 @@ impl LawChoice {
         }
     }
 
-    /// Whether the numbers make sense.
+    /// Checks the parameters.
     ///
     /// # Errors
-    /// [`LawError`] names the number.
+    /// [`LawError`] with the parameter.
     pub fn check(&self) -> Result<(), LawError> {
         let (stiffness, exponent) = match self {
             LawChoice::Hertzian(law) => (law.stiffness, law.exponent()),
@@ -81,7 +81,7 @@ impl LawChoice {
     }
 }
 
-/// The law that was chosen. Bits are those of that law.
+/// Results have the same bits as those of the chosen law.
 impl PairLaw for LawChoice {
     #[inline(always)]
     fn resolve<V: LawVisitor>(&self, visitor: V) -> V::Output {

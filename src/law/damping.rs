@@ -1,4 +1,4 @@
-//! How a contact dissipates: a force −c_ij v_n along the contact, v_n the normal part of the relative velocity.
+//! Dissipation at a contact: a force −c_ij v_n along the contact, v_n the normal part of the relative velocity.
 //!
 //! | law | c_ij |
 //! |---|---|
@@ -6,7 +6,7 @@
 //! | [`ViscoelasticDamping`] on a Hertzian contact | γ m_eff √(δ R_ij), m_eff = 1/2, as LAMMPS `gran/hertz/history` computes it |
 //! | [`ViscoelasticDamping`] on a Hookean contact | γ m_eff, as LAMMPS `gran/hooke` computes it |
 //!
-//! The two lead to very different dynamics near jamming, so a scene names which one.
+//! The two lead to very different dynamics near jamming, so a scene specifies one of them.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +19,7 @@ pub fn effective_radius(first_radius: f64, second_radius: f64) -> f64 {
     first_radius * second_radius / (first_radius + second_radius)
 }
 
-/// Damping of a contact: a pure function of the overlap and of a coefficient made once a pair.
+/// Damping of a contact: a pure function of the overlap and of a coefficient computed once per pair.
 pub trait DampingLaw: Copy + std::fmt::Debug + Send + Sync {
     /// Coefficient of a pair.
     fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64;
@@ -27,7 +27,7 @@ pub trait DampingLaw: Copy + std::fmt::Debug + Send + Sync {
     fn damping(&self, coefficient: f64, overlap: f64) -> f64;
 }
 
-/// `c_ij = γ`, whatever the overlap.
+/// `c_ij = γ` for any overlap.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ConstantDamping {
@@ -83,7 +83,7 @@ impl DampingLaw for MassDamping {
     }
 }
 
-/// The damping of a contact as one type: what a [`DampingChoice`] is under a contact law.
+/// The damping of a contact as one type: a [`DampingChoice`] for a given contact law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ContactDamping {
     /// c_ij = γ.
@@ -145,8 +145,8 @@ impl DampingChoice {
     /// ```
     ///
     /// # Example
-    /// A contact of two small disks at p ≈ 10 has an overlap of about 2·10⁻³: viscoelastic damping of rate 500 lets it oscillate, constant
-    /// damping of that rate does not.
+    /// A contact of two small disks at p ≈ 10 has an overlap of about 2·10⁻³. With a rate of 500 it is underdamped for
+    /// viscoelastic damping and overdamped for constant damping.
     /// ```
     /// use jamscope::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
     ///

@@ -1,20 +1,20 @@
-//! Kernels over contacts, compiled for each contact law and each width of vectors, and started for the law and the processor there are.
+//! Kernels over contacts, compiled for each contact law and each vector width, and dispatched by law and processor.
 
 use pulp::{Simd, WithSimd};
 
 use crate::law::pair_law::{LawVisitor, PairLaw};
 use crate::processor;
 
-/// A kernel over contacts of a law, whatever that is.
+/// A kernel over contacts for any law.
 pub(crate) trait LawKernel {
-    /// What comes of it.
+    /// Its result.
     type Output;
 
-    /// Does the work with vectors of a width, under a law.
+    /// Runs with vectors of a given width, for a given law.
     fn run<S: Simd, L: PairLaw>(self, simd: S, law: &L) -> Self::Output;
 }
 
-/// Runs a kernel under the law that this one is or stands for.
+/// Runs a kernel for the given law, or for the law that it represents.
 #[inline(always)]
 pub(crate) fn dispatch<K: LawKernel>(law: &impl PairLaw, kernel: K) -> K::Output {
     law.resolve(Resolving(kernel))

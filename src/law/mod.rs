@@ -1,4 +1,5 @@
-//! What happens at one contact: force and energy of an overlap ([`PairLaw`]), [`damping`], and forces from sites ([`OnSite`]).
+//! The mechanics of one contact: force and energy of an overlap ([`PairLaw`]), [`damping`], and forces from sites
+//! ([`OnSite`]).
 
 pub mod choice;
 pub mod damping;

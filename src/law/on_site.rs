@@ -1,19 +1,19 @@
-//! [`OnSite`]: a contact law with an energy that pushes every disk from its site, or pulls it back.
+//! [`OnSite`]: a contact law with an additional energy that pushes every disk away from its site, or pulls it back.
 //!
 //! ```text
 //! E = Σ_(i<j) u(δ_ij) − (Γ/2) Σ_i u_i²        force on disk i: contacts + Γ u_i        u_i = r_i − site of i
 //! ```
 //!
-//! Γ > 0 weakens the packing by the same amount in every direction, as a medium whose displacement is screened by what it
-//! leaves out: an isotropic lattice with it answers as the screened continuum with κ² = (Γ/A)/(λ+2μ), A the area a disk
-//! has. Γ < 0 ties every disk to its site. The site of a disk is where it was when the first relaxation with such a law
-//! began, and stays with the packing ([`Packing::sites`](crate::packing::Packing::sites)).
+//! Γ > 0 weakens the packing equally in all directions, like screening of the displacement in a continuum. An isotropic
+//! lattice with Γ responds as the screened continuum with κ² = (Γ/A)/(λ+2μ), A the area per disk. Γ < 0 ties every disk
+//! to its site. The site of a disk is its position at the start of the first relaxation with such a law, and is stored
+//! with the packing ([`Packing::sites`](crate::packing::Packing::sites)).
 //!
 //! Γ = 0 is a law without sites ([`PairLaw::on_site_coupling`]).
 //!
-//! What counts what: the energy of a relaxation is that of contacts and sites together. Pressure, stress and virial are
-//! those of the contacts alone, because a force from outside the packing has a virial that depends on the origin. The
-//! scale of the relative residual is the mean contact force, and a backbone is made by contacts alone.
+//! The energy of a relaxation is that of contacts and sites. Pressure, stress and virial are those of the contacts
+//! alone, because the virial of an external force depends on the origin. The relative residual is scaled by the mean
+//! contact force, and only contacts form a backbone.
 
 use crate::law::damping::ContactDamping;
 use crate::law::pair_law::{LawVisitor, PairLaw};
@@ -24,7 +24,7 @@ use crate::law::pair_law::{LawVisitor, PairLaw};
 /// Γ in force / length: the stiffness of a spring, negative for Γ > 0.
 ///
 /// # Example
-/// A disk between two others is held by Γ < 0 against a push of its neighbours: 2 F' u = Γ u has the solution u = 0 only.
+/// A disk between two others is stable with Γ < 0: 2 F' u = Γ u has only the solution u = 0.
 /// ```
 /// use jamscope::law::{Hookean, OnSite, PairLaw};
 ///
@@ -34,20 +34,20 @@ use crate::law::pair_law::{LawVisitor, PairLaw};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OnSite<L> {
-    /// What happens where two disks touch.
+    /// The contact law.
     pub law: L,
     /// Γ, positive away from the site \[force / length\].
     pub coupling: f64,
 }
 
 impl<L: PairLaw> PairLaw for OnSite<L> {
-    /// Of contacts sites change nothing.
+    /// Sites do not change the contacts.
     #[inline(always)]
     fn resolve<V: LawVisitor>(&self, visitor: V) -> V::Output {
         self.law.resolve(visitor)
     }
 
-    /// Its own Γ, and that of the law within if that has one.
+    /// The sum of Γ and that of the inner law, if it has one.
     fn on_site_coupling(&self) -> f64 {
         self.coupling + self.law.on_site_coupling()
     }

@@ -1,4 +1,4 @@
-//! The laws of the field: Hertzian, Hookean, and the dimensionless power law.
+//! The common contact laws: Hertzian, Hookean, and the dimensionless power law.
 //!
 //! Every law here is a power of the overlap δ, with a coefficient c that depends on the two radii alone:
 //!
@@ -121,7 +121,7 @@ impl PairLaw for Hookean {
     }
     #[inline(always)]
     fn force(&self, _coefficient: f64, overlap: f64) -> f64 {
-        // That of every pair: the loop need not load it.
+        // The same for every pair, so the loop need not load it.
         self.stiffness * overlap
     }
     #[inline(always)]

@@ -1,11 +1,11 @@
-//! How contacts and the pressure change in a linear response.
+//! Changes of contacts and of the pressure in a linear response.
 //!
 //! ```text
 //! dr_ij = n·(u_i − u_j)        dδ_ij = −dr_ij + [i or j grows]        dF_ij = F' dδ_ij + F ∂ln c/∂R_0 [i or j grows]
 //! d(p D V) = Σ (dF_ij r_ij + F_ij dr_ij)
 //! ```
 //!
-//! Contacts with rattlers are left out: their forces vanish in any load.
+//! Contacts with rattlers are excluded: their forces vanish under any load.
 
 use crate::law::pair_law::PairLaw;
 use crate::linear::response::LinearResponse;
@@ -22,17 +22,17 @@ pub struct ContactChange {
     pub second: u32,
     /// Overlap δ before \[length\].
     pub overlap: f64,
-    /// Change of the overlap, dδ, per d_0 \[1\] where a disk grows, else \[length\].
+    /// Change of the overlap, dδ, per d_0 \[1\] if a disk grows, otherwise \[length\].
     pub overlap_change: f64,
-    /// Change of the contact force, dF, per d_0 \[force / length\] where a disk grows, else \[force\].
+    /// Change of the contact force, dF, per d_0 \[force / length\] if a disk grows, otherwise \[force\].
     pub force_change: f64,
-    /// Change of F r, what the contact adds to the virial, per d_0 \[force\] where a disk grows, else \[energy\].
+    /// Change of F r, the contribution to the virial, per d_0 \[force\] if a disk grows, otherwise \[energy\].
     pub virial_change: f64,
 }
 
 impl ContactChange {
-    /// The load at which the overlap would vanish if it went on changing like this, d_0 \[length\] where a disk grows, else a
-    /// multiple of the load \[1\]; none if it does not shrink.
+    /// The load at which the overlap vanishes by linear extrapolation: d_0 \[length\] if a disk grows, otherwise a
+    /// multiple of the load \[1\]. None if the overlap does not shrink.
     pub fn opens_at(&self) -> Option<f64> {
         (self.overlap_change < 0.0).then(|| -self.overlap / self.overlap_change)
     }
@@ -41,10 +41,10 @@ impl ContactChange {
 impl<const D: usize> LinearResponse<D> {
     /// The changes of all contacts, in ascending order of (first, second).
     ///
-    /// `packing` and `law` are those the response was made from.
+    /// `packing` and `law` are those of the response.
     ///
     /// # Errors
-    /// As [`ContactNetwork::new`].
+    /// See [`ContactNetwork::new`].
     ///
     /// # Panics
     /// If the packing has another number of disks.
@@ -56,7 +56,7 @@ impl<const D: usize> LinearResponse<D> {
         assert_eq!(packing.len(), self.displacements.len(), "a response belongs to the packing it was made from");
         let network = ContactNetwork::new(packing, law)?;
         let (radii, held) = (packing.radii(), packing.held());
-        // A disk pinned for the solution has none of its own; the one that grows is known to be there.
+        // A disk pinned for the solution has no row of its own; the growing disk is always included.
         let there =
             |disk: usize| self.solved[disk] || held[disk] || self.growing == Some(disk) || network.backbone[disk];
         let changes = network.contacts.iter().filter_map(|contact| {
@@ -87,17 +87,18 @@ impl<const D: usize> LinearResponse<D> {
         Ok(changes.collect())
     }
 
-    /// Change of the force that its contacts put on a disk, per load \[force / length\] where a disk grows, else \[force\]: nothing on
-    /// a disk that can move, but what a force put on it balances; on a held one what holds it has to take up.
+    /// Change of the total contact force on each disk, per load \[force / length\] if a disk grows, otherwise
+    /// \[force\]. On a mobile disk it balances the applied force; on a held disk it is the change of the constraint
+    /// force.
     ///
     /// ```text
     /// Σ_(contacts) [dF n + F (1 − n nᵀ)(u_i − u_j)/r_ij]        n from the other disk j to the disk i
     /// ```
     ///
-    /// `packing` and `law` are those the response was made from, with its prestress.
+    /// `packing` and `law` are those of the response, with its prestress.
     ///
     /// # Errors
-    /// As [`ContactNetwork::new`].
+    /// See [`ContactNetwork::new`].
     ///
     /// # Panics
     /// If the packing has another number of disks.
@@ -132,8 +133,9 @@ impl<const D: usize> LinearResponse<D> {
     }
 }
 
-/// Change of the pressure over a volume, contacts for which `rim` holds at one end counted half, as in
-/// [`ContactNetwork::cluster_pressure`]: per d_0 \[force / length^D\] where a disk grows, else \[force / length^(D−1)\].
+/// Change of the pressure in a volume. Contacts with one end for which `rim` is true count half, as in
+/// [`ContactNetwork::cluster_pressure`]. Per d_0 \[force / length^D\] if a disk grows, otherwise \[force /
+/// length^(D−1)\].
 pub fn pressure_change<const D: usize>(changes: &[ContactChange], volume: f64, rim: impl Fn(usize) -> bool) -> f64 {
     let half = |change: &ContactChange| rim(change.first as usize) || rim(change.second as usize);
     let virial: f64 = changes.iter().map(|change| if half(change) { 0.5 } else { 1.0 } * change.virial_change).sum();

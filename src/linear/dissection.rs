@@ -1,16 +1,16 @@
 //! Nested dissection from positions: the order in which disks are eliminated.
 //!
-//! A packing comes with what an ordering of its matrix has to guess from the entries alone: where everything is. The disks
-//! are halved at the median of their widest coordinate; of the contacts across the cut a smallest set of disks is taken that
-//! touches every one of them (König: as large as a largest matching), the *separator*. Both halves come first, each
-//! dissected in its turn, the separator last:
+//! The positions of the disks are known, so the ordering need not be found from the matrix entries alone. The disks are
+//! split in halves at the median of their widest coordinate. The *separator* is a smallest set of disks that touches
+//! every contact across the cut (Kőnig: it is as large as a largest matching). Both halves come first, each dissected
+//! in the same way; the separator comes last:
 //!
 //! ```text
 //! order(S) = order(left of S), order(right of S), separator
 //! ```
 //!
-//! The order is then rearranged so that each disk comes right after what depends on it alone (a postorder of its elimination
-//! tree), which leaves the factor as it is and makes its columns lie together.
+//! The order is then rearranged so that each disk directly follows those that depend on it alone (a postorder of the
+//! elimination tree). This does not change the factor, but makes its columns contiguous.
 //!
 //! # Source
 //! George (1973), SIAM J. Numer. Anal. 10, 345 (nested dissection); Kőnig (1931) and Kuhn (1955), Nav. Res. Logist. Q. 2,
@@ -19,19 +19,19 @@
 use crate::sparse::Graph;
 use crate::vector::Vector;
 
-/// Sets up to this size are not cut any more. Changes speed only.
+/// Sets up to this size are not divided further. Changes speed only.
 const LEAF: usize = 12;
 
 /// No vertex.
 const NONE: u32 = u32::MAX;
 
-/// Elimination order of the vertices of a graph that stand at `points`: the vertex in each place.
+/// Elimination order of the vertices of a graph with positions `points`: the vertex at each place of the order.
 ///
 /// # Shape
-/// One point a vertex.
+/// One point per vertex.
 ///
 /// # Cost
-/// N log N in vertices for the cuts, and of the order of N for the separators in two dimensions.
+/// N log N for the cuts, and about N for the separators in two dimensions; N is the number of vertices.
 pub(crate) fn nested_dissection<const D: usize>(points: &[Vector<D>], graph: &Graph) -> Vec<u32> {
     let count = points.len();
     let mut dissection = Dissection {
@@ -51,10 +51,10 @@ pub(crate) fn nested_dissection<const D: usize>(points: &[Vector<D>], graph: &Gr
 struct Dissection<'a, const D: usize> {
     points: &'a [Vector<D>],
     graph: &'a Graph,
-    /// Which part of which cut each vertex was last put into.
+    /// The part of the latest cut to which each vertex belongs.
     part: Vec<u32>,
     part_count: u32,
-    /// The vertex each is matched with across the cut.
+    /// The vertex with which each is matched across the cut.
     mate: Vec<u32>,
     /// The left vertex from which a search reached each right one.
     from: Vec<u32>,
@@ -69,7 +69,7 @@ impl<const D: usize> Dissection<'_, D> {
         }
         let axis = self.widest_axis(set);
         let points = self.points;
-        // Vertices at one coordinate are told apart by their number, so the cut is the same every time.
+        // Vertices at equal coordinates are ordered by their index, so the cut is reproducible.
         let middle = set.len() / 2;
         set.select_nth_unstable_by(middle, |&a, &b| {
             points[a as usize][axis].total_cmp(&points[b as usize][axis]).then(a.cmp(&b))
@@ -138,8 +138,8 @@ impl<const D: usize> Dissection<'_, D> {
                 self.forget(&mut reached);
             }
         }
-        // Whatever alternating paths from unmatched left vertices reach: the cover is what they do not reach on the left and
-        // what they reach on the right.
+        // Follow alternating paths from unmatched left vertices. The cover consists of the left vertices that are not
+        // reached and the right vertices that are.
         let unmatched: Vec<u32> =
             boundary.iter().copied().filter(|&vertex| self.mate[vertex as usize] == NONE).collect();
         let end = self.search(&unmatched, right_part, &mut reached);
@@ -147,7 +147,7 @@ impl<const D: usize> Dissection<'_, D> {
         let mut separator = Vec::new();
         for &other in &reached {
             separator.push(other);
-            // Its mate on the left is reached through it, and so is not in the cover.
+            // Its mate on the left is reached through it, so it is not in the cover.
             self.part[self.mate[other as usize] as usize] = NONE;
         }
         for &vertex in &unmatched {
@@ -163,7 +163,8 @@ impl<const D: usize> Dissection<'_, D> {
         separator
     }
 
-    /// Breadth-first along alternating paths; the unmatched right vertex it ends at, or `NONE` with all reached ones listed.
+    /// Breadth-first search along alternating paths. Returns the unmatched right vertex at the end of a path, or `NONE`
+    /// with all vertices reached.
     fn search(&mut self, starts: &[u32], right_part: u32, reached: &mut Vec<u32>) -> u32 {
         let mut queue = starts.to_vec();
         let mut next = 0;
@@ -186,7 +187,7 @@ impl<const D: usize> Dissection<'_, D> {
         NONE
     }
 
-    /// Exchanges matched and unmatched edges along the path that led to `end`.
+    /// Exchanges matched and unmatched edges along the path to `end`.
     fn augment(&mut self, mut end: u32) {
         while end != NONE {
             let vertex = self.from[end as usize];
@@ -204,7 +205,7 @@ impl<const D: usize> Dissection<'_, D> {
     }
 }
 
-/// The vertices that stay, moved to the front in their order.
+/// The vertices for which `stays` is true, moved to the front in their order.
 fn keep(set: &mut [u32], stays: impl Fn(&u32) -> bool) -> &mut [u32] {
     let mut count = 0;
     for index in 0..set.len() {
@@ -216,14 +217,14 @@ fn keep(set: &mut [u32], stays: impl Fn(&u32) -> bool) -> &mut [u32] {
     &mut set[..count]
 }
 
-/// The same elimination order with the vertices of each subtree of its elimination tree next to each other.
+/// An equivalent elimination order in which the vertices of each subtree of the elimination tree are contiguous.
 fn postordered(order: &[u32], graph: &Graph) -> Vec<u32> {
     let count = order.len();
     let mut place = vec![0u32; count];
     for (index, &vertex) in order.iter().enumerate() {
         place[vertex as usize] = index as u32;
     }
-    // Parents by Liu's algorithm, paths compressed by `ancestor`.
+    // Parents by Liu's algorithm, with path compression by `ancestor`.
     let (mut parent, mut ancestor) = (vec![NONE; count], vec![NONE; count]);
     for (index, &vertex) in order.iter().enumerate() {
         for &other in graph.neighbours(vertex) {
@@ -242,7 +243,7 @@ fn postordered(order: &[u32], graph: &Graph) -> Vec<u32> {
             }
         }
     }
-    // Children in ascending order, each list from its last to its first.
+    // Children in ascending order; each list is built from its end.
     let (mut first_child, mut next_sibling) = (vec![NONE; count], vec![NONE; count]);
     let mut roots = Vec::new();
     for node in (0..count).rev() {
@@ -278,7 +279,7 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 
-    /// Random points of the unit square, joined where nearer than `range`.
+    /// Random points of the unit square, connected if closer than `range`.
     fn random(seed: u64, count: usize, range: f64) -> (Vec<Vector<2>>, Graph) {
         let mut generator = Pcg64::seed_from_u64(seed);
         let points: Vec<Vector<2>> = (0..count).map(|_| [generator.random(), generator.random()]).collect();
@@ -292,7 +293,7 @@ mod tests {
         (points, graph)
     }
 
-    /// The size of a largest matching across a cut, by the plainest augmenting paths.
+    /// The size of a largest matching across a cut, by the simplest augmenting paths.
     fn largest_matching(graph: &Graph, left: &[u32], right: &[u32]) -> usize {
         fn extend(graph: &Graph, right: &[u32], vertex: u32, seen: &mut [bool], mate: &mut [u32]) -> bool {
             graph.neighbours(vertex).iter().filter(|other| right.contains(other)).any(|&other| {
@@ -329,13 +330,13 @@ mod tests {
                     assert!(separator.contains(&vertex) || separator.contains(other), "seed {seed}: {vertex} {other}");
                 }
             }
-            // No cover is smaller than a matching (König: a smallest one is as large as a largest matching).
+            // No cover is smaller than a matching (Kőnig: a smallest cover is as large as a largest matching).
             assert_eq!(separator.len(), largest_matching(&graph, &left, &right), "seed {seed}");
             assert!(dissection.part.iter().all(|&part| part == 1 || part == 2), "parts are left as they were");
         }
     }
 
-    /// The column structure of the factor by the definition of elimination, as sets of places.
+    /// The column structure of the factor by the definition of elimination, as sets of places in the order.
     fn columns(graph: &Graph, order: &[u32]) -> Vec<std::collections::BTreeSet<usize>> {
         let mut place = vec![0; order.len()];
         order.iter().enumerate().for_each(|(index, &vertex)| place[vertex as usize] = index);
@@ -358,7 +359,7 @@ mod tests {
     #[test]
     fn the_order_names_every_vertex_once_and_subtrees_lie_together() {
         let mut cases: Vec<_> = (0..20).map(|seed| random(seed, 150, 0.02 + 0.01 * seed as f64)).collect();
-        // Nothing coupled; everything at one point, all coupled.
+        // No edges at all; all points equal with all edges.
         cases.push(random(1, 30, 0.0));
         let everyone = (0..30u32).flat_map(|a| (0..a).map(move |b| (a, b)));
         cases.push((vec![[0.5, 0.5]; 30], Graph::new(30, everyone)));
@@ -367,7 +368,7 @@ mod tests {
             let mut sorted = order.clone();
             sorted.sort_unstable();
             assert!(sorted.iter().copied().eq(0..points.len() as u32));
-            // Postorder: a subtree of k vertices fills the k places up to its root.
+            // Postorder: a subtree of k vertices occupies the k places up to its root.
             let parents: Vec<Option<usize>> =
                 columns(graph, &order).iter().map(|column| column.first().copied()).collect();
             let mut size = vec![1; order.len()];
@@ -384,7 +385,7 @@ mod tests {
 
     #[test]
     fn a_long_strip_is_cut_across() {
-        // 400 × 2 points: separators of two, so every column of the factor has at most a few entries.
+        // 400 × 2 points: separators of two vertices, so every column of the factor has few entries.
         let points: Vec<Vector<2>> = (0..800).map(|i| [(i / 2) as f64, (i % 2) as f64]).collect();
         let ladder = (0..800u32).flat_map(|i| [(i + 2, i)].into_iter().chain((i % 2 == 0).then_some((i + 1, i))));
         let graph = Graph::new(800, ladder.filter(|&(a, _)| a < 800).collect::<Vec<_>>().into_iter());

@@ -7,39 +7,39 @@ use crate::packing::PackingError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LinearError {
-    /// More modes than memory holds.
+    /// The number of modes exceeds the memory.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
-    /// The disks themselves are at fault.
+    /// The disks themselves are invalid.
     #[error(transparent)]
     Packing(#[from] PackingError),
-    /// Nothing to solve for: no disk is on the backbone.
+    /// No disk is on the backbone.
     #[error("no mobile disk of {disk_count} is on the backbone: an unjammed packing has no linear response")]
     NoBackbone {
         /// Number of disks.
         disk_count: usize,
     },
-    /// The disk to inflate touches no disk that could answer.
+    /// The disk to inflate has no contact with the backbone.
     #[error("disk {disk} has no contact with the backbone: inflating it by an infinitesimal amount moves nothing")]
     CentreTouchesNothing {
         /// The disk.
         disk: usize,
     },
-    /// There is no such disk.
+    /// No disk has this index.
     #[error("disk {disk} of {disk_count}: there is none")]
     NoSuchDisk {
-        /// The index asked for.
+        /// The index given.
         disk: usize,
         /// Number of disks.
         disk_count: usize,
     },
-    /// A load that is not a number.
+    /// A load is not finite.
     #[error("the load on disk {disk} is not a finite vector")]
     LoadNotFinite {
         /// The disk.
         disk: usize,
     },
-    /// Loads and disks differ in number.
+    /// The numbers of loads and disks differ.
     #[error("{found} forces for {disk_count} disks")]
     LoadNotOneADisk {
         /// Number of forces.
@@ -47,7 +47,7 @@ pub enum LinearError {
         /// Number of disks.
         disk_count: usize,
     },
-    /// Only held disks can be moved at will.
+    /// A displacement is given for a disk that is not held.
     #[error("disk {disk} is not held: its displacement is part of the answer")]
     NotHeld {
         /// The disk.
@@ -63,35 +63,36 @@ pub enum LinearError {
         /// The entry.
         value: f64,
     },
-    /// Entries stand elsewhere than in the matrix analysed.
+    /// The pattern of entries differs from that of the analysed matrix.
     #[error("the matrix of {dimension} rows does not have the pattern that was analysed")]
     PatternDiffers {
         /// Its number of rows.
         dimension: usize,
     },
-    /// An order of elimination names a row twice, one that is not there, or not every row.
+    /// An elimination order contains a row twice, an invalid row, or not all rows.
     #[error("the order of elimination has row {row} in place {place}, which is no order of {dimension} rows")]
     NotAnOrder {
         /// Number of rows of the matrix.
         dimension: usize,
-        /// The place at fault, from 0.
+        /// The invalid place, from 0.
         place: usize,
-        /// The row found there.
+        /// The row at that place.
         row: usize,
     },
-    /// A Cholesky factor was asked for and there is none.
+    /// The matrix has no Cholesky factor.
     #[error("the matrix of {dimension} rows is not positive definite")]
     NotPositiveDefinite {
         /// Its number of rows.
         dimension: usize,
     },
-    /// Singular to rounding: some motion costs nothing.
+    /// Singular to rounding: a motion has no stiffness.
     #[error("the matrix is singular to rounding: its pivots span {pivot_ratio:e}, smallest over largest")]
     Singular {
-        /// Smallest over largest size of a pivot; for a definite matrix the inverse condition number lies below it.
+        /// Smallest over largest absolute value of a pivot; for a definite matrix, an upper bound of the inverse
+        /// condition number.
         pivot_ratio: f64,
     },
-    /// Refinement does not bring the backward error down to rounding.
+    /// Refinement does not reduce the backward error to rounding.
     #[error("the backward error of the solution stays at {backward_error:e} after {refinement_count} refinements")]
     NotAccurate {
         /// ‖b − A x‖ / (‖A‖ ‖x‖ + ‖b‖) reached.
@@ -99,7 +100,7 @@ pub enum LinearError {
         /// Refinements made.
         refinement_count: usize,
     },
-    /// Conjugate gradients did not come to an end.
+    /// Conjugate gradients did not converge.
     #[error("the backward error is {backward_error:e} after {iteration_count} iterations, all that were allowed")]
     IterationsUsedUp {
         /// Iterations made.
@@ -122,21 +123,21 @@ pub enum LinearError {
         /// Γ of the law.
         coupling: f64,
     },
-    /// Not all modes asked for were found.
+    /// Not all requested modes were found.
     #[error(
         "{found} of {asked} modes were found to {tolerance:e} of the norm after {factorisation_count} factorisations"
     )]
     ModesNotFound {
         /// Number found.
         found: usize,
-        /// Number asked for.
+        /// Number requested.
         asked: usize,
-        /// Residual over norm they should have.
+        /// Limit of the residual over the norm.
         tolerance: f64,
         /// Factorisations made.
         factorisation_count: usize,
     },
-    /// No memory for the factors.
+    /// Not enough memory for the factors.
     #[error("the factors of a matrix of {dimension} rows do not fit in memory")]
     OutOfMemory {
         /// Its number of rows.

@@ -1,13 +1,14 @@
-//! [`Analysis`] of where a matrix has entries, and how it makes [`Factorisation`]s.
+//! [`Analysis`] of the sparsity pattern of a matrix, and the [`Factorisation`]s that use it.
 //!
 //! ```text
 //! definite     P A Pᵀ = L Lᵀ
 //! indefinite   P A Pᵀ = L D Lᵀ,  D diagonal: as many negative pivots as negative eigenvalues (Sylvester)
 //! ```
 //!
-//! P is an order of elimination from [`ordering`]. The analysis and the buffers of factors are kept, so matrices of one pattern
-//! are factorised one after the other at no cost but that of the numbers. L D Lᵀ is made without pivoting, so it may lose digits; each solution
-//! is refined until its backward error no longer falls, and refused if that ends above [`ACCURACY`](crate::linear::solution::ACCURACY).
+//! P is an elimination order from [`ordering`]. The symbolic analysis and the buffers of factors are reused, so further
+//! matrices with the same pattern cost only their numerical factorisation. L D Lᵀ is computed without pivoting and may
+//! lose digits. Each solution is therefore refined until its backward error no longer falls, and refused if that is
+//! above [`ACCURACY`](crate::linear::solution::ACCURACY).
 //!
 //! # Source
 //! faer 0.24 (sparse simplicial and supernodal factorisations). Backward error: Rigal, Gaches (1967), J. ACM 14, 543;
@@ -32,15 +33,15 @@ use crate::linear::solution::{ACCURACY, Solution};
 use crate::sparse::SymmetricMatrix;
 use crate::vector::larger;
 
-/// Ratio of pivots below which a matrix counts as singular \[1\]: a pivot that should vanish is left with the rounding of the
-/// some ten to a hundred products it is made of.
+/// Ratio of pivots below which a matrix counts as singular \[1\]. A pivot that should vanish has the rounding error of
+/// the ten to a hundred products that form it.
 const SINGULAR: f64 = 64.0 * f64::EPSILON;
 
-/// Products per entry of the factor, over 40, from which factors are made by dense panels: half of what faer takes. In between
-/// (5548 disks) implicit dynamics take 5.8 s by panels and 7.4 s by rows; 1000 disks take the same time either way.
+/// Products per entry of the factor, over 40, above which factors are computed by dense panels (supernodes): half of
+/// faer's default.
 const BY_PANELS_FROM: SupernodalThreshold = SupernodalThreshold(0.5);
 
-/// Where a matrix has entries, in which order it is eliminated, and the buffers of its factors.
+/// Sparsity pattern of a matrix, its elimination order, and the buffers of its factors.
 pub struct Analysis {
     symbolic: SymbolicCholesky<usize>,
     starts: Vec<usize>,
@@ -59,19 +60,19 @@ impl std::fmt::Debug for Analysis {
 }
 
 impl Analysis {
-    /// Orders the matrix of a packing disk by disk, as is [best](crate::linear::ordering::best), and reserves what its factors
-    /// need. It serves every matrix with entries in the same places, such as one with another diagonal.
+    /// Orders the matrix of a packing disk by disk, by [`best`](crate::linear::ordering::best), and allocates its
+    /// factors. It serves every matrix with the same pattern of entries, such as one with another diagonal.
     ///
     /// # Errors
     /// Not enough memory.
     ///
     /// # Cost
-    /// Half to nine tenths of a factorisation, from 1 000 to 89 000 disks in two dimensions (`cargo bench --bench linear`).
+    /// 50 % to 90 % of a factorisation, from 1 000 to 89 000 disks in two dimensions (`cargo bench --bench linear`).
     pub fn of<const D: usize>(hessian: &Hessian<D>) -> Result<Self, LinearError> {
         Self::in_order(hessian.matrix(), &ordering::best(hessian)?)
     }
 
-    /// As [`Analysis::of`] for a matrix of which nothing else is known, by approximate minimum degree on its rows.
+    /// Like [`Analysis::of`], for a general matrix, by approximate minimum degree on its rows.
     ///
     /// # Errors
     /// Not enough memory.
@@ -79,11 +80,10 @@ impl Analysis {
         Self::with(matrix, SymmetricOrdering::Amd)
     }
 
-    /// As [`Analysis::new`], in an order of elimination given: the row to eliminate in each place. See
-    /// [`ordering`].
+    /// Like [`Analysis::new`], with a given elimination order: the row to eliminate at each place. See [`ordering`].
     ///
     /// # Errors
-    /// An order that does not name every row once; not enough memory.
+    /// An order that does not contain every row once; not enough memory.
     pub fn in_order(matrix: &SymmetricMatrix, order: &[usize]) -> Result<Self, LinearError> {
         let dimension = matrix.dimension();
         let mut place = vec![usize::MAX; dimension];
@@ -127,12 +127,12 @@ impl Analysis {
         })
     }
 
-    /// Whether the matrix has entries where the one analysed had.
+    /// Whether the matrix has the pattern of the analysed one.
     pub fn fits(&self, matrix: &SymmetricMatrix) -> bool {
         self.starts == matrix.starts && self.rows == matrix.rows
     }
 
-    /// Number of values in a factor: its memory over 8 bytes.
+    /// Number of values in a factor; each takes 8 bytes.
     pub fn factor_count(&self) -> usize {
         self.factor.len()
     }
@@ -159,7 +159,7 @@ impl Analysis {
         self.factorised(matrix, false)
     }
 
-    /// L Lᵀ where there is one, else L D Lᵀ.
+    /// L Lᵀ if it exists, otherwise L D Lᵀ.
     ///
     /// # Errors
     /// A matrix of another pattern, with an entry that is not finite, or singular to rounding.
@@ -185,7 +185,7 @@ impl Analysis {
         }
     }
 
-    /// L Lᵀ into the buffer, if there is one.
+    /// Computes L Lᵀ in the buffer, if it exists.
     fn factorise_definite(&mut self, matrix: &SymmetricMatrix) -> Result<(), ()> {
         let stack = MemStack::new(&mut self.memory);
         let made = self.symbolic.factorize_numeric_llt(
@@ -199,12 +199,13 @@ impl Analysis {
         );
         match made {
             Ok(_) => Ok(()),
-            // The index is one of the permuted matrix, from 0 or from 1 depending on the kind of factor: not passed on.
+            // The index is one of the permuted matrix, from 0 or from 1 depending on the type of factor, so it is not
+            // reported.
             Err(LltError::NonPositivePivot { index: _ }) => Err(()),
         }
     }
 
-    /// L D Lᵀ into the buffer.
+    /// Computes L D Lᵀ in the buffer.
     fn factorise_indefinite(&mut self, matrix: &SymmetricMatrix) -> Result<(), LinearError> {
         let stack = MemStack::new(&mut self.memory);
         let made = self.symbolic.factorize_numeric_ldlt(
@@ -241,7 +242,7 @@ impl Analysis {
         Ok(Factorisation { analysis: self, matrix, definite, negative_count, pivot_ratio, norm })
     }
 
-    /// Solves with the factor in the buffer, once.
+    /// Solves once with the factor in the buffer.
     pub(super) fn solve_in_place(&mut self, definite: bool, x: &mut [f64]) {
         let dimension = x.len();
         let stack = MemStack::new(&mut self.memory);
@@ -281,7 +282,7 @@ fn view(matrix: &SymmetricMatrix) -> SparseColMatRef<'_, usize, f64> {
     SparseColMatRef::new(pattern, &matrix.values)
 }
 
-/// Refinements tried; the first removes what growth of L D Lᵀ has cost, the second shows that nothing is left.
+/// Limit of refinements. The first removes the error from element growth in L D Lᵀ; the second confirms convergence.
 const REFINEMENT_LIMIT: usize = 5;
 
 /// A factorised matrix.
@@ -296,22 +297,24 @@ pub struct Factorisation<'a> {
 }
 
 impl Factorisation<'_> {
-    /// Whether the matrix is positive definite, as told by a Cholesky factor; [`Analysis::indefinite`] makes none.
+    /// Whether the matrix is positive definite, as shown by a Cholesky factor. [`Analysis::indefinite`] never computes
+    /// one.
     pub fn is_cholesky(&self) -> bool {
         self.definite
     }
 
-    /// Number of negative eigenvalues: that of the negative pivots.
+    /// Number of negative eigenvalues, equal to that of the negative pivots.
     pub fn negative_eigenvalue_count(&self) -> usize {
         self.negative_count
     }
 
-    /// Smallest over largest size of a pivot \[1\]. The inverse condition number of a definite matrix lies below it.
+    /// Smallest over largest absolute value of a pivot \[1\]; for a definite matrix, an upper bound of the inverse
+    /// condition number.
     pub fn pivot_ratio(&self) -> f64 {
         self.pivot_ratio
     }
 
-    /// Solves A x = b; `solution` holds x afterwards, whatever it held.
+    /// Solves A x = b; overwrites `solution` with x.
     ///
     /// # Errors
     /// The backward error stays above [`ACCURACY`].
@@ -336,7 +339,7 @@ impl Factorisation<'_> {
                 solution.clone_from_slice(&kept);
                 break;
             }
-            // More than half of it is left: from here on it is rounding.
+            // Reduced by less than half: the rest is rounding.
             let last = refined > 0.5 * backward_error;
             (backward_error, refinement_count) = (refined, refinement_count + 1);
             if last {
@@ -345,7 +348,7 @@ impl Factorisation<'_> {
         }
         self.analysis.kept = kept;
         self.analysis.residual = residual;
-        // Written so that NaN is refused.
+        // This form refuses NaN.
         if backward_error <= ACCURACY {
             Ok(Solution { backward_error, refinement_count })
         } else {
@@ -353,7 +356,7 @@ impl Factorisation<'_> {
         }
     }
 
-    /// Solves A x = b with the factor alone: backward error of a Cholesky factor, not told.
+    /// Solves A x = b with the factor alone, without a backward error; that of a Cholesky factor is small.
     ///
     /// # Panics
     /// If a length differs from the dimension.

@@ -1,12 +1,13 @@
-//! [`Hessian`]: second derivatives of the energy of a packing, assembled straight into compressed columns.
+//! [`Hessian`]: second derivatives of the energy of a packing, assembled directly in compressed columns.
 //!
 //! ```text
 //! K_ii = Σ_j B_ij − Γ        K_ij = −B_ij        B = F' n nᵀ − (F/r) (1 − n nᵀ)        n = r_ij/r
 //! ```
 //!
-//! F' n nᵀ is the stiffness of a contact along its line of centres. F/r across it is the *prestress*: pressed disks slip
-//! sideways, so it weakens. −Γ is the term of sites ([`OnSite`](crate::law::on_site::OnSite)). K is the negative derivative of
-//! the forces; its unknowns are the D coordinates of each disk that can move and is held by something: held disks and disks
+//! F' n nᵀ is the stiffness of a contact along its line of centres. F/r across it is the *prestress*: pressed disks
+//! slip sideways, so it weakens the packing. −Γ is the term of sites ([`OnSite`](crate::law::on_site::OnSite)). K is
+//! the negative derivative of the forces. Its unknowns are the D coordinates of each mobile disk with contacts. Held
+//! disks and disks without contacts are excluded, since their rows would be zero.
 //! without contacts are left out by construction, since their rows would be zero.
 
 use crate::forces::assembly::Assembly;
@@ -17,25 +18,25 @@ use crate::packing::{Packing, PackingError};
 use crate::sparse::{BlockPattern, Graph, SymmetricMatrix};
 use crate::vector::{Vector, dot, scaled};
 
-/// Whether contact forces weaken the packing across the contacts, as they do.
+/// Whether the matrix contains the prestress, which weakens the packing across the contacts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Prestress {
-    /// Yes: the second derivatives of the energy.
+    /// Included: the second derivatives of the energy.
     #[default]
     Included,
-    /// No: springs at rest of the stiffness of each contact, the "unstressed" network.
+    /// Left out: unstretched springs with the stiffness of each contact, the "unstressed" network.
     LeftOut,
 }
 
 /// Which mobile disks have rows in the matrix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Members {
-    /// Those on the backbone; rattlers are taken away with their contacts.
+    /// Disks on the backbone; rattlers and their contacts are excluded.
     #[default]
     Backbone,
-    /// Those with a contact.
+    /// Disks with a contact.
     InContact,
-    /// All: rows of disks without a contact are 0, for matrices to whose diagonal something is added.
+    /// All mobile disks. The rows of disks without a contact are 0, for matrices whose diagonal is modified later.
     Mobile,
 }
 
@@ -45,27 +46,27 @@ pub enum Members {
 /// D rows for each disk of [`Hessian::disks`], coordinate by coordinate.
 ///
 /// # Accuracy
-/// An entry is a sum over the contacts of a disk, each known to a few units in the last place (forces follow from overlaps
-/// that are).
+/// An entry is a sum over the contacts of a disk. Each term is exact to a few units in the last place, like overlaps
+/// and forces.
 ///
 /// # Cost
-/// Linear in pairs of the list: nine to fifteen evaluations of the forces with totals, from 1 000 to 89 000 disks
+/// Linear in the pairs of the list: nine to fifteen evaluations of the forces with totals, from 1 000 to 89 000 disks
 /// (`benches/measurements/scaling`).
 #[derive(Debug, Clone)]
 pub struct Hessian<const D: usize> {
     prestress: Prestress,
     members: Members,
     disks: Vec<u32>,
-    /// Block row of each disk in working order; `NONE` for those left out.
+    /// Block row of each disk in working order; `NONE` for excluded disks.
     blocks: Vec<u32>,
-    /// Where the disks with rows are, from an origin of the assembly's own.
+    /// Positions of the disks with rows, relative to an origin of the assembly.
     places: Vec<Vector<D>>,
     disk_count: usize,
     mobile_count: usize,
-    /// Held disks in working order, in the packing's own numbering.
+    /// Held disks in working order; values are indices of the packing.
     held: Vec<u32>,
     links: Vec<Link<D>>,
-    /// Ends of the pairs that have a place in the pattern when it is made.
+    /// Ends of the pairs with entries in the pattern.
     near: Vec<(u32, u32)>,
     pattern: BlockPattern,
     matrix: SymmetricMatrix,
@@ -74,10 +75,10 @@ pub struct Hessian<const D: usize> {
 /// No block row.
 const NONE: u32 = u32::MAX;
 
-/// A contact about to enter the matrix.
+/// A contact to be added to the matrix.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StiffContact {
-    /// Its place in the neighbour list.
+    /// Its index in the neighbour list.
     pub pair: usize,
     /// Its disks in working order.
     pub ends: (u32, u32),
@@ -154,13 +155,13 @@ impl<const D: usize> Hessian<D> {
         hessian
     }
 
-    /// Takes the second derivatives anew after disks have moved; true if entries stand where they stood, so that an
-    /// analysis of the matrix stays valid. The assembly must be the one given first, or one of the same packing.
+    /// Recomputes the second derivatives after disks have moved. True if the pattern of entries is unchanged, so that
+    /// an analysis of the matrix stays valid. The assembly must be the one given first, or one of the same packing.
     pub fn update<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) -> bool {
         self.update_with(assembly, |contact| (contact.stiffness, contact.across))
     }
 
-    /// As [`Hessian::update`], with another stiffness along and across each contact.
+    /// Like [`Hessian::update`], with another stiffness along and across each contact.
     pub(crate) fn update_with<L: PairLaw>(
         &mut self,
         assembly: &Assembly<D, L>,
@@ -169,8 +170,8 @@ impl<const D: usize> Hessian<D> {
         self.update_within(assembly, |_| 0.0, 0.0, weights)
     }
 
-    /// As [`Hessian::update_with`], with pairs of the list whose gap is below `reach` among the contacts. Pairs whose gap is
-    /// no more than `spare` wider have entries, of value 0, so that those of later updates still stand where they stood.
+    /// Like [`Hessian::update_with`], where pairs with a gap below `reach` also count as contacts. Pairs with a gap up
+    /// to `spare` larger get entries of value 0, so that the pattern of later updates is the same.
     pub(crate) fn update_within<L: PairLaw>(
         &mut self,
         assembly: &Assembly<D, L>,
@@ -227,7 +228,7 @@ impl<const D: usize> Hessian<D> {
         self.near.clear();
         walk(pairs, &assembly.displacements, &mut |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
             let reach = reach(pair);
-            // Written so that NaN becomes an entry, and is refused there.
+            // This form makes NaN an entry, which is refused there.
             if overlap <= -(reach + spare) {
                 return;
             }
@@ -278,32 +279,33 @@ impl<const D: usize> Hessian<D> {
         &self.matrix
     }
 
-    /// The disks with rows as vertices in the order of [`Hessian::disks`], their contacts as edges.
+    /// The graph of the contacts, with the disks of [`Hessian::disks`] as vertices.
     pub fn graph(&self) -> Graph {
         self.pattern.graph()
     }
 
-    /// The disk of each block of D rows, in the packing's own numbering.
+    /// The disk of each block of D rows, as an index of the packing.
     pub fn disks(&self) -> &[u32] {
         &self.disks
     }
 
-    /// Where each disk of [`Hessian::disks`] was when the derivatives were taken, from an origin of the assembly's own
+    /// Position of each disk of [`Hessian::disks`] at the last update, relative to an origin of the assembly
     /// \[length\].
     pub fn places(&self) -> &[Vector<D>] {
         &self.places
     }
 
-    /// The first row of a disk given in working order; none if the disk has no rows.
+    /// The first row of a disk given in working order; none for an excluded disk.
     pub(crate) fn row_of(&self, working: u32) -> Option<usize> {
         let block = self.blocks[working as usize];
         (block != NONE).then(|| D * block as usize)
     }
 
-    /// Forces on the unknowns when held disks are moved by `imposed`: B u_held for each contact with one \[force\].
+    /// Forces on the unknowns due to displacements `imposed` of held disks: B u_held for each contact with one
+    /// \[force\].
     ///
     /// # Shape
-    /// One displacement a disk, in the packing's own numbering; those of disks that are not held are not looked at.
+    /// One displacement per disk, indexed as in the packing; those of mobile disks are ignored.
     ///
     /// # Panics
     /// If the field has fewer entries.
@@ -324,7 +326,7 @@ impl<const D: usize> Hessian<D> {
     /// A field over the packing as a vector of unknowns.
     ///
     /// # Shape
-    /// One entry a disk, in the packing's own numbering.
+    /// One entry per disk, indexed as in the packing.
     ///
     /// # Panics
     /// If the field has fewer entries.

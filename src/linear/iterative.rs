@@ -1,13 +1,12 @@
-//! Conjugate gradients, for matrices whose factor does not fit: memory of the matrix instead of that of its factor.
+//! Conjugate gradients, for matrices whose factor does not fit in memory. They need only memory for the matrix itself.
 //!
 //! ```text
-//! M = L Lᵀ ≈ A + α diag A,  L with entries only where A has some        A x = b  by conjugate gradients on M⁻¹ A
+//! M = L Lᵀ ≈ A + α diag A,  L with the pattern of A        A x = b  by conjugate gradients on M⁻¹ A
 //! ```
 //!
-//! The incomplete factor may not exist although A is positive definite; α is then raised until it does. Where the factor fits,
-//! [`Analysis`](crate::linear::Analysis) is faster by far in two dimensions: jammed packings of 5465, 21863 and 87455 disks
-//! take 379, 740 and 1433 iterations. 1999 and 7998 balls take 85 and 128, and there the matrix has a 60th of the values of the
-//! factor (`cargo run --release --features measurements --example orderings`).
+//! The incomplete factor may not exist although A is positive definite; α is then raised until it does. If the factor
+//! fits in memory, [`Analysis`](crate::linear::Analysis) is much faster in two dimensions. In three dimensions the
+//! factor is many times larger than the matrix (`cargo run --release --features measurements --example orderings`).
 //!
 //! # Source
 //! Hestenes, Stiefel (1952), J. Res. Natl. Bur. Stand. 49, 409; Meijerink, van der Vorst (1977), Math. Comput. 31, 148
@@ -17,7 +16,7 @@ use crate::linear::error::LinearError;
 use crate::sparse::SymmetricMatrix;
 use crate::vector::larger;
 
-/// An incomplete Cholesky factor, columns as in the matrix.
+/// An incomplete Cholesky factor, with columns as in the matrix.
 #[derive(Debug, Clone)]
 pub struct IncompleteFactor {
     starts: Vec<usize>,
@@ -26,7 +25,7 @@ pub struct IncompleteFactor {
     shift: f64,
 }
 
-/// First shift tried where none does not do, relative to the diagonal; doubled from there.
+/// First shift tried if no factor exists without a shift, relative to the diagonal; doubled from there.
 const FIRST_SHIFT: f64 = 1e-3;
 
 impl IncompleteFactor {
@@ -54,12 +53,12 @@ impl IncompleteFactor {
         Ok(factor)
     }
 
-    /// α, the share of the diagonal added to it \[1\]; 0 in most cases.
+    /// α, the share of the diagonal that is added \[1\]; usually 0.
     pub fn shift(&self) -> f64 {
         self.shift
     }
 
-    /// Column by column; false where a pivot is not positive.
+    /// Computes the factor column by column; false if a pivot is not positive.
     fn made_of(&mut self, matrix: &SymmetricMatrix) -> bool {
         self.values.clear();
         self.values.extend_from_slice(matrix.values());
@@ -79,7 +78,7 @@ impl IncompleteFactor {
             for first in start + 1..end {
                 let (target, factor) = (self.rows[first], self.values[first]);
                 let (begin, finish) = (self.starts[target], self.starts[target + 1]);
-                // Both lists of rows ascend: one walk finds what they share.
+                // Both lists of rows are ascending, so a single pass finds their common rows.
                 let mut place = begin;
                 for second in first..end {
                     let row = self.rows[second];
@@ -115,39 +114,39 @@ impl IncompleteFactor {
     }
 }
 
-/// When conjugate gradients end.
+/// Limits of conjugate gradients.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IterationLimits {
-    /// ‖b − A x‖ / (‖A‖ ‖x‖ + ‖b‖) to reach, largest norms \[1\].
+    /// Target of ‖b − A x‖ / (‖A‖ ‖x‖ + ‖b‖), maximum norms \[1\].
     pub backward_error: f64,
     /// Iterations allowed.
     pub iteration_count: usize,
 }
 
 impl Default for IterationLimits {
-    /// 10⁻¹⁵: what a refined factor gives.
+    /// 10⁻¹⁵, the accuracy of a refined factor.
     fn default() -> Self {
         IterationLimits { backward_error: 1e-15, iteration_count: 100_000 }
     }
 }
 
-/// What conjugate gradients came to.
+/// The result of conjugate gradients.
 #[must_use]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IterativeSolution {
-    /// ‖b − A x‖ / (‖A‖ ‖x‖ + ‖b‖), computed from x itself \[1\].
+    /// ‖b − A x‖ / (‖A‖ ‖x‖ + ‖b‖), computed from x \[1\].
     pub backward_error: f64,
-    /// Iterations made: one product with A and one solution with the incomplete factor each.
+    /// Iterations; each takes one product with A and one solution with the incomplete factor.
     pub iteration_count: usize,
 }
 
-/// Iterations between two looks at the true residual, which the recurrence drifts away from.
+/// Iterations between two evaluations of the true residual, from which the recurrence drifts away.
 const LOOK_EVERY: usize = 50;
 
-/// Solves A x = b; `solution` is where the iteration starts, and holds x afterwards.
+/// Solves A x = b. The iteration starts from `solution` and overwrites it with x.
 ///
 /// # Errors
-/// A matrix met as not positive definite; iterations used up, with the backward error reached.
+/// A matrix found not to be positive definite; iterations used up, with the backward error reached.
 ///
 /// # Panics
 /// If a length differs from the dimension.
@@ -165,7 +164,7 @@ pub fn conjugate_gradients(
     let mut product = vec![0.0; dimension];
     let mut backward_error = true_residual(matrix, norm, right_side, solution, &mut residual);
     let mut iteration_count = 0;
-    // From here the recurrence starts anew after every look: what drifted is taken up as a residual of its own.
+    // The recurrence restarts after every check: the accumulated drift becomes part of the new residual.
     while backward_error.is_nan() || backward_error > limits.backward_error {
         let mut conditioned = residual.clone();
         factor.solve(&mut conditioned);
@@ -210,7 +209,7 @@ pub fn conjugate_gradients(
         }
         let before = backward_error;
         backward_error = true_residual(matrix, norm, right_side, solution, &mut residual);
-        // At the rounding floor new starts bring nothing.
+        // At the rounding floor restarts do not help.
         if backward_error >= 0.9 * before && backward_error <= 16.0 * f64::EPSILON {
             break;
         }
@@ -218,7 +217,7 @@ pub fn conjugate_gradients(
     Ok(IterativeSolution { backward_error, iteration_count })
 }
 
-/// b − A x into `residual`, and the backward error; 0 for x = b = 0.
+/// Writes b − A x to `residual` and returns the backward error; 0 for x = b = 0.
 fn true_residual(
     matrix: &SymmetricMatrix,
     norm: f64,
@@ -234,7 +233,7 @@ fn true_residual(
 
 fn largest(column: &[f64]) -> f64 {
     let most = column.iter().fold(0.0f64, |most, value| most.max(value.abs()));
-    // The maximum drops NaN, which the sum keeps (as it may an infinity: NaN or infinite, it is not small).
+    // The maximum drops NaN, but the sum keeps it (or an infinity: both are refused).
     if column.iter().sum::<f64>().is_finite() {
         most
     } else {
@@ -242,7 +241,7 @@ fn largest(column: &[f64]) -> f64 {
     }
 }
 
-/// NaN is not positive either.
+/// Whether a value is NaN or not positive.
 fn not_positive(value: f64) -> bool {
     value.is_nan() || value <= 0.0
 }

@@ -1,12 +1,12 @@
-//! Lanczos iteration with full reorthogonalisation: the largest eigenvalues of a symmetric operator in the complement of
-//! vectors already known.
+//! Lanczos iteration with full reorthogonalisation: the largest eigenvalues of a symmetric operator in the orthogonal
+//! complement of known vectors.
 //!
 //! ```text
 //! A V = V T + β v eᵀ        T tridiagonal,  T s = θ s        y = V s        ‖A y − θ y‖ = β |s_last|
 //! ```
 //!
 //! # Source
-//! Parlett (1998), The Symmetric Eigenvalue Problem, on Lanczos and on orthogonalising twice.
+//! Parlett (1998), The Symmetric Eigenvalue Problem (Lanczos iteration; reorthogonalisation twice).
 
 use faer::{Mat, Side};
 use rand::{RngExt, SeedableRng};
@@ -14,18 +14,19 @@ use rand_pcg::Pcg64;
 
 use crate::linear::error::LinearError;
 
-/// ‖A y − θ y‖/θ at which a pair counts as found \[1\]: some hundred roundings, which is what a solution leaves.
+/// ‖A y − θ y‖/θ below which a pair counts as converged \[1\]: about a hundred times the rounding of a solution.
 const FOUND: f64 = 1e-14;
 
-/// Steps a pair and steps beside them until a run ends with what it has.
+/// Largest number of steps: per pair, and additional ones.
 const STEPS: (usize, usize) = (30, 300);
 
-/// Steps between two looks at the tridiagonal matrix, and the share of the steps taken by then: a look costs the third power.
+/// Steps between two checks of the tridiagonal matrix: at least the first number, and a share of the steps so far. The
+/// cost of a check grows as the third power of the steps.
 const LOOK_EVERY: (usize, usize) = (8, 8);
 
 /// Unit vectors near eigenvectors, those of the largest eigenvalues first, from one random start.
 ///
-/// Of an eigenvalue that occurs several times one vector is found; another run with it in `known` finds the next.
+/// Of a degenerate eigenvalue only one vector is found; another run with it in `known` finds the next.
 pub(super) fn largest(
     dimension: usize,
     known: &[Vec<f64>],
@@ -53,7 +54,7 @@ pub(super) fn largest(
         next = product;
         let left = norm(&next);
         let size = diagonal.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-        // Nothing is left but the rounding of the solution: the space is one of eigenvectors. NaN ends the run as well.
+        // The rest is the rounding of the solution: the vectors span an invariant subspace. NaN ends the run as well.
         let closed = left.is_nan() || left <= FOUND * size || basis.len() == room;
         if closed || basis.len() >= look_at || basis.len() == step_limit {
             look_at = basis.len() + LOOK_EVERY.0.max(basis.len() / LOOK_EVERY.1);
@@ -66,7 +67,7 @@ pub(super) fn largest(
     }
 }
 
-/// Eigenvectors of the tridiagonal matrix that count as found, without gap from the largest eigenvalue on.
+/// Converged eigenvectors of the tridiagonal matrix, in sequence from the largest eigenvalue.
 fn pairs(diagonal: &[f64], beside: &[f64], left: f64) -> Vec<Vec<f64>> {
     let count = diagonal.len();
     let matrix = Mat::from_fn(count, count, |row, column| match row.abs_diff(column) {
@@ -90,7 +91,7 @@ fn combined(basis: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
     sum
 }
 
-/// Takes the parts along orthonormal vectors out of another, twice.
+/// Removes the components of a vector along orthonormal vectors, twice.
 fn make_orthogonal(vector: &mut [f64], known: &[Vec<f64>], basis: &[Vec<f64>]) {
     for _ in 0..2 {
         for other in known.iter().chain(basis) {

@@ -1,9 +1,9 @@
-//! Linear algebra of packings at rest: sparse factorisations of the [`Hessian`], the answer
-//! to an infinitesimal inflation or strain, and vibrational modes.
+//! Linear algebra of packings at rest: sparse factorisations of the [`Hessian`], the response to an infinitesimal
+//! inflation or strain, and vibrational modes.
 //!
-//! Start from [`LinearResponse`], [`ElasticModuli`] or [`VibrationalModes`], or from [`Analysis`] for a matrix of one's own.
-//! A definite matrix is factorised by Cholesky, an indefinite one as L D Lᵀ with the number of its negative eigenvalues; every solution is refined and comes
-//! with its backward error.
+//! Start from [`LinearResponse`], [`ElasticModuli`] or [`VibrationalModes`], or from [`Analysis`] for any matrix. A
+//! definite matrix is factorised by Cholesky, an indefinite one as L D Lᵀ, which gives the number of its negative
+//! eigenvalues. Every solution is refined and includes its backward error.
 //!
 //! ```
 //! use jamscope::law::Hertzian;
@@ -13,11 +13,11 @@
 //!
 //! let circle = Lattice::triangular(0.5, 0.05)?.circle(8.0)?;
 //! let hessian = Hessian::new(&circle.packing, &Hertzian::default(), Members::Backbone, Prestress::Included)?;
-//! // One analysis serves all matrices with entries in the same places.
+//! // One analysis serves all matrices with the same pattern of entries.
 //! let mut analysis = Analysis::of(&hessian)?;
 //! let mut factors = analysis.factorise(hessian.matrix())?;
 //! assert!(factors.is_cholesky() && factors.negative_eigenvalue_count() == 0);
-//! // Every disk pushed along x.
+//! // A force along x on every disk.
 //! let push = hessian.gather(&vec![[1.0, 0.0]; circle.packing.len()]);
 //! let mut moved = vec![0.0; push.len()];
 //! let told = factors.solve(&push, &mut moved)?;

@@ -1,13 +1,13 @@
-//! [`VibrationalModes`]: the softest vibrations of a packing at rest.
+//! [`VibrationalModes`]: the lowest vibrational modes of a packing at rest.
 //!
 //! ```text
 //! K e = λ e        λ = ω² for masses 1        participation ratio (Σ_i |e_i|²)² / (N Σ_i |e_i|⁴)
 //! ```
 //!
-//! K is the [Hessian](crate::linear::hessian) of the backbone. Its lowest eigenvalues are the largest of (K + s)⁻¹, which one
-//! sparse factorisation applies; s is small against ‖K‖ and large enough for K + s to be positive definite, so at a saddle
-//! the negative eigenvalues come first. Whether any was missed is not left to chance: the negative pivots of K − μ count all
-//! eigenvalues below a bound μ (Sylvester), and the search goes on until as many have been found.
+//! K is the [Hessian](crate::linear::hessian) of the backbone. Its lowest eigenvalues are the largest of (K + s)⁻¹,
+//! computed with one sparse factorisation. s is small compared with ‖K‖, but large enough for K + s to be positive
+//! definite. At a saddle the negative eigenvalues therefore come first. Completeness is checked: the negative pivots of
+//! K − μ count all eigenvalues below a bound μ (Sylvester), and the search continues until all of them are found.
 //!
 //! # Source
 //! Ericsson, Ruhe (1980), Math. Comput. 35, 1251 (shift and invert, spectrum slicing). Participation ratio: Bell, Dean (1970),
@@ -25,32 +25,33 @@ use crate::packing::Packing;
 use crate::sparse::SymmetricMatrix;
 use crate::vector::{Vector, larger};
 
-/// First shift tried over ‖K‖ \[1\]; 16 times more until K + s is positive definite. Changes speed only.
+/// First shift tried, over ‖K‖ \[1\]; multiplied by 16 until K + s is positive definite. Changes speed only.
 const FIRST_SHIFT: f64 = 1e-9;
 
-/// Residual over ‖K‖ that a mode must have \[1\]: the products of K alone round to some 10⁻¹⁶.
+/// Largest residual of a mode over ‖K‖ \[1\]. The products with K alone have a rounding of about 10⁻¹⁶.
 pub const TOLERANCE: f64 = 1e-13;
 
-/// Gap of two eigenvalues over ‖K‖ in which a bound is put \[1\]: far above the residuals, so both are on their side of it.
+/// Smallest gap between two eigenvalues for a bound between them, over ‖K‖ \[1\]. It is far above the residuals, so the
+/// order is certain.
 const GAP: f64 = 1e-11;
 
-/// From this share of all modes on (one in so many) dense algebra finds them all: stiff modes stand so far from the shift
-/// that inverting loses their digits, and the vectors to keep orthogonal would fill the matrix anyway.
+/// If more than one in this many modes is requested, dense algebra computes all modes. Shift-and-invert loses digits of
+/// modes far from the shift, and the vectors would take as much memory as the dense matrix.
 const DENSE_SHARE: usize = 4;
 
-/// Searches until it is given up.
+/// Limit of the number of searches.
 const SEARCH_LIMIT: usize = 40;
 
-/// One vibration.
+/// A vibrational mode.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mode<const D: usize> {
     /// λ = ω² for masses 1 \[force / length\].
     pub eigenvalue: f64,
-    /// ‖K e − λ e‖ / ‖K‖ for ‖e‖ = 1; λ is off by less than this times ‖K‖ \[1\].
+    /// ‖K e − λ e‖ / ‖K‖ for ‖e‖ = 1. The error of λ is below this times ‖K‖ \[1\].
     pub residual: f64,
-    /// From 1/N for a single disk to 1 for all N of the backbone alike \[1\].
+    /// From 1/N if a single disk moves to 1 if all N disks of the backbone move equally \[1\].
     pub participation_ratio: f64,
-    /// e, one entry a disk, Σ |e_i|² = 1; 0 for held disks and those off the backbone \[1\].
+    /// e, one entry per disk, Σ |e_i|² = 1; 0 for held disks and those off the backbone \[1\].
     pub displacements: Vec<Vector<D>>,
 }
 
@@ -63,7 +64,7 @@ pub struct Mode<const D: usize> {
 /// use jamscope::lattice::Lattice;
 /// use jamscope::linear::VibrationalModes;
 ///
-/// // Waves along and across each other come in sixes or twelves by symmetry in a box close to a square.
+/// // In a nearly square box the waves have multiplicities of six or twelve by symmetry.
 /// let packing = Lattice::triangular(0.5, 0.01)?.periodic([8, 5])?;
 /// let found = VibrationalModes::lowest(&packing, &Hookean { stiffness: 1.0 }, Prestress::Included, 4)?;
 /// assert_eq!((found.modes.len(), found.translation_count), (4, 2));
@@ -74,33 +75,35 @@ pub struct Mode<const D: usize> {
 pub struct VibrationalModes<const D: usize> {
     /// The modes, λ ascending.
     pub modes: Vec<Mode<D>>,
-    /// Translations of the packing as a whole, left out: D where nothing holds it, else none.
+    /// Number of translations of the whole packing, which are excluded: D if nothing holds it, otherwise 0.
     pub translation_count: usize,
     /// Largest ‖K t‖ / ‖K‖ of a translation: the rounding of the matrix \[1\].
     pub translation_residual: f64,
-    /// ‖K‖, the largest sum of absolute values in a row; no eigenvalue is above \[force / length\].
+    /// ‖K‖, the largest sum of absolute values in a row; an upper bound of all eigenvalues \[force / length\].
     pub norm: f64,
     /// Number of unknowns.
     pub unknown_count: usize,
-    /// Factorisations made: for the shift, and for every count.
+    /// Number of factorisations: for the shift, and for every count.
     pub factorisation_count: usize,
-    /// Systems solved.
+    /// Number of linear systems solved.
     pub solution_count: usize,
 }
 
 impl<const D: usize> VibrationalModes<D> {
-    /// The `count` lowest modes of the backbone; fewer if there are not as many.
+    /// The `count` lowest modes of the backbone; all modes if there are fewer.
     ///
     /// # Errors
-    /// No backbone; a factorisation that fails; modes that stay above [`TOLERANCE`].
+    /// No backbone; a factorisation that fails; residuals above [`TOLERANCE`].
     ///
     /// # Accuracy
-    /// Residuals below [`TOLERANCE`] ‖K‖, so eigenvalues within that; against a dense eigensolver within 7·10⁻¹⁶ ‖K‖ (up to 30
-    /// modes of the published packings). None of the lowest is missing: they are counted.
+    /// Residuals are below [`TOLERANCE`] ‖K‖, so eigenvalues are exact to that. Against a dense eigensolver the error
+    /// is below 7·10⁻¹⁶ ‖K‖ (up to 30 modes of the published packings). None of the lowest modes is missing, by their
+    /// count.
     ///
     /// # Cost
-    /// Ten modes of 1000 disks: 2 factorisations and 54 to 62 solutions, as many vectors in memory
-    /// (`cargo test modes:: -- --nocapture`). From a quarter of all modes on dense algebra, time by the third power.
+    /// Ten modes of 1000 disks: 2 factorisations and 54 to 62 solutions, with as many vectors in memory (`cargo test
+    /// modes:: -- --nocapture`). If a quarter of all modes or more is requested, dense algebra takes a time of third
+    /// power.
     pub fn lowest<L: PairLaw>(
         packing: &Packing<D>,
         law: &L,
@@ -142,13 +145,13 @@ impl<const D: usize> VibrationalModes<D> {
     }
 }
 
-/// Whether so many modes of so many components fit into memory: by dense algebra the matrix, its vectors and as much room,
-/// otherwise two vectors a mode, a lower bound.
+/// Checks the memory for `count` modes of `dimension` components. Dense algebra needs the matrix, its vectors and as
+/// much workspace; otherwise two vectors per mode are a lower bound.
 fn check_memory(dimension: usize, count: usize) -> Result<(), LinearError> {
     let column = 8.0 * dimension as f64;
     let bytes =
         if DENSE_SHARE * count >= dimension { 3.0 * dimension as f64 * column } else { 2.0 * count as f64 * column };
-    // By count, since all else follows from the packing.
+    // In terms of the count, since the packing sets all other sizes.
     Ok(Memory::of_machine().check("modes", count, bytes / count.max(1) as f64)?)
 }
 
@@ -163,7 +166,7 @@ struct Pair {
 struct Search<'a> {
     matrix: &'a SymmetricMatrix,
     norm: f64,
-    /// Translations, then the vectors of the pairs in the order in which they were found.
+    /// Translations, then the eigenvectors in the order of their discovery.
     known: Vec<Vec<f64>>,
     translation_count: usize,
     /// Ascending.
@@ -179,7 +182,7 @@ impl<'a> Search<'a> {
         Search { matrix, norm, known, translation_count, pairs, factorisation_count: 0, solution_count: 0 }
     }
 
-    /// Finds all pairs by dense algebra; translations are moved above the spectrum.
+    /// Computes all pairs by dense algebra; translations are shifted above the spectrum.
     fn all(&mut self) -> Result<(), LinearError> {
         let dimension = self.matrix.dimension();
         let moved = |row: usize, column: usize| -> f64 {
@@ -205,7 +208,7 @@ impl<'a> Search<'a> {
         &self.known[..self.translation_count]
     }
 
-    /// Goes on until the lowest `count` pairs are known to be the lowest.
+    /// Continues until the lowest `count` pairs are proven to be the lowest.
     fn until_found(
         &mut self,
         count: usize,
@@ -248,7 +251,7 @@ impl<'a> Search<'a> {
         Err(LinearError::ModesNotFound { found, asked: count, tolerance: TOLERANCE, factorisation_count })
     }
 
-    /// K + s, positive definite.
+    /// K + s with s large enough to be positive definite.
     fn definite(&mut self, analysis: &mut Analysis) -> Result<SymmetricMatrix, LinearError> {
         let mut shift = FIRST_SHIFT * self.norm;
         loop {
@@ -265,7 +268,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Takes a vector in if it is one of an eigenpair to [`TOLERANCE`].
+    /// Adds a vector if it is an eigenvector to within [`TOLERANCE`].
     fn take(&mut self, vector: Vec<f64>) {
         let (value, residual) = residual(self.matrix, &vector);
         let residual = residual / self.norm;
@@ -276,7 +279,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The first gap above the lowest `count` pairs: how many are below it, and its middle.
+    /// The first gap above the lowest `count` pairs: the number of pairs below it, and its midpoint.
     fn bound_above(&self, count: usize) -> Option<(usize, f64)> {
         (count..self.pairs.len()).find_map(|below| {
             let (low, high) = (self.pairs[below - 1].value, self.pairs[below].value);
@@ -287,7 +290,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Number of eigenvalues below a bound, translations left out.
+    /// Number of eigenvalues below a bound, without translations.
     fn count_below(&mut self, analysis: &mut Analysis, bound: f64) -> Result<usize, LinearError> {
         let shifted = self.matrix.shifted(-bound);
         self.factorisation_count += 1;
@@ -305,7 +308,7 @@ fn residual(matrix: &SymmetricMatrix, vector: &[f64]) -> (f64, f64) {
     (value, norm(&product))
 }
 
-/// Unit vectors along which all disks move alike.
+/// Unit vectors of uniform translations of all disks.
 fn translations<const D: usize>(dimension: usize) -> Vec<Vec<f64>> {
     let length = 1.0 / ((dimension / D) as f64).sqrt();
     (0..D).map(|axis| (0..dimension).map(|row| if row % D == axis { length } else { 0.0 }).collect()).collect()

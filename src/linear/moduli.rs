@@ -1,6 +1,6 @@
-//! [`ElasticModuli`]: how energy and stress of a periodic packing answer an infinitesimal strain of its box.
+//! [`ElasticModuli`]: the response of energy and stress of a periodic packing to an infinitesimal strain of its box.
 //!
-//! The box and all centres take the strain, r → (1 + ε) r with ε symmetric; then the disks relax (non-affine part).
+//! The box and all centres follow the strain, r → (1 + ε) r with ε symmetric; then the disks relax (non-affine part).
 //!
 //! ```text
 //! C_abcd = (1/V) ∂²E/∂ε_ab ∂ε_cd = (1/V) Σ_contacts d^(ab) · B d^(cd)        d^(ab) = e^(ab) r_ij + u_i^(ab) − u_j^(ab)
@@ -8,23 +8,24 @@
 //! K u^(ab) = Ξ^(ab)        Ξ_i^(ab) = −Σ_j B e^(ab) r_ij        e^(ab) = (e_a e_bᵀ + e_b e_aᵀ)/2
 //! ```
 //!
-//! B is the block of a contact in the [Hessian](crate::linear::hessian), its force at rest (prestress) included; u = 0 gives
-//! the affine (Born) part, and C = C_affine − (1/V) Ξ·K⁻¹ Ξ. The sum over d is used because an error of u enters it squared
-//! and because a soft packing, whose two parts nearly cancel, comes out without the cancellation.
+//! B is the block of a contact in the [Hessian](crate::linear::hessian), including its force at rest (prestress). u = 0
+//! gives the affine (Born) part, and C = C_affine − (1/V) Ξ·K⁻¹ Ξ. The sum over d is used instead, because an error of
+//! u enters it only squared. It also avoids the cancellation of the two parts in a soft packing.
 //!
-//! *Under pressure* the second derivatives of the energy are not the slopes of the stress: those are
+//! *Under pressure* the second derivatives of the energy are not the derivatives of the stress, which are
 //!
 //! ```text
 //! B_abcd = ∂σ_ab/∂ε_cd = C_abcd + (σ_ac δ_bd + σ_ad δ_bc + σ_bc δ_ad + σ_bd δ_ac)/4 − σ_ab δ_cd
 //! ```
 //!
-//! with σ the stress at rest, here positive in tension. For σ = −p the bulk modulus −V dp/dV is C_aacc/D² + p (D−1)/D and
+//! where σ is the stress at rest, here positive in tension. For σ = −p the bulk modulus −V dp/dV is C_aacc/D² + p
+//! (D−1)/D and
 //! the shear modulus C_xyxy − p/2.
 //!
 //! # Source
-//! Wallace (1967), Phys. Rev. 162, 776 (slopes of the stress; written there with derivatives in the Lagrangian strain,
-//! C − (σ_ac δ_bd + …)/4). Lutsko (1989), J. Appl. Phys. 65, 2991 (the relaxation). The convention of C is that of the
-//! published constants of `fixtures/goodrich`.
+//! Wallace (1967), Phys. Rev. 162, 776 (derivatives of the stress; there C contains derivatives in the Lagrangian
+//! strain, C − (σ_ac δ_bd + …)/4). Lutsko (1989), J. Appl. Phys. 65, 2991 (relaxation). The convention of C is that of
+//! the published constants of `fixtures/goodrich`.
 
 use faer::{Mat, Side};
 
@@ -40,12 +41,12 @@ use crate::vector::{Vector, dot, larger, norm};
 /// A tensor of rank four, indices a, b, c, d.
 pub type Tensor<const D: usize> = [[[[f64; D]; D]; D]; D];
 
-/// Second derivatives of the energy in the strain, and the stress at rest.
+/// Second derivatives of the energy with respect to the strain, and the stress at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stiffness<const D: usize> {
     /// C_abcd \[force / length^(D−1)\].
     pub constants: Tensor<D>,
-    /// Stress of the backbone at rest, positive in compression; 0 where the prestress is left out \[force / length^(D−1)\].
+    /// Stress of the backbone at rest, positive in compression; 0 without prestress \[force / length^(D−1)\].
     pub stress: [[f64; D]; D],
 }
 
@@ -64,8 +65,8 @@ pub struct Shear {
 
 /// Elastic constants of a periodic packing at rest.
 ///
-/// # Accuracy
-/// The 40 published packings of `fixtures/goodrich`: every constant within 8·10⁻¹⁵ of the published one, constants up to 1
+/// 40 published packings of `fixtures/goodrich`: every constant is within 8·10⁻¹⁵ of the published one, for constants
+/// up to 1 (asserted to 10⁻¹², `cargo test moduli:: -- --nocapture`).
 /// (asserted to 10⁻¹², `cargo test moduli:: -- --nocapture`).
 ///
 /// # Cost
@@ -87,13 +88,13 @@ pub struct Shear {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ElasticModuli<const D: usize> {
-    /// All disks follow the strain.
+    /// All disks follow the strain affinely.
     pub affine: Stiffness<D>,
-    /// They relax: what an experiment would find.
+    /// The disks relax, as in an experiment.
     pub relaxed: Stiffness<D>,
     /// Number of unknowns.
     pub unknown_count: usize,
-    /// Number of negative eigenvalues of the Hessian: 0 at a minimum. At a saddle no relaxation would end here.
+    /// Number of negative eigenvalues of the Hessian: 0 at a minimum, more at a saddle.
     pub negative_eigenvalue_count: usize,
     /// Largest backward error of a solution \[1\].
     pub backward_error: f64,
@@ -102,7 +103,7 @@ pub struct ElasticModuli<const D: usize> {
 }
 
 impl<const D: usize> ElasticModuli<D> {
-    /// The elastic constants of a packing at rest. Rattlers are left out with their contacts.
+    /// The elastic constants of a packing at rest. Rattlers and their contacts are excluded.
     ///
     /// # Errors
     /// Held disks, the open plane, a law with sites; no backbone; a backbone that is not rigid (its Hessian is singular).
@@ -149,8 +150,8 @@ impl<const D: usize> ElasticModuli<D> {
 }
 
 impl<const D: usize> Stiffness<D> {
-    /// Slopes of the stress, B_abcd = ∂σ_ab/∂ε_cd, tension positive \[force / length^(D−1)\]. Without forces at rest they are
-    /// the constants themselves.
+    /// Derivatives of the stress, B_abcd = ∂σ_ab/∂ε_cd, tension positive \[force / length^(D−1)\]. Equal to the
+    /// constants if there are no forces at rest.
     pub fn stress_slopes(&self) -> Tensor<D> {
         let one = |a: usize, b: usize| f64::from(u8::from(a == b));
         let tension = |a: usize, b: usize| -self.stress[a][b];
@@ -170,7 +171,7 @@ impl<const D: usize> Stiffness<D> {
         total / (D * D) as f64
     }
 
-    /// Shear moduli; NaN spreads.
+    /// Shear moduli; NaN if a constant is NaN.
     pub fn shear(&self) -> Shear {
         let (slopes, strains) = (self.stress_slopes(), traceless::<D>());
         let energy = |first: &[[f64; D]; D], second: &[[f64; D]; D]| {
@@ -255,7 +256,7 @@ fn multiplied<const D: usize>(block: &[Vector<D>; D], vector: Vector<D>) -> Vect
     block.map(|row| dot(row, vector))
 }
 
-/// Ξ^(ab): the net force on each disk per strain if all follow it.
+/// Ξ^(ab): the net force on each disk per affine strain.
 fn affine_forces<const D: usize>(links: &[Link<D>], disk_count: usize, strain: (usize, usize)) -> Vec<Vector<D>> {
     let mut forces = vec![[0.0; D]; disk_count];
     for link in links {
@@ -268,7 +269,7 @@ fn affine_forces<const D: usize>(links: &[Link<D>], disk_count: usize, strain: (
     forces
 }
 
-/// C from the displacement fields of the strains.
+/// C from the displacement fields for all strains.
 fn constants<const D: usize>(links: &[Link<D>], fields: &[Vec<Vector<D>>], volume: f64) -> Tensor<D> {
     let strains = strains::<D>();
     let mut sums = vec![vec![0.0; strains.len()]; strains.len()];
@@ -284,7 +285,7 @@ fn constants<const D: usize>(links: &[Link<D>], fields: &[Vec<Vector<D>>], volum
         }
     }
     let place = |a: usize, b: usize| strains.iter().position(|&pair| pair == (a.min(b), a.max(b))).unwrap_or(0);
-    // The sums of (p, q) and (q, p) differ by rounding: one of them serves for both.
+    // The sums of (p, q) and (q, p) differ by rounding: one of them is used for both.
     tensor(|[a, b, c, d]| {
         let (p, q) = (place(a, b), place(c, d));
         sums[p.min(q)][p.max(q)] / volume

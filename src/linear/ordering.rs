@@ -1,9 +1,9 @@
-//! In which order the unknowns of a packing are eliminated: what decides how many values a factor has.
+//! The elimination order of the unknowns of a packing, which determines the number of values of a factor.
 //!
-//! Both orders treat a disk as one vertex, coupled to those it touches, and keep its D coordinates together:
-//! [`minimum_degree`] guesses from the contacts alone, [`nested_dissection`] knows where the disks are. A function here
-//! gives the row to eliminate in each place, for [`Analysis::in_order`](crate::linear::Analysis::in_order);
-//! [`Analysis::of`](crate::linear::Analysis::of) takes [`best`].
+//! Both methods treat a disk as one vertex, coupled to the disks that it touches, and keep its D coordinates together.
+//! [`minimum_degree`] uses the contacts alone; [`nested_dissection`] also uses the positions. A function returns the
+//! row to eliminate at each place, for [`Analysis::in_order`](crate::linear::Analysis::in_order).
+//! [`Analysis::of`](crate::linear::Analysis::of) uses [`best`].
 //!
 //! # Source
 //! Amestoy, Davis, Duff (1996), SIAM J. Matrix Anal. Appl. 17, 886 (approximate minimum degree, as in faer 0.24); George
@@ -17,11 +17,7 @@ use crate::linear::dissection;
 use crate::linear::error::LinearError;
 use crate::linear::hessian::Hessian;
 
-/// The order that is best here: minimum degree in two dimensions, nested dissection in three.
-///
-/// In two dimensions both take the same time to factorise to 12 %, and dissection leaves 11 to 20 % more values (jammed
-/// packings of 5548 to 88768 disks). In three it takes a half to two thirds of the time and 72 to 79 % of the values (2000
-/// and 8000 balls). `cargo run --release --features measurements --example orderings`.
+/// The fastest order for jammed packings: minimum degree in two dimensions, nested dissection in three.
 ///
 /// # Errors
 /// Not enough memory.
@@ -54,16 +50,16 @@ pub fn minimum_degree<const D: usize>(hessian: &Hessian<D>) -> Result<Vec<usize>
     Ok(unknowns::<D>(order.into_iter()))
 }
 
-/// Nested dissection of the disks where they are.
+/// Nested dissection of the disks by their positions.
 ///
 /// # Cost
-/// N log N in disks.
+/// N log N, N the number of disks.
 pub fn nested_dissection<const D: usize>(hessian: &Hessian<D>) -> Vec<usize> {
     let order = dissection::nested_dissection(hessian.places(), &hessian.graph());
     unknowns::<D>(order.into_iter().map(|vertex| vertex as usize))
 }
 
-/// The D rows of each disk in turn.
+/// The D rows of each disk, in the given order of disks.
 fn unknowns<const D: usize>(disks: impl Iterator<Item = usize>) -> Vec<usize> {
     disks.flat_map(|disk| (0..D).map(move |axis| D * disk + axis)).collect()
 }

@@ -3,11 +3,11 @@
 use crate::network::ContactNetwork;
 use crate::packing::{Packing, PackingError};
 
-/// The packing with the first disk of its backbone held, where nothing holds it: no rigid motion is left, and since
-/// internal forces add up to nothing, holding one disk costs none. None without a backbone.
+/// The packing with the first disk of its backbone held, if nothing else holds it. This removes rigid translations.
+/// Internal forces add up to zero, so the held disk carries no force. None without a backbone.
 ///
-/// K with the rows of one disk taken out has as many negative eigenvalues as K: every displacement is one that leaves the
-/// disk where it is plus a translation, and a translation costs nothing.
+/// K without the rows of one disk has as many negative eigenvalues as K. Every displacement is the sum of a
+/// translation, which has no stiffness, and of one that leaves this disk fixed.
 pub(crate) fn pinned<const D: usize>(
     packing: &Packing<D>,
     network: &ContactNetwork<D>,

@@ -1,4 +1,5 @@
-//! [`LinearResponse`]: how a packing answers an infinitesimal load: one disk growing, forces, or held disks moved.
+//! [`LinearResponse`]: the response of a packing to an infinitesimal load: growth of a disk, forces, or displacements
+//! of held disks.
 //!
 //! ```text
 //! growth          K u = Σ_(contacts of the centre) [F' + F ∂ln c/∂R_0] n        u: displacement per d_0
@@ -6,10 +7,10 @@
 //! displacements   K u = −K_(held) u_held
 //! ```
 //!
-//! Growing the centre disk by d_0 adds d_0 to the overlap of each of its contacts, and changes the coefficient c of the law
-//! where that depends on the radii (Hertzian: R_ij grows). n points away from the centre. This is the limit of
-//! [`inflate`](crate::inflation::inflate) for d_0 → 0 as long as no contact opens or closes; u may be one at a saddle as
-//! well, which no relaxer reaches.
+//! Growing the centre disk by d_0 adds d_0 to the overlap of each of its contacts. It also changes the coefficient c of
+//! the law if that depends on the radii (Hertzian: R_ij grows). n points away from the centre. This is the limit of
+//! [`inflate`](crate::inflation::inflate) for d_0 → 0 if no contact opens or closes. The response also exists at a
+//! saddle, which no relaxer reaches.
 
 use crate::forces::assembly::Assembly;
 use crate::forces::elastic::geometry;
@@ -21,14 +22,14 @@ use crate::network::ContactNetwork;
 use crate::packing::Packing;
 use crate::vector::{Vector, difference, scaled, sum};
 
-/// Displacements of all disks of a packing per unit of what was done to it.
+/// Displacements of all disks of a packing per unit load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearResponse<const D: usize> {
-    /// Index of the disk that grows; none where the load is another.
+    /// Index of the growing disk; none for other loads.
     pub growing: Option<usize>,
-    /// Displacement of each disk, 0 for those off the backbone: per d_0 \[1\] of a disk that grows, else \[length\].
+    /// Displacement of each disk, 0 for those off the backbone: per d_0 \[1\] if a disk grows, otherwise \[length\].
     pub displacements: Vec<Vector<D>>,
-    /// Whether each disk has been solved for.
+    /// Whether each disk is among the unknowns.
     pub solved: Vec<bool>,
     /// Number of unknowns.
     pub unknown_count: usize,
@@ -43,15 +44,14 @@ pub struct LinearResponse<const D: usize> {
 impl<const D: usize> LinearResponse<D> {
     /// The response of a packing at rest to the growth of a disk.
     ///
-    /// The disk is held if the packing says so, as in a circle. Where nothing is held and no site holds the packing, the
-    /// centre of mass of the backbone stays where it is, as in the periodic box of [`inflate`](crate::inflation::inflate).
+    /// The disk is held if it is held in the packing, as in a circle. If neither held disks nor sites hold the packing,
+    /// the centre of mass of the backbone is fixed, as in the periodic box of [`inflate`](crate::inflation::inflate).
     ///
     /// # Errors
-    /// [`LinearError`] says why there is none.
+    /// [`LinearError`].
     ///
     /// # Cost
-    /// One analysis, one factorisation, and two solutions or more: 24 ms for 5 586 disks in two dimensions, 0.8 s for 89 232
-    /// (`cargo bench --bench linear`, one of two shared cores).
+    /// One analysis, one factorisation, and at least two solutions (`cargo bench --bench linear`).
     pub fn of_inflation<L: PairLaw>(
         packing: &Packing<D>,
         centre: usize,
@@ -64,14 +64,15 @@ impl<const D: usize> LinearResponse<D> {
         })
     }
 
-    /// The responses of a packing at rest to the growth of one disk after another, each given to `visit`: one factorisation for
-    /// all of them. Each is that of [`LinearResponse::of_inflation`], but for rounding where nothing holds the packing.
+    /// The responses of a packing at rest to the growth of several disks, one at a time, with a single factorisation.
+    /// Each is passed to `visit`. Results equal those of [`LinearResponse::of_inflation`], up to rounding if nothing
+    /// holds the packing.
     ///
     /// # Errors
-    /// As [`LinearResponse::of_inflation`]; no disk after the one at fault is visited.
+    /// See [`LinearResponse::of_inflation`]. After an error, no further disk is visited.
     ///
     /// # Cost
-    /// A solution a disk, a tenth of the time that one alone takes (the table of the chapter).
+    /// One solution per disk, a tenth of the time of a single response (table in the book).
     pub fn of_inflations<L: PairLaw>(
         packing: &Packing<D>,
         centres: &[usize],
@@ -88,16 +89,17 @@ impl<const D: usize> LinearResponse<D> {
         })
     }
 
-    /// The response to a force on each disk \[force\]. Forces on held disks and on those off the backbone do nothing.
+    /// The response to a force on each disk \[force\]. Forces on held disks and on those off the backbone have no
+    /// effect.
     ///
-    /// Where nothing is held and no site holds the packing, a force on the packing as a whole has no answer: its mean over the
-    /// disks of the backbone is taken away, and their centre of mass stays where it is.
+    /// If neither held disks nor sites hold the packing, a net force has no response. The mean force on the backbone is
+    /// then subtracted, and its centre of mass is fixed.
     ///
     /// # Shape
-    /// One force a disk.
+    /// One force per disk.
     ///
     /// # Errors
-    /// A force that is not finite, or not one a disk; else as [`LinearResponse::of_inflation`].
+    /// A force that is not finite, or a wrong number of forces; otherwise see [`LinearResponse::of_inflation`].
     pub fn of_forces<L: PairLaw>(
         packing: &Packing<D>,
         forces: &[Vector<D>],
@@ -114,7 +116,7 @@ impl<const D: usize> LinearResponse<D> {
         with_solver(packing, None, (law, prestress), |assembly, hessian, solve| {
             let mut forces = forces.to_vec();
             if floating {
-                // The disk pinned in place of the packing answers for its own force through the sum of all.
+                // The force on the pinned disk enters through the sum of all forces.
                 let backbone = Hessian::new(packing, assembly.law(), Members::Backbone, prestress)?;
                 let total = backbone.disks().iter().fold([0.0; D], |total, &disk| sum(total, forces[disk as usize]));
                 let mean = scaled(1.0 / backbone.disks().len() as f64, total);
@@ -124,10 +126,11 @@ impl<const D: usize> LinearResponse<D> {
         })
     }
 
-    /// The response to held disks moved by these \[length\]; held disks not named stay.
+    /// The response to displacements of held disks \[length\]; held disks not listed do not move.
     ///
     /// # Errors
-    /// A disk that is not there or not held, a displacement that is not finite; else as [`LinearResponse::of_inflation`].
+    /// An index without a disk, a disk that is not held, a displacement that is not finite; otherwise see
+    /// [`LinearResponse::of_inflation`].
     pub fn of_displacements<L: PairLaw>(
         packing: &Packing<D>,
         moved: &[(usize, Vector<D>)],
@@ -159,13 +162,13 @@ fn exists<const D: usize>(packing: &Packing<D>, disk: usize) -> Result<(), Linea
     if disk < disk_count { Ok(()) } else { Err(LinearError::NoSuchDisk { disk, disk_count }) }
 }
 
-/// Whether nothing holds the packing as a whole.
+/// Whether neither held disks nor sites hold the packing.
 fn floats<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> bool {
     !packing.held().contains(&true) && law.on_site_coupling() == 0.0
 }
 
-/// Calls a function with what solves for a load on the unknowns. Where the packing floats a disk is pinned, `pin` or one of the
-/// backbone, and the mean taken out.
+/// Calls a function with a solver for loads on the unknowns. If the packing floats, a disk is pinned (`pin` or one of
+/// the backbone), and the mean displacement is subtracted.
 fn with_solver<const D: usize, L: PairLaw, T>(
     packing: &Packing<D>,
     pin: Option<usize>,
@@ -178,8 +181,8 @@ fn with_solver<const D: usize, L: PairLaw, T>(
 ) -> Result<T, LinearError> {
     let disk_count = packing.len();
     let floating = floats(packing, law);
-    // Nothing holds the packing as a whole: a disk does, and the shift is taken out again below. The forces of the load add
-    // up to nothing, so holding it costs none.
+    // Nothing holds the packing, so one disk is pinned and the translation is subtracted below. The forces of the load
+    // add up to zero, so the pinned disk carries no force.
     let pinned;
     let packing = if floating {
         let pin = match pin {
@@ -207,7 +210,7 @@ fn with_solver<const D: usize, L: PairLaw, T>(
         let solution = factorisation.solve(push, &mut unknowns)?;
         let mut displacements = hessian.scatter(&unknowns);
         if floating {
-            // Of the backbone: those solved for, and the one that is pinned. Rattlers stay.
+            // Mean over the backbone: the disks solved for and the pinned one. Rattlers do not move.
             let total = displacements.iter().fold([0.0; D], |total, &u| sum(total, u));
             let mean = scaled(1.0 / (hessian.disks().len() + 1) as f64, total);
             for (disk, u) in displacements.iter_mut().enumerate() {
@@ -231,7 +234,7 @@ fn with_solver<const D: usize, L: PairLaw, T>(
 /// Forces per d_0 on the unknowns when the disk `centre` grows.
 ///
 /// # Errors
-/// A disk that touches nothing that could answer.
+/// The disk has no contact with the backbone.
 fn push_of<const D: usize, L: PairLaw>(
     assembly: &Assembly<D, L>,
     hessian: &Hessian<D>,
@@ -246,7 +249,7 @@ fn push_of<const D: usize, L: PairLaw>(
             continue;
         }
         let (apart, distance, overlap) = geometry(pairs, pair, &assembly.displacements);
-        // A neighbour off the backbone takes its contact with it; held ones keep theirs.
+        // A contact with a mobile neighbour off the backbone does not count; contacts with held disks do.
         let absent = |disk: u32| (disk as usize) < assembly.mobile_count() && hessian.row_of(disk).is_none();
         if overlap <= 0.0 || absent(first) || absent(second) {
             continue;

@@ -7,7 +7,7 @@ use crate::displacement::DisplacementField;
 /// Half width of a ring over R \[1\]. Source: the study, δr̂ = 0.03.
 pub const RING_HALF_WIDTH: f64 = 0.03;
 
-/// The disks of the ring r̂ ± 0.03, by angle.
+/// The disks of the ring r̂ ± 0.03, sorted by angle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AngularProfile {
     /// r̂ = r/R, the middle of the ring \[1\].
@@ -21,7 +21,7 @@ pub struct AngularProfile {
 }
 
 impl AngularProfile {
-    /// The ring of a field around r̂, on the disks that count.
+    /// The ring of a field around r̂, from the disks that count.
     pub fn of(field: &DisplacementField<2>, relative_radius: f64) -> Self {
         Self::within(field, relative_radius, RING_HALF_WIDTH)
     }

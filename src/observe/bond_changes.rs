@@ -1,11 +1,11 @@
-//! [`BondChanges`]: how much every bond between touching disks is stretched or compressed, d_∥.
+//! [`BondChanges`]: the stretch or compression of every bond between touching disks, d_∥.
 //!
 //! ```text
 //! d_∥ = n·(d_i − d_j)        n = r_ij/r_ij before, r_ij from j to i        d_∥ > 0: stretched
 //! ```
 //!
-//! d_∥ is linear in the displacements and, but for terms of second order, the change of the length of the bond, which is
-//! given beside it.
+//! d_∥ is linear in the displacements. Up to terms of second order it is the change of the length of the bond, which is
+//! also given.
 //!
 //! # Source
 //! Ellenbroek, van Hecke, van Saarloos (2009), Phys. Rev. E 80, 061307.
@@ -28,10 +28,10 @@ use crate::vector::{Vector, difference, dot, norm, sum};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BondSet {
-    /// Those still there after.
+    /// Contacts that still exist after.
     #[default]
     Kept,
-    /// All of them, broken ones too.
+    /// All contacts, including broken ones.
     Before,
 }
 
@@ -43,15 +43,15 @@ pub struct BondChange<const D: usize> {
     pub first: u32,
     /// Second disk.
     pub second: u32,
-    /// Midpoint of the two centres before, from the inflated disk \[length\].
+    /// Midpoint of the two centres before, relative to the inflated disk \[length\].
     pub midpoint: Vector<D>,
     /// Distance of the midpoint from the inflated disk \[length\].
     pub distance: f64,
-    /// From the second to the first centre before \[length\].
+    /// Vector from the second to the first centre before \[length\].
     pub separation: Vector<D>,
     /// d_∥ \[length\].
     pub parallel: f64,
-    /// Length after less length before \[length\].
+    /// Length after minus length before \[length\].
     pub length_change: f64,
 }
 
@@ -59,7 +59,7 @@ pub struct BondChange<const D: usize> {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(bound(serialize = "[f64; D]: Serialize"))]
 pub struct BondChanges<const D: usize> {
-    /// Which contacts they are.
+    /// The contacts included.
     pub set: BondSet,
     /// Bonds in ascending order of (first, second).
     pub bonds: Vec<BondChange<D>>,
@@ -69,7 +69,7 @@ impl<const D: usize> BondChanges<D> {
     /// The bonds of an inflation.
     ///
     /// # Errors
-    /// As [`ContactNetwork::new`](crate::network::ContactNetwork::new).
+    /// See [`ContactNetwork::new`](crate::network::ContactNetwork::new).
     pub fn of_inflation<L: PairLaw>(inflated: &Inflated<D>, law: &L, set: BondSet) -> Result<Self, PackingError> {
         let before = State::new(inflated.before.packing.get(), law)?;
         let after = State::new(inflated.after.packing.get(), law)?;
@@ -82,7 +82,7 @@ impl<const D: usize> BondChanges<D> {
     /// If the packings differ in their number of disks.
     ///
     /// # Accuracy
-    /// d_∥ and the change of length to a few roundings of the displacements themselves, not of the distances.
+    /// d_∥ and the change of length are exact to a few roundings of the displacements, not of the distances.
     pub fn between(before: &State<D>, after: &State<D>, centre: usize, set: BondSet) -> Self {
         let counts = common_backbone(before, after);
         let moved = |disk: usize| displacement(before.packing, after.packing, disk);
@@ -94,13 +94,13 @@ impl<const D: usize> BondChanges<D> {
         BondChanges { set, bonds: bonds.collect() }
     }
 
-    /// The bonds in the linear response to an inflation by `increase` \[length\], which breaks none; distances are from the
-    /// disk that grows.
+    /// The bonds in the linear response to an inflation by `increase` \[length\]. The linear response breaks no bond.
+    /// Distances are from the growing disk.
     ///
-    /// `before` is the state the response was made from.
+    /// `before` is the state of the response.
     ///
     /// # Panics
-    /// If the response belongs to another packing, or is not one to the growth of a disk.
+    /// If the response belongs to another packing, or is not that to the growth of a disk.
     #[cfg(feature = "linear")]
     pub fn of_linear_response(before: &State<D>, response: &LinearResponse<D>, increase: f64) -> Self {
         assert_eq!(
@@ -118,7 +118,7 @@ impl<const D: usize> BondChanges<D> {
 }
 
 impl<const D: usize> BondChange<D> {
-    /// One contact of the state before; none if one of its disks does not count.
+    /// The bond of one contact of the state before; none if one of its disks does not count.
     fn of(
         before: &State<D>,
         contact: &Contact<D>,
@@ -134,7 +134,7 @@ impl<const D: usize> BondChange<D> {
         let separation = contact.separation;
         let length = norm(separation);
         let along = dot(separation, relative);
-        // |s + d| − |s| = (2 s·d + d·d)/(|s + d| + |s|), which loses no digits where d is small.
+        // |s + d| − |s| = (2 s·d + d·d)/(|s + d| + |s|), without cancellation for small d.
         let length_change = (2.0 * along + dot(relative, relative)) / (norm(sum(separation, relative)) + length);
         let (midpoint, distance) = before.midpoint(contact, centre);
         Some(BondChange {

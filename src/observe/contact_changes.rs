@@ -1,13 +1,14 @@
 //! [`ContactChanges`]: which contacts are kept, made and broken from one state to another, and where;
-//! [`ContactCycle`]: which of them return when the disk is deflated again.
+//! [`ContactCycle`]: which of them return after a deflation.
 //!
 //! ```text
 //! C(S): pairs (i, j) with δ_ij > 0 in state S
 //! kept = C(A) ∩ C(B)        broken = C(A) \ C(B)        made = C(B) \ C(A)
 //! ```
 //!
-//! Counted on the disks that are on the backbone in both states, held ones and the inflated one among them. A contact with
-//! any other disk is counted apart: a rattler touches or not as it happens to lie. Contacts of two held disks are none.
+//! Counted are the disks on the backbone of both states, including held ones and the inflated one. Contacts with any
+//! other disk are counted separately: contacts of rattlers are accidental. Contacts between two held disks do not
+//! count.
 //!
 //! # Source
 //! van Deen, Simon, Zeravcic, Dagois-Bohy, Tighe, van Hecke (2014), Phys. Rev. E 90, 020202.
@@ -23,7 +24,7 @@ use crate::observe::state::{State, common_backbone};
 use crate::packing::PackingError;
 use crate::vector::Vector;
 
-/// A contact of one state that the other does not have.
+/// A contact that only one of the two states has.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(bound(serialize = "[f64; D]: Serialize"))]
 pub struct ChangedContact<const D: usize> {
@@ -31,13 +32,13 @@ pub struct ChangedContact<const D: usize> {
     pub first: u32,
     /// Second disk.
     pub second: u32,
-    /// Midpoint of the two centres in the state that has the contact, from the inflated disk \[length\].
+    /// Midpoint of the two centres in the state with the contact, relative to the inflated disk \[length\].
     pub midpoint: Vector<D>,
     /// Distance of the midpoint from the inflated disk \[length\].
     pub distance: f64,
 }
 
-/// How many contacts with disks that are rattlers in either state are kept, made and broken.
+/// Numbers of contacts kept, made and broken with disks that are rattlers in either state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct RattlerContacts {
     /// In both states.
@@ -48,7 +49,7 @@ pub struct RattlerContacts {
     pub broken_count: usize,
 }
 
-/// Contacts of the backbone from one state to another.
+/// Changes of the contacts of the backbone from one state to another.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(bound(serialize = "[f64; D]: Serialize"))]
 pub struct ContactChanges<const D: usize> {
@@ -66,7 +67,7 @@ impl<const D: usize> ContactChanges<D> {
     /// From the state before an inflation to the one after.
     ///
     /// # Errors
-    /// As [`ContactNetwork::new`](crate::network::ContactNetwork::new).
+    /// See [`ContactNetwork::new`](crate::network::ContactNetwork::new).
     pub fn of_inflation<L: PairLaw>(inflated: &Inflated<D>, law: &L) -> Result<Self, PackingError> {
         let before = State::new(inflated.before.packing.get(), law)?;
         let after = State::new(inflated.after.packing.get(), law)?;
@@ -115,7 +116,7 @@ impl<const D: usize> ContactChanges<D> {
     }
 }
 
-/// The contacts of both lists in ascending order of (first, second), those of one pair together.
+/// The contacts of both lists in ascending order of (first, second); equal pairs are adjacent.
 pub(crate) fn merged<'a, const D: usize>(
     before: &'a [Contact<D>],
     after: &'a [Contact<D>],
@@ -145,11 +146,11 @@ pub struct ContactCycle<const D: usize> {
     pub inflation: ContactChanges<D>,
     /// From the inflated state to the deflated one.
     pub deflation: ContactChanges<D>,
-    /// From before the inflation to after the deflation: what the cycle left.
+    /// From before the inflation to after the deflation: the permanent changes of the cycle.
     pub left: ContactChanges<D>,
-    /// How many of the contacts that the inflation broke are there again.
+    /// Number of contacts that the inflation broke and the deflation restored.
     pub broken_returned_count: usize,
-    /// How many of the contacts that the inflation made are gone again.
+    /// Number of contacts that the inflation made and the deflation broke again.
     pub made_returned_count: usize,
 }
 
@@ -157,7 +158,7 @@ impl<const D: usize> ContactCycle<D> {
     /// The cycle of an inflation; none if the disk was not deflated.
     ///
     /// # Errors
-    /// As [`ContactNetwork::new`](crate::network::ContactNetwork::new).
+    /// See [`ContactNetwork::new`](crate::network::ContactNetwork::new).
     pub fn of<L: PairLaw>(inflated: &Inflated<D>, law: &L) -> Result<Option<Self>, PackingError> {
         let Some(deflated) = &inflated.deflated else { return Ok(None) };
         let states = [&inflated.before, &inflated.after, deflated];
@@ -165,7 +166,7 @@ impl<const D: usize> ContactCycle<D> {
         Ok(Some(Self::through([&before?, &after?, &deflated?], inflated.centre)))
     }
 
-    /// Through the states before, inflated and deflated of the same disks; distances are from disk `centre`.
+    /// The cycle through the states before, inflated and deflated of the same disks; distances are from disk `centre`.
     ///
     /// # Panics
     /// If the packings differ in their number of disks.
@@ -184,7 +185,7 @@ impl<const D: usize> ContactCycle<D> {
         }
     }
 
-    /// Share of the contacts made or broken by the inflation that return to what they were \[1\]; none without any.
+    /// Share of the contacts changed by the inflation that the deflation restores \[1\]; none without changes.
     pub fn returned_share(&self) -> Option<f64> {
         let all = self.inflation.made.len() + self.inflation.broken.len();
         (all > 0).then(|| (self.broken_returned_count + self.made_returned_count) as f64 / all as f64)

@@ -1,11 +1,11 @@
-//! [`ExcessCoordination`]: how many contacts a backbone has beyond those it needs, ΔZ.
+//! [`ExcessCoordination`]: the number of contacts per disk of a backbone above the isostatic value, ΔZ.
 //!
 //! ```text
 //! ΔZ = Z − 2D        Z = (ends of contacts of the backbone on its mobile disks) / (mobile disks of the backbone)
 //! ```
 //!
 //! # Source
-//! Wyart, Nagel, Witten (2005), Europhys. Lett. 72, 486; design §4.
+//! Wyart, Nagel, Witten (2005), Europhys. Lett. 72, 486.
 
 use serde::{Deserialize, Serialize};
 
@@ -32,7 +32,8 @@ use crate::network::ContactNetwork;
 pub struct ExcessCoordination {
     /// Mobile disks of the backbone.
     pub disk_count: usize,
-    /// Ends of contacts of the backbone on those disks: two for a contact of two of them, one where the other is held.
+    /// Ends of contacts of the backbone on these disks: two for a contact between two of them, one for a contact with a
+    /// held disk.
     pub end_count: usize,
     /// ΔZ = Z − 2D \[1\].
     pub value: f64,

@@ -1,11 +1,11 @@
-//! [`Fluctuations`]: how much a quantity varies around rings, h(r).
+//! [`Fluctuations`]: the standard deviation of a quantity in rings, h(r).
 //!
 //! ```text
 //! h(r) = √⟨(x − ⟨x⟩)²⟩        ⟨·⟩ over the bonds or disks of the ring around r
 //! ```
 //!
-//! x = d_∥ of the bonds gives h_∥, x = d_r of the disks h_r. With n members s² = Σ (x − ⟨x⟩)²/(n − 1), and its standard
-//! error follows from the fourth moment, whatever the distribution: var s² = (m₄ − s⁴ (n − 3)/(n − 1))/n.
+//! x = d_∥ of the bonds gives h_∥, x = d_r of the disks h_r. With n members s² = Σ (x − ⟨x⟩)²/(n − 1). Its standard
+//! error follows from the fourth moment for any distribution: var s² = (m₄ − s⁴ (n − 3)/(n − 1))/n.
 //!
 //! # Source
 //! Ellenbroek, Somfai, van Hecke, van Saarloos (2006), Phys. Rev. Lett. 97, 258001. Variance of s²: Cramér (1946),
@@ -27,7 +27,7 @@ pub struct FluctuationRing {
     pub mean: f64,
     /// h \[length\].
     pub fluctuation: f64,
-    /// Standard error of h, as if the members were independent \[length\].
+    /// Standard error of h, for independent members \[length\].
     pub standard_error: f64,
 }
 
@@ -38,7 +38,7 @@ pub struct Fluctuations {
     pub rings: Vec<FluctuationRing>,
 }
 
-/// Which number of a bond is taken.
+/// The quantity of a bond.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BondMeasure {
@@ -50,7 +50,7 @@ pub enum BondMeasure {
 }
 
 impl Fluctuations {
-    /// h_∥ in rings of this width \[length\], counted from radius 0 up to `outer_radius`; bonds by their midpoints.
+    /// h_∥ in rings of this width \[length\], from radius 0 up to `outer_radius`; bonds are located by their midpoints.
     ///
     /// # Panics
     /// If the width is not positive.
@@ -70,7 +70,7 @@ impl Fluctuations {
         Self::of(bonds, outer_radius, ring_width)
     }
 
-    /// h_r in rings of this width \[length\], counted from radius 0 up to R, on the disks that count.
+    /// h_r in rings of this width \[length\], from radius 0 up to R, of the disks that count.
     ///
     /// # Panics
     /// If the width is not positive.
@@ -78,9 +78,9 @@ impl Fluctuations {
         Self::of(field.counted().map(|disk| (disk.distance, disk.radial)), field.outer_radius, ring_width)
     }
 
-    /// h of (distance, value) pairs in rings of this width \[length\], counted from radius 0 up to `outer_radius`.
+    /// h of (distance, value) pairs in rings of this width \[length\], from radius 0 up to `outer_radius`.
     ///
-    /// The order of the pairs changes no bit.
+    /// The result does not depend on the order of the pairs.
     ///
     /// # Panics
     /// If the width is not positive.
@@ -91,7 +91,7 @@ impl Fluctuations {
             .filter(|&(distance, _)| distance < outer_radius)
             .map(|(distance, value)| (ring_of(distance), (distance, value)))
             .collect();
-        // By all that counts, so that sums are taken in one order.
+        // By ring, distance and value, so that sums have a fixed order.
         members.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.0.total_cmp(&b.1.0)).then(a.1.1.total_cmp(&b.1.1)));
         let rings = members.chunk_by(|a, b| a.0 == b.0);
         let rings =
@@ -111,7 +111,7 @@ impl FluctuationRing {
         let squares: f64 = pairs.iter().map(|pair| (pair.1 - mean).powi(2)).sum();
         let variance = squares / (count - 1.0);
         let fluctuation = variance.sqrt();
-        // Fourth moment relative to the variance, so that it neither vanishes nor overflows.
+        // Fourth moment relative to the variance, so that it neither underflows nor overflows.
         let standard_error = if fluctuation > 0.0 {
             let kurtosis = pairs.iter().map(|pair| ((pair.1 - mean) / fluctuation).powi(4)).sum::<f64>() / count;
             let relative = (kurtosis - (count - 3.0) / (count - 1.0)).max(0.0) / count;

@@ -1,4 +1,4 @@
-//! [`ForceDistribution`]: how the contact forces of the backbone are distributed about their mean.
+//! [`ForceDistribution`]: the distribution of the contact forces of the backbone over their mean.
 //!
 //! ```text
 //! P(x) dx: share of contacts with x ≤ F/⟨F⟩ < x + dx          Σ P Δx = 1
@@ -11,10 +11,10 @@ use crate::network::ContactNetwork;
 /// Width of a bin of P in F/⟨F⟩ \[1\].
 pub const BIN_WIDTH: f64 = 0.1;
 
-/// Percentiles given.
+/// The percentiles reported.
 pub const PERCENTILES: [u8; 5] = [5, 25, 50, 75, 95];
 
-/// Most bins: what lies beyond is in the last one.
+/// Largest number of bins; larger forces are in the last one.
 const BIN_LIMIT: usize = 10_000;
 
 /// The contact forces of a backbone, over their mean.
@@ -28,16 +28,17 @@ pub struct ForceDistribution {
     pub smallest: f64,
     /// Largest force over the mean \[1\].
     pub largest: f64,
-    /// Forces over the mean that [`PERCENTILES`] per cent of the contacts do not exceed, linear between the order statistics \[1\].
+    /// Percentiles [`PERCENTILES`] of the forces over the mean, by linear interpolation between the order statistics
+    /// \[1\].
     pub percentiles: [f64; 5],
     /// Width of a bin \[1\].
     pub bin_width: f64,
-    /// P in bins from 0 on, the last one that is not empty at the end \[1\].
+    /// P in bins from 0 to the last bin that is not empty \[1\].
     pub density: Vec<f64>,
 }
 
 impl ForceDistribution {
-    /// The forces of a network; none without contacts on the backbone, or with a force that is no number.
+    /// The forces of a network; none without contacts on the backbone, or with a force that is NaN.
     pub fn of<const D: usize>(network: &ContactNetwork<D>) -> Option<Self> {
         Self::of_forces(network.backbone_contacts().map(|contact| contact.force).collect())
     }
@@ -45,7 +46,7 @@ impl ForceDistribution {
     fn of_forces(mut forces: Vec<f64>) -> Option<Self> {
         let contact_count = forces.len();
         let mean = forces.iter().sum::<f64>() / contact_count as f64;
-        // No contact gives NaN, as a force that is none does.
+        // NaN without contacts, or with a force that is NaN.
         if !(mean.is_finite() && mean > 0.0) {
             return None;
         }
@@ -72,7 +73,7 @@ mod tests {
 
     #[test]
     fn forces_in_arithmetic_progression_have_their_percentiles_and_bins() {
-        // 0, 1, …, 20 over their mean 10: the p-th percentile is p/50, two forces a bin of 0.2.
+        // 0, 1, …, 20 over their mean 10: the p-th percentile is p/50, two forces per bin of 0.2.
         let found = ForceDistribution::of_forces((0..21).rev().map(f64::from).collect()).expect("forces");
         assert_eq!((found.contact_count, found.mean, found.smallest, found.largest), (21, 10.0, 0.0, 2.0));
         for (value, percent) in found.percentiles.iter().zip(PERCENTILES) {

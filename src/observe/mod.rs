@@ -1,4 +1,4 @@
-//! One observable a file, all measured on the backbone.
+//! One observable per file, all measured on the backbone.
 
 pub mod angular;
 pub mod angular_profile;

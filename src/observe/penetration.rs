@@ -1,24 +1,24 @@
-//! [`PenetrationLength`]: how far from the inflated disk anything moves, ξ.
+//! [`PenetrationLength`]: the largest distance from the inflated disk with a displacement, ξ.
 //!
 //! ```text
 //! |⟨d_r⟩(r)| < d_th for all r > ξ        |⟨d_r⟩(ξ)| = d_th
 //! ```
 //!
-//! Between the last ring at or above the threshold, k, and the next one, |⟨d_r⟩| is taken to fall exponentially:
+//! Between the last ring at or above the threshold, k, and the next one, |⟨d_r⟩| is interpolated exponentially:
 //!
 //! ```text
 //! ξ = r_k + (r_(k+1) − r_k) ln(m_k/d_th)/ln(m_k/m_(k+1))        m = |⟨d_r⟩|
 //! ```
 //!
-//! so a next ring that has not moved at all gives ξ = r_k. Rings and not disks: single disks next to the rim move as far in
-//! any loose packing.
+//! so ξ = r_k if the next ring does not move at all. Means over rings are used because single disks near the rim move
+//! as far in any loose packing.
 
 use serde::{Deserialize, Serialize};
 
 use crate::observe::radial_profile::RadialProfile;
 use crate::vector::larger;
 
-/// Thresholds of a penetration length.
+/// The thresholds for penetration lengths.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PenetrationSettings {
@@ -33,7 +33,7 @@ impl Default for PenetrationSettings {
     }
 }
 
-/// Why there is no penetration length at all.
+/// Why there are no penetration lengths.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PenetrationError {
@@ -45,7 +45,7 @@ pub enum PenetrationError {
         /// The value given \[length\].
         threshold: f64,
     },
-    /// A ring has a mean or a radius that is no number.
+    /// The mean or the radius of a ring is not finite.
     #[error("ring {ring} at radius {radius} has a mean displacement of {mean}")]
     RingNotFinite {
         /// Index of the ring, from 0.
@@ -57,7 +57,7 @@ pub enum PenetrationError {
     },
 }
 
-/// Where a profile falls below a threshold for good.
+/// Where a profile falls below a threshold and stays below.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Penetration {
@@ -67,7 +67,7 @@ pub enum Penetration {
         radius: f64,
         /// The last ring at or above the threshold \[length\].
         last_above: f64,
-        /// The first ring from which on all are below \[length\].
+        /// The first ring of those that are all below \[length\].
         first_below: f64,
     },
     /// No ring is at or above the threshold.
@@ -84,7 +84,7 @@ pub enum Penetration {
 }
 
 impl Penetration {
-    /// ξ where there is one \[length\].
+    /// ξ, if there is one \[length\].
     pub fn radius(&self) -> Option<f64> {
         match *self {
             Penetration::FallsAt { radius, .. } => Some(radius),
@@ -112,12 +112,12 @@ impl Penetration {
 pub struct PenetrationLength {
     /// d_th \[length\].
     pub threshold: f64,
-    /// Where.
+    /// The result.
     pub penetration: Penetration,
 }
 
 impl PenetrationLength {
-    /// ξ of a profile at every threshold, in their order.
+    /// ξ of a profile at every threshold, in the same order.
     ///
     /// # Errors
     /// A threshold that is not positive; a ring without a finite mean.
@@ -147,7 +147,7 @@ fn penetration(profile: &RadialProfile, threshold: f64) -> Penetration {
         return Penetration::ReachesRim { outermost: rings[last].radius };
     };
     let (ring, above, below) = (&rings[last], rings[last].mean.abs(), next.mean.abs());
-    // above ≥ threshold > below ≥ 0, so the share is in [0, 1); ln ∞ below 0 gives 0.
+    // above ≥ threshold > below ≥ 0, so the share is in [0, 1); ln ∞ for below = 0 gives 0.
     let share = libm::log(above / threshold) / libm::log(above / below);
     let radius = ring.radius + (next.radius - ring.radius) * share;
     Penetration::FallsAt { radius, last_above: ring.radius, first_below: next.radius }

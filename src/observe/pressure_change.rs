@@ -1,14 +1,14 @@
-//! [`PressureChange`]: what an inflation does to the pressure, Δp, and Δp over the power of p that a jammed packing has by itself.
+//! [`PressureChange`]: the change of the pressure by an inflation, Δp, and Δp over the power of p of the bulk modulus.
 //!
 //! ```text
 //! Δp = p_after − p_before        Δp/p^((α−2)/(α−1)),  p = p_before:  Δp/p^(1/3) for Hertzian contacts, Δp for Hookean
 //! ```
 //!
-//! The bulk modulus of a jammed packing grows as δ^(α−2) with its overlaps, the pressure as δ^(α−1), so an elastic answer
-//! keeps the ratio as p changes.
+//! The bulk modulus of a jammed packing scales with its overlaps as δ^(α−2), the pressure as δ^(α−1). So the ratio of
+//! an elastic response does not depend on p.
 //!
 //! # Source
-//! O'Hern, Silbert, Liu, Nagel (2003), Phys. Rev. E 68, 011306 (exponents); design §6.
+//! O'Hern, Silbert, Liu, Nagel (2003), Phys. Rev. E 68, 011306 (exponents).
 
 use serde::{Deserialize, Serialize};
 
@@ -26,13 +26,13 @@ pub struct PressureChange {
     pub change: f64,
     /// (α − 2)/(α − 1) \[1\].
     pub exponent: f64,
-    /// Δp over that power of p \[(force / length^(D−1))^(1/(α−1))\]; absent where there was no pressure.
+    /// Δp over that power of p \[(force / length^(D−1))^(1/(α−1))\]; absent if the pressure was 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scaled: Option<f64>,
 }
 
 impl PressureChange {
-    /// From one pressure to another, under a law of energy ∝ δ^α with α = `law_exponent`.
+    /// Δp between two pressures, under a law of energy ∝ δ^α with α = `law_exponent`.
     pub fn between(before: f64, after: f64, law_exponent: f64) -> Self {
         let (change, exponent) = (after - before, pressure_exponent(law_exponent));
         let scaled = (before > 0.0).then(|| change / libm::pow(before, exponent));
@@ -44,7 +44,7 @@ impl PressureChange {
         Self::to(inflated, &inflated.after, law)
     }
 
-    /// What is left of it after the deflation, if there was one.
+    /// Δp that remains after the deflation; none without a deflation.
     pub fn of_cycle<const D: usize, L: PairLaw>(inflated: &Inflated<D>, law: &L) -> Option<Self> {
         inflated.deflated.as_ref().map(|deflated| Self::to(inflated, deflated, law))
     }
@@ -54,7 +54,7 @@ impl PressureChange {
     }
 }
 
-/// (α − 2)/(α − 1): the power of p with which the bulk modulus of a jammed packing grows \[1\].
+/// (α − 2)/(α − 1): the exponent of the bulk modulus of a jammed packing as a power of p \[1\].
 pub fn pressure_exponent(law_exponent: f64) -> f64 {
     (law_exponent - 2.0) / (law_exponent - 1.0)
 }

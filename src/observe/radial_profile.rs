@@ -19,7 +19,7 @@ pub struct Ring {
     pub mean: f64,
     /// Standard deviation of d_r within the ring \[length\].
     pub spread: f64,
-    /// Standard error of the mean, spread/√n: as if the disks were independent \[length\].
+    /// Standard error of the mean, spread/√n, for independent disks \[length\].
     pub standard_error: f64,
 }
 
@@ -31,7 +31,7 @@ pub struct RadialProfile {
 }
 
 impl RadialProfile {
-    /// The profile of a field in rings of this width \[length\], on the disks that count.
+    /// The profile of a field in rings of this width \[length\], from the disks that count.
     ///
     /// # Panics
     /// If the width is not positive.
@@ -41,8 +41,8 @@ impl RadialProfile {
         let ring_of = |distance: f64| ((distance - field.inner_radius) / ring_width).floor();
         let counted = field.counted().map(|disk| (ring_of(disk.distance), (disk.distance, disk.radial)));
         let mut members: Vec<(f64, (f64, f64))> = counted.filter(|(ring, _)| (0.0..last).contains(ring)).collect();
-        // Stable: within a ring the disks stay in their order. Grouping what is there, not listing what might be, keeps the
-        // narrowest ring as cheap as the widest.
+        // A stable sort: within a ring the disks keep their order. Only rings with disks are visited, so narrow rings
+        // cost no more than wide ones.
         members.sort_by(|a, b| a.0.total_cmp(&b.0));
         let rings = members.chunk_by(|a, b| a.0 == b.0);
         let rings = rings.filter_map(|ring| Ring::of(&ring.iter().map(|&(_, disk)| disk).collect::<Vec<_>>()));

@@ -5,7 +5,7 @@ use crate::network::{Contact, ContactNetwork};
 use crate::packing::{Packing, PackingError};
 use crate::vector::{Vector, difference, norm, scaled, sum};
 
-/// A packing and who touches whom in it.
+/// A packing and its contact network.
 #[derive(Debug, Clone)]
 pub struct State<'a, const D: usize> {
     /// The disks.
@@ -18,15 +18,16 @@ impl<'a, const D: usize> State<'a, D> {
     /// The contacts of a packing under a law.
     ///
     /// # Errors
-    /// As [`ContactNetwork::new`].
+    /// See [`ContactNetwork::new`].
     pub fn new<L: PairLaw>(packing: &'a Packing<D>, law: &L) -> Result<Self, PackingError> {
         Ok(State { packing, network: ContactNetwork::new(packing, law)? })
     }
 
-    /// The midpoint between the centres of a contact, from the centre of disk `centre`, and how far away that is \[length\].
+    /// The midpoint between the centres of a contact, relative to the centre of disk `centre`, and its distance
+    /// \[length\].
     ///
-    /// In a periodic box the two disks may be nearest to the centre in different images; the midpoint is then the nearer
-    /// one. Naming the two disks the other way round changes no bit.
+    /// In a periodic box the two disks may be nearest to the centre in different images; the nearer midpoint is then
+    /// used. Exchanging the two disks does not change the result.
     pub fn midpoint(&self, contact: &Contact<D>, centre: usize) -> (Vector<D>, f64) {
         let half = scaled(0.5, contact.separation);
         let first = difference(self.packing.separation(contact.first as usize, centre), half);
@@ -42,7 +43,7 @@ impl<'a, const D: usize> State<'a, D> {
     }
 }
 
-/// Which disks are on the backbone of both states.
+/// The disks on the backbone of both states.
 ///
 /// # Panics
 /// If the packings differ in their number of disks.

@@ -1,4 +1,4 @@
-//! Where disks live: a periodic box or the open plane, and the nearest image of a pair.
+//! The domain of a packing: a periodic box or the open plane, and the nearest image of a pair.
 
 use crate::packing::error::PackingError;
 use crate::vector::{Vector, extended_sum, two_sum};
@@ -13,7 +13,7 @@ pub enum Domain<const D: usize> {
         /// The sides \[length\].
         lengths: Vector<D>,
     },
-    /// The plane (or space) without end; held disks keep the packing together.
+    /// The infinite plane (or space); held disks confine the packing.
     Open,
 }
 
@@ -39,11 +39,11 @@ impl<const D: usize> Domain<D> {
         }
     }
 
-    /// What to add to a difference of coordinates to reach the nearest image: a whole number of sides.
+    /// The shift of a difference of coordinates to the nearest image: a multiple of the side.
     #[inline(always)]
     pub(crate) fn shift(&self, difference: f64, axis: usize) -> f64 {
         match self {
-            // Most pairs need no image; the division is for the others.
+            // Most pairs need no shift, which avoids the division.
             Domain::Periodic { lengths, .. } if difference.abs() > 0.5 * lengths[axis] => {
                 -(difference / lengths[axis]).round() * lengths[axis]
             }
@@ -64,13 +64,13 @@ impl<const D: usize> Domain<D> {
         })
     }
 
-    /// As [`Domain::separation`], the result itself as an unevaluated sum.
+    /// Like [`Domain::separation`], with the result as an unevaluated sum.
     pub fn separation_extended(&self, a: (Vector<D>, Vector<D>), b: (Vector<D>, Vector<D>)) -> (Vector<D>, Vector<D>) {
         let mut result = ([0.0; D], [0.0; D]);
         for d in 0..D {
             let high = two_sum(a.0[d], -b.0[d]);
             let (shift, rest) = (self.shift(high.0, d), a.1[d] - b.1[d]);
-            // Nothing to add, as for most pairs of a box: the sum is there.
+            // Without a shift, as for most pairs of a box, the sum is already known.
             (result.0[d], result.1[d]) =
                 if shift == 0.0 && rest == 0.0 { high } else { extended_sum(extended_sum(high, shift), rest) };
         }

@@ -1,16 +1,17 @@
-//! [`PackingError`]: what is wrong with the disks given, and which radii a disk can have.
+//! [`PackingError`]: invalid disks, and the range of radii.
 
-/// Smallest radius \[length\]: the square of its rounding, 10⁻³² of its own, is still a normal number.
+/// Smallest radius \[length\]: the square of its rounding, 10⁻¹⁶ of the radius, is still a normal number.
 pub const SMALLEST_RADIUS: f64 = 1e-130;
 
-/// Largest radius \[length\]: the square of ten of them is still a number, and so are forces of stiffness constants up to 10¹⁵⁰.
+/// Largest radius \[length\]: the square of ten radii does not overflow, nor do forces for stiffness constants up to
+/// 10¹⁵⁰.
 pub const LARGEST_RADIUS: f64 = 1e150;
 
-/// What is wrong with the disks given.
+/// Why disks do not form a packing.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PackingError {
-    /// Not a single disk.
+    /// There is no disk.
     #[error("a packing needs at least one disk")]
     NoDisks,
     /// The columns differ in length.
@@ -21,13 +22,13 @@ pub enum PackingError {
         /// Number of radii.
         radii: usize,
     },
-    /// More disks than an index holds.
+    /// More disks than an index can count.
     #[error("{count} disks: at most {} are supported", u32::MAX)]
     TooManyDisks {
         /// Number of disks.
         count: usize,
     },
-    /// NaN or infinite coordinate.
+    /// A coordinate is NaN or infinite.
     #[error("disk {disk}: coordinate {axis} is {value}, not a finite number")]
     PositionNotFinite {
         /// Index of the disk, from 0.
@@ -37,7 +38,7 @@ pub enum PackingError {
         /// The value found.
         value: f64,
     },
-    /// A radius whose square, or that of whose rounding, is not a number.
+    /// A radius is so small or large that squares of lengths underflow or overflow.
     #[error(
         "disk {disk}: radius is {radius:e}, outside {SMALLEST_RADIUS:e} to {LARGEST_RADIUS:e}, where squares of lengths keep their digits"
     )]
@@ -47,7 +48,7 @@ pub enum PackingError {
         /// The value found.
         radius: f64,
     },
-    /// A kind of disk in a mixture with a radius that no disk can have.
+    /// A component of a mixture has an invalid radius.
     #[error(
         "mixture component {component}: radius is {radius:?}, not a number from {SMALLEST_RADIUS:e} to {LARGEST_RADIUS:e}"
     )]
@@ -57,7 +58,7 @@ pub enum PackingError {
         /// The value found.
         radius: f64,
     },
-    /// A kind of disk in a mixture with a share that is not a positive finite number.
+    /// The share of a component of a mixture is not positive and finite.
     #[error("mixture component {component}: share is {share}, not a positive number")]
     MixtureShareNotPositive {
         /// Index of the component, from 0.
@@ -65,14 +66,14 @@ pub enum PackingError {
         /// The value found.
         share: f64,
     },
-    /// A box without extent.
+    /// A side of the box is not positive.
     #[error("box axis {axis}: side {length} from {corner} is not a finite box of positive length")]
     BoxNotPositive {
         /// Axis, from 0.
         axis: usize,
-        /// Side found.
+        /// The side given.
         length: f64,
-        /// Lower end found.
+        /// The lower end given.
         corner: f64,
     },
     /// The box is so small that a disk would touch two images of one neighbour.
@@ -82,7 +83,7 @@ pub enum PackingError {
     BoxTooSmall {
         /// Axis, from 0.
         axis: usize,
-        /// Side found.
+        /// The side given.
         length: f64,
         /// Largest distance of two touching disks.
         range: f64,

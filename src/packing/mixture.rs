@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::packing::error::{LARGEST_RADIUS, PackingError, SMALLEST_RADIUS};
 
-/// One kind of disk in a mixture.
+/// One component of a mixture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Component {
@@ -18,12 +18,12 @@ pub struct Component {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Mixture {
-    /// The kinds of disk.
+    /// The components.
     pub components: Vec<Component>,
 }
 
 impl Default for Mixture {
-    /// Equal numbers of radii 0.5 and 0.7. Source: the model of design §4.
+    /// Equal numbers of radii 0.5 and 0.7. Source: the study.
     fn default() -> Self {
         Mixture { components: vec![Component { radius: 0.5, share: 1.0 }, Component { radius: 0.7, share: 1.0 }] }
     }
@@ -35,13 +35,13 @@ impl Mixture {
         Mixture { components: vec![Component { radius, share: 1.0 }] }
     }
 
-    /// Radii of `count` disks \[length\], kind by kind in the order of the components.
+    /// Radii of `count` disks \[length\], in the order of the components.
     ///
-    /// The numbers are the shares rounded by largest remainder, so they add up to `count` and differ from the exact
-    /// proportions by less than one disk a kind.
+    /// The numbers are the shares rounded by the largest-remainder method. They add up to `count` and differ from the
+    /// exact proportions by less than one disk per component.
     ///
     /// # Errors
-    /// As [`check`](Self::check).
+    /// See [`check`](Self::check).
     pub fn radii(&self, count: usize) -> Result<Vec<f64>, PackingError> {
         self.check(count)?;
         let total: f64 = self.components.iter().map(|kind| kind.share).sum();
@@ -61,11 +61,11 @@ impl Mixture {
             .collect())
     }
 
-    /// Whether so many disks of this mixture can be made; nothing is allocated.
+    /// Checks whether `count` disks of this mixture are possible, without allocation.
     ///
     /// # Errors
-    /// No component, a radius outside [`SMALLEST_RADIUS`] to [`LARGEST_RADIUS`], a share or a sum of shares that is not positive
-    /// and finite, no disk, or more disks than an index holds.
+    /// No component, a radius outside [`SMALLEST_RADIUS`] to [`LARGEST_RADIUS`], a share or a sum of shares that is not
+    /// positive and finite, no disk, or more disks than an index can count.
     pub fn check(&self, count: usize) -> Result<(), PackingError> {
         if count == 0 || self.components.is_empty() {
             return Err(PackingError::NoDisks);

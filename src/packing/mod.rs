@@ -1,8 +1,8 @@
 //! [`Packing<D>`]: centres, radii, the domain, and which disks are held.
 //!
-//! A centre is an unevaluated sum of a position and a much smaller correction. Readers and writers see the position;
-//! the mechanics use both, which lowers the rounding floor of the residual by orders of magnitude (a single number per
-//! coordinate is known to 10⁻¹⁴ in a box of side 100, two touching disks need 10⁻¹⁶).
+//! A centre is an unevaluated sum of a position and a much smaller correction. Readers and writers use the position;
+//! the mechanics uses both, which lowers the rounding floor of the residual by orders of magnitude. A single number per
+//! coordinate is known to 10⁻¹⁴ in a box of side 100, but two touching disks need 10⁻¹⁶.
 
 pub mod domain;
 mod error;
@@ -32,10 +32,10 @@ impl<const D: usize> Packing<D> {
     /// Disks in a domain, none held, labelled 0, 1, 2, …
     ///
     /// # Shape
-    /// `positions` and `radii` have one entry a disk.
+    /// `positions` and `radii` have one entry per disk.
     ///
     /// # Errors
-    /// [`PackingError`] names the disk and the value.
+    /// [`PackingError`] with the disk and the value.
     pub fn new(domain: Domain<D>, positions: Vec<Vector<D>>, radii: Vec<f64>) -> Result<Self, PackingError> {
         let count = positions.len();
         if count == 0 {
@@ -68,7 +68,7 @@ impl<const D: usize> Packing<D> {
     /// The same packing with the low parts of its centres: centre = position + correction.
     ///
     /// # Errors
-    /// One correction a disk, all finite.
+    /// There must be one correction per disk, all finite.
     pub fn with_corrections(mut self, corrections: Vec<Vector<D>>) -> Result<Self, PackingError> {
         if corrections.len() != self.len() {
             return Err(PackingError::LengthsDiffer { positions: corrections.len(), radii: self.len() });
@@ -85,10 +85,11 @@ impl<const D: usize> Packing<D> {
         Ok(self)
     }
 
-    /// The same packing with these labels (a number of the caller's own for every disk; repeats are allowed).
+    /// The same packing with these labels. A label is an arbitrary number of the caller for each disk; repeats are
+    /// allowed.
     ///
     /// # Errors
-    /// One label a disk.
+    /// There must be one label per disk.
     pub fn with_labels(mut self, labels: Vec<u64>) -> Result<Self, PackingError> {
         if labels.len() != self.len() {
             return Err(PackingError::LengthsDiffer { positions: labels.len(), radii: self.len() });
@@ -100,7 +101,7 @@ impl<const D: usize> Packing<D> {
     /// The same packing with these disks held: they push others and are never moved.
     ///
     /// # Errors
-    /// One flag a disk.
+    /// There must be one flag per disk.
     pub fn with_held(mut self, held: Vec<bool>) -> Result<Self, PackingError> {
         if held.len() != self.len() {
             return Err(PackingError::LengthsDiffer { positions: held.len(), radii: self.len() });
@@ -109,17 +110,18 @@ impl<const D: usize> Packing<D> {
         Ok(self)
     }
 
-    /// The same packing with every disk's site where the disk is now, see [`OnSite`](crate::law::on_site::OnSite).
+    /// The same packing with the site of every disk at its present position, see
+    /// [`OnSite`](crate::law::on_site::OnSite).
     #[must_use]
     pub fn with_sites_here(mut self) -> Self {
         self.sites = Some(self.positions.iter().copied().zip(self.corrections.iter().copied()).collect());
         self
     }
 
-    /// The same packing with these sites, position and correction of each.
+    /// The same packing with these sites, given as position and correction.
     ///
     /// # Errors
-    /// One site a disk, all finite.
+    /// There must be one site per disk, all finite.
     pub fn with_sites(mut self, sites: Vec<(Vector<D>, Vector<D>)>) -> Result<Self, PackingError> {
         if sites.len() != self.len() {
             return Err(PackingError::LengthsDiffer { positions: sites.len(), radii: self.len() });
@@ -133,7 +135,7 @@ impl<const D: usize> Packing<D> {
         Ok(self)
     }
 
-    /// The same packing without sites: the next relaxation that needs some begins with them where the disks are.
+    /// The same packing without sites. The next relaxation with sites puts them at the positions of the disks.
     #[must_use]
     pub fn without_sites(mut self) -> Self {
         self.sites = None;
@@ -146,14 +148,14 @@ impl<const D: usize> Packing<D> {
     /// The radius must lie between [`SMALLEST_RADIUS`] and [`LARGEST_RADIUS`].
     ///
     /// # Panics
-    /// If there is no such disk.
+    /// If the index is out of range.
     pub fn with_radius(mut self, disk: usize, radius: f64) -> Result<Self, PackingError> {
         check_radius(disk, radius)?;
         self.radii[disk] = radius;
         Ok(self)
     }
 
-    /// Number of disks, held ones included.
+    /// Number of disks, including held ones.
     pub fn len(&self) -> usize {
         self.positions.len()
     }
@@ -168,12 +170,12 @@ impl<const D: usize> Packing<D> {
         &self.domain
     }
 
-    /// Centres, rounded to one number a coordinate \[length\].
+    /// Centres, rounded to one number per coordinate \[length\].
     pub fn positions(&self) -> &[Vector<D>] {
         &self.positions
     }
 
-    /// What rounding the centres to [`Packing::positions`] took away \[length\].
+    /// Low parts of the centres, lost by rounding to [`Packing::positions`] \[length\].
     pub fn corrections(&self) -> &[Vector<D>] {
         &self.corrections
     }
@@ -194,7 +196,7 @@ impl<const D: usize> Packing<D> {
         &self.held
     }
 
-    /// The caller's own numbers of the disks.
+    /// The labels of the disks.
     pub fn labels(&self) -> &[u64] {
         &self.labels
     }
@@ -204,7 +206,7 @@ impl<const D: usize> Packing<D> {
         self.sites.as_deref()
     }
 
-    /// From the site of a disk (its centre, where there are no sites) to a point, without rounding.
+    /// Exact vector from the site of a disk (its centre, if there are no sites) to a point.
     pub(crate) fn displacement_from_site(&self, disk: usize, point: Vector<D>) -> [(f64, f64); D] {
         let (site, rest) = self.sites.as_ref().map_or(self.centre(disk), |sites| sites[disk]);
         std::array::from_fn(|d| extended_sum(two_sum(point[d], -site[d]), -rest[d]))
@@ -215,7 +217,7 @@ impl<const D: usize> Packing<D> {
         self.domain.separation(self.centre(first), self.centre(second))
     }
 
-    /// Moves a disk by `displacement`; the sum is kept without rounding as long as the displacement is small.
+    /// Moves a disk by `displacement`; the sum is exact for small displacements.
     pub(crate) fn displace(&mut self, disk: usize, displacement: Vector<D>) {
         for d in 0..D {
             let (high, low) = two_sum(self.positions[disk][d], displacement[d]);
@@ -223,14 +225,15 @@ impl<const D: usize> Packing<D> {
         }
     }
 
-    /// Puts a disk at `position + correction`.
+    /// Sets the centre of a disk to `position + correction`.
     pub(crate) fn place(&mut self, disk: usize, position: Vector<D>, correction: Vector<D>) {
         for d in 0..D {
             (self.positions[disk][d], self.corrections[disk][d]) = two_sum(position[d], correction[d]);
         }
     }
 
-    /// The same disks in a periodic box scaled by `factor` in all directions, positions with it, radii kept, sites dropped.
+    /// The same disks in a periodic box scaled by `factor` in all directions together with the positions; radii are
+    /// kept, sites dropped.
     pub(crate) fn rescaled(mut self, factor: f64) -> Self {
         self.sites = None;
         if let Domain::Periodic { corner, lengths } = &mut self.domain {
@@ -247,8 +250,8 @@ impl<const D: usize> Packing<D> {
         self
     }
 
-    /// The same disks, box and centres longer by a share `strain` in all directions, radii kept, sites dropped; and the strain of
-    /// each axis, which differs from the one asked for by the rounding of the sides.
+    /// The same disks with box and centres stretched by `strain` in all directions; radii are kept, sites dropped. Also
+    /// returns the strain of each axis, which differs from `strain` by the rounding of the sides.
     pub(crate) fn stretched(&self, strain: f64) -> (Self, Vector<D>) {
         let mut stretched = self.clone().without_sites();
         let (mut strains, mut corner) = ([strain; D], [0.0; D]);
@@ -278,7 +281,7 @@ impl<const D: usize> Packing<D> {
 }
 
 fn check_radius(disk: usize, radius: f64) -> Result<(), PackingError> {
-    // NaN is in no range.
+    // False for NaN.
     let possible = (SMALLEST_RADIUS..=LARGEST_RADIUS).contains(&radius);
     if possible { Ok(()) } else { Err(PackingError::RadiusOutOfRange { disk, radius }) }
 }

@@ -1,5 +1,5 @@
-//! [`runs`]: all runs of a report as comma-separated values, a row of names, a row of units, then one row a run; [`choices`],
-//! the same for other numerical choices.
+//! [`runs`]: all runs of a report as comma-separated values, a row of names, a row of units, then one row per run;
+//! [`choices`]: the same for other numerical choices.
 
 use std::fmt::Write as _;
 
@@ -28,7 +28,7 @@ const COLUMNS: [(&str, &str); 19] = [
     ("iterations", "1"),
 ];
 
-/// The runs of all samples. Numbers are the shortest decimals that give the same `f64` again; what is absent is empty.
+/// The runs of all samples. Numbers are the shortest decimals that reproduce the `f64`; absent values are empty.
 pub fn runs(report: &PrecisionReport) -> String {
     let names: Vec<&str> = COLUMNS.iter().map(|column| column.0).collect();
     let units: Vec<&str> = COLUMNS.iter().map(|column| column.1).collect();
@@ -37,7 +37,7 @@ pub fn runs(report: &PrecisionReport) -> String {
     for sample in &report.samples {
         for run in &sample.runs {
             let (errors, cost) = (&run.errors, &run.cost);
-            // The names of methods hold commas, those of samples nothing but letters, digits and "-_.".
+            // The names of methods contain commas, those of samples only letters, digits and "-_.".
             let _ = writeln!(
                 text,
                 "{},\"{}\",{},{:e},{},{:e},{},{:e},{:e},{},{},{},{},{},{},{},{},{},{}",
@@ -66,7 +66,7 @@ pub fn runs(report: &PrecisionReport) -> String {
     text
 }
 
-/// What other choices move, all samples and tables one below the other: one row a number.
+/// The effects of other choices, for all samples and tables: one row per number.
 pub fn choices(report: &PrecisionReport) -> String {
     let mut text = String::from("sample,choice,setting,quantity,value\n");
     for sample in &report.samples {

@@ -1,6 +1,6 @@
 //! [`figures`]: work–precision plots, log error against log cost.
 //!
-//! Written directly, one element a point, as the heat map of a report is: decades, markers and a legend are all there is.
+//! Written directly, one element per point, like the heat map of a report, with decades, markers and a legend.
 
 use std::fmt::Write as _;
 
@@ -10,7 +10,7 @@ use crate::relax::Stop;
 use crate::report::figures::log_axes::{Axis, BOTTOM, FONT_SIZE, LEFT, LogAxis, RIGHT, TOP, axes};
 use crate::report::figures::{Figure, INK};
 
-/// What is on the vertical axis.
+/// The quantity on the vertical axis.
 #[derive(Clone, Copy)]
 struct Quantity {
     name: &'static str,
@@ -18,7 +18,7 @@ struct Quantity {
     of: fn(&Run) -> Option<f64>,
 }
 
-/// What is on the horizontal axis.
+/// The quantity on the horizontal axis.
 #[derive(Clone, Copy)]
 struct Price {
     name: &'static str,
@@ -47,8 +47,8 @@ const FACTORISATIONS: Price = Price {
     of: |run| run.cost.factorisation_count as f64,
 };
 
-/// The plots of a sample, each with a name for its file: every error against seconds, that of the displacement against force
-/// evaluations and factorisations too.
+/// The plots of a sample, each with a name for its file: every error against seconds; that of the displacement also
+/// against force evaluations and factorisations.
 pub fn figures(sample: &SamplePrecision) -> Vec<(String, Figure)> {
     let plots = [(QUANTITIES[0], SECONDS), (QUANTITIES[0], EVALUATIONS), (QUANTITIES[0], FACTORISATIONS)];
     let plots = plots.into_iter().chain(QUANTITIES[1..].iter().map(|&quantity| (quantity, SECONDS)));
@@ -59,7 +59,7 @@ pub fn figures(sample: &SamplePrecision) -> Vec<(String, Figure)> {
         .collect()
 }
 
-/// One plot; none where no run has such numbers.
+/// One plot; none if no run has these numbers.
 fn figure(sample: &SamplePrecision, quantity: Quantity, price: Price) -> Option<Figure> {
     let points: Vec<(&Run, f64, f64)> = sample
         .runs
@@ -93,15 +93,15 @@ fn figure(sample: &SamplePrecision, quantity: Quantity, price: Price) -> Option<
     ))
 }
 
-/// Where a run stands.
+/// The position of a run.
 struct Mark<'a> {
     x: f64,
     y: f64,
     run: &'a Run,
 }
 
-/// The runs of a ladder, joined from loose to tight: full in a reference minimum, hollow in another, crossed out where the
-/// steps were used up.
+/// The runs of a ladder, connected from loose to tight: filled in a reference minimum, hollow in another, crossed out
+/// if the step limit was reached.
 fn ladder_markup(method: Method, varied: Varied, ladder: &[Mark<'_>]) -> String {
     let (colour, shape) = look(method);
     let mut svg = String::new();
@@ -151,7 +151,7 @@ impl Shape {
     }
 }
 
-/// Colour and marker of a relaxer; colours from Okabe, Ito (2008), relatives share one and differ in the marker.
+/// Colour and marker of a relaxer. Colours from Okabe, Ito (2008); related relaxers share one and differ in the marker.
 fn look(method: Method) -> (&'static str, Shape) {
     match method {
         Method::Fire => ("#0072b2", Shape::Circle),
@@ -166,7 +166,7 @@ fn look(method: Method) -> (&'static str, Shape) {
     }
 }
 
-/// Signs and what they mean, above the axes.
+/// Symbols and their meanings, above the axes.
 fn legend(unjammed: bool) -> String {
     const COLUMNS: usize = 3;
     const LINE: f64 = 18.0;

@@ -8,20 +8,20 @@ use crate::precision::csv;
 use crate::precision::results::PrecisionReport;
 use crate::report::{Kind, OutputFolder, ReportError};
 
-/// Writes a report into `folder`, made if it is not there, and names the files written in that order.
+/// Writes a report into `folder`, which is created if necessary. Returns the paths of the files in the order written.
 ///
-/// The files of an earlier report are replaced by those of this one, all together; other files are left.
+/// All files of an earlier report are replaced together; other files are not changed.
 ///
 /// # Errors
-/// [`ReportError`] names the file and what is wrong.
+/// [`ReportError`] with the file and the problem.
 pub fn write(report: &PrecisionReport, folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
     write_into(report, OutputFolder::open(folder, Kind::Precision)?)
 }
 
-/// As [`write()`], into a folder that was opened before the measurement.
+/// Like [`write()`], into a folder that was opened before the measurement.
 ///
 /// # Errors
-/// [`ReportError`] names the file and what is wrong.
+/// [`ReportError`] with the file and the problem.
 pub fn write_into(report: &PrecisionReport, output: OutputFolder) -> Result<Vec<PathBuf>, ReportError> {
     let folder = output.inside();
     let json_path = folder.join("precision.json");

@@ -1,4 +1,4 @@
-//! [`rungs`]: every relaxer, each at a ladder of settings.
+//! [`rungs`]: every relaxer at a sequence of settings.
 
 use serde::Serialize;
 
@@ -10,13 +10,13 @@ use crate::relax::{
     RelaxerChoice, Staged, StepBack, TimeStep, Uphill,
 };
 
-/// A relaxer, whatever its settings.
+/// A relaxer without its settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
     /// [`Fire`].
     Fire,
-    /// [`Fire`] with the step back of FIRE 2.0.
+    /// [`Fire`] with the back step of FIRE 2.0.
     FireStepBack,
     /// [`NonlinearConjugateGradients`].
     ConjugateGradients,
@@ -35,7 +35,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// All of them, in the order of tables and legends.
+    /// All relaxers, in the order of tables and legends.
     pub const ALL: [Method; 9] = [
         Method::Fire,
         Method::FireStepBack,
@@ -70,9 +70,9 @@ impl Method {
 pub enum Varied {
     /// Largest net force over the mean contact force \[1\].
     ForceLimit,
-    /// Time step over the bound on a stable one \[1\].
+    /// Time step over the stability limit \[1\].
     TimeStep,
-    /// Error allowed in an implicit step over the mean overlap \[1\].
+    /// Error limit of an implicit step over the mean overlap \[1\].
     Tolerance,
 }
 
@@ -87,14 +87,14 @@ impl Varied {
     }
 }
 
-/// One run: a relaxer and the setting that tells it from its neighbours on the ladder.
+/// One run: a relaxer with one setting of its ladder.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rung {
     /// The relaxer.
     pub method: Method,
-    /// What its ladder varies.
+    /// The setting that its ladder varies.
     pub varied: Varied,
-    /// The value of that \[1\].
+    /// Its value \[1\].
     pub value: f64,
     /// The relaxer with its settings.
     pub relaxer: RelaxerChoice,
@@ -102,14 +102,14 @@ pub struct Rung {
 
 /// All runs of a sample, ladder by ladder from loose to tight.
 ///
-/// Force limits are varied for each relaxer; the implicit motion then ends by its own steps. Time steps of damped dynamics and
-/// tolerances of implicit motions are varied at the tightest force limit, the latter with Newton's finish: they move the way,
-/// and so decide which minimum it ends in.
+/// Force limits are varied for each relaxer; the implicit motion then ends by its own steps. Time steps of damped
+/// dynamics and tolerances of implicit motions are varied at the tightest force limit, the latter followed by Newton's
+/// method. They change the trajectory and so the final minimum.
 pub fn rungs(settings: &PrecisionSettings, damping: DampingChoice) -> Vec<Rung> {
     let tightest = settings.force_limits.iter().copied().fold(f64::INFINITY, f64::min);
     let mut rungs = Vec::new();
     for method in Method::ALL {
-        // Down to its hand-over FIRE, then Newton is FIRE.
+        // Above its hand-over, FIRE followed by Newton's method is FIRE.
         let told = |limit: &&f64| method != Method::Staged || **limit < Staged::default().hand_over;
         for &limit in settings.force_limits.iter().filter(told) {
             if let Some(relaxer) = at_limit(method, limit, settings, damping) {
@@ -173,7 +173,7 @@ fn at_limit(method: Method, limit: f64, settings: &PrecisionSettings, damping: D
             step_limit: settings.implicit_step_limit,
             ..Default::default()
         }),
-        // Its ladder is that of the tolerance.
+        // Its ladder varies the tolerance.
         Method::GradientFlow => return None,
         Method::Newton => RelaxerChoice::Newton(Newton { limit: force_limit, ..Newton::default() }),
         Method::Staged => RelaxerChoice::Staged(Staged { limit: force_limit, step_limit, ..Staged::default() }),

@@ -1,4 +1,4 @@
-//! [`Minimum`]: the minima in which runs from one start end, two of them references found by different methods.
+//! [`Minimum`]: the minima in which runs from one start end. Two of them are references found by different methods.
 
 use serde::Serialize;
 
@@ -13,19 +13,19 @@ use crate::relax::{
 };
 use crate::scene::Observables;
 
-/// Distance up to which two states count as one minimum \[length\]: minima that differ do so by far more, states relaxed to
-/// rounding differ by far less.
+/// Largest distance between two states of one minimum \[length\]. Different minima are much farther apart; states
+/// relaxed to rounding are much closer.
 pub const SAME: f64 = 1e-6;
 
-/// Tolerance of the implicit dynamics that finds the first reference.
+/// Tolerance of the implicit dynamics for the first reference.
 const REFERENCE_TOLERANCE: f64 = 1e-3;
 
 /// One minimum.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Minimum {
-    /// A and B for the references, then letters in the order in which they were found.
+    /// A and B for the references, then letters in the order of discovery.
     pub label: String,
-    /// Who found it.
+    /// The method that found it.
     pub found_by: String,
     /// Distance from the nearest reference, 0 for a reference \[length\].
     pub distance: f64,
@@ -37,20 +37,20 @@ pub struct Minimum {
     pub measured: Measured,
 }
 
-/// What both references say of each other.
+/// Comparison of the two references.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Disagreement {
-    /// How the references were found, A then B.
+    /// Methods of the references, A then B.
     pub methods: [&'static str; 2],
     /// Relative residuals reached \[1\].
     pub residuals: [f64; 2],
-    /// Whether they are one minimum.
+    /// Whether they are in the same minimum.
     pub same_minimum: bool,
-    /// B against A.
+    /// Errors of B relative to A.
     pub errors: Errors,
 }
 
-/// The minima found so far, and what is needed to tell a new one.
+/// The minima found so far, with the data to recognise a new one.
 pub(super) struct Minima<'a, L> {
     grown: &'a Grown<2>,
     law: &'a L,
@@ -63,7 +63,7 @@ pub(super) struct Minima<'a, L> {
 }
 
 impl<'a, L: PairLaw> Minima<'a, L> {
-    /// Finds both references.
+    /// Computes both references.
     pub fn new(
         grown: &'a Grown<2>,
         law: &'a L,
@@ -73,7 +73,7 @@ impl<'a, L: PairLaw> Minima<'a, L> {
     ) -> Result<Self, PackingError> {
         let limit = ForceLimit::Relative(limit);
         let staged = RelaxerChoice::Staged(Staged { limit, ..Staged::default() });
-        // Nothing presses: the motion of the disks would go on for long, and there is nothing for it to find.
+        // No disk is pressed: the motion would continue for a long time without a result.
         let (methods, relaxers) = if grown.before.criterion == Criterion::Unjammed {
             let quasi_newton = QuasiNewton { limit, ..QuasiNewton::default() };
             (["L-BFGS", "FIRE, then Newton"], [RelaxerChoice::QuasiNewton(quasi_newton), staged])
@@ -90,7 +90,7 @@ impl<'a, L: PairLaw> Minima<'a, L> {
         let (mut first, second) = (relax(&relaxers[0])?, relax(&relaxers[1])?);
         let mut methods = methods;
         if !matches!(first.stop, Stop::Converged(_) | Stop::RoundingFloor) {
-            // A reference is at rest. Steepest descent always comes to rest.
+            // A reference must be at rest. Steepest descent always comes to rest.
             let flow = GradientFlow { limit, ..GradientFlow::default() };
             first = relax(&RelaxerChoice::GradientFlow(flow))?;
             methods[0] = "gradient flow, finished by Newton (implicit dynamics did not come to rest)";
@@ -115,9 +115,9 @@ impl<'a, L: PairLaw> Minima<'a, L> {
         &self.states[0]
     }
 
-    /// Which minimum a state belongs to: where gradient flow leads from it. A new one is added.
+    /// The minimum of a state: where gradient flow from it ends. A new minimum is added.
     ///
-    /// In an unjammed packing no disk has a place of its own: all is held against the nearest reference.
+    /// In an unjammed packing no disk has a fixed position: states are compared with the nearest reference.
     pub fn of(&mut self, state: &State, found_by: &str) -> Result<usize, PackingError> {
         let (nearest, distance) = self.nearest(state, self.states.len());
         if distance <= SAME {
@@ -143,7 +143,7 @@ impl<'a, L: PairLaw> Minima<'a, L> {
         Ok(self.states.len() - 1)
     }
 
-    /// The errors of a state against a minimum.
+    /// The errors of a state relative to a minimum.
     pub fn errors(&self, state: &State, minimum: usize) -> Errors {
         state.errors(&self.states[minimum])
     }
@@ -167,13 +167,13 @@ impl<'a, L: PairLaw> Minima<'a, L> {
     }
 }
 
-/// Force limit of the gradient flow that tells basins \[1\].
+/// Force limit of the gradient flow that identifies minima \[1\].
 const FLOW_LIMIT: f64 = 1e-12;
 
-/// Its tolerance \[1\]: the ways from a nearly relaxed state are short.
+/// Its tolerance \[1\]: displacements from a nearly relaxed state are small.
 const FLOW_TOLERANCE: f64 = 0.1;
 
-/// Residual from which Newton finishes it \[1\].
+/// Residual at which Newton's method takes over \[1\].
 const FLOW_HAND_OVER: f64 = 1e-4;
 
 /// A, B, …, Z, A1, B1, …
@@ -182,7 +182,7 @@ fn label(index: usize) -> String {
     if index < 26 { letter.into() } else { format!("{letter}{}", index / 26) }
 }
 
-/// Where a relaxation ended.
+/// The end of a relaxation.
 pub(super) struct End {
     pub state: State,
     pub stop: Stop,

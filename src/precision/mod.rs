@@ -1,14 +1,15 @@
-//! What accuracy costs: [`measure`] relaxes one inflated packing by every relaxer at a ladder of settings and holds each end
-//! against a state known to rounding.
+//! The cost of accuracy: [`measure`] relaxes one inflated packing by every relaxer at several settings and compares
+//! each end state with one known to rounding.
 //!
 //! ```text
-//! error of a run = |its state − the minimum it belongs to|      against seconds, force evaluations, factorisations
+//! error of a run = |its state − its minimum|      against seconds, force evaluations, factorisations
 //! ```
 //!
-//! The minimum is known by two methods that share nothing but the forces: implicit dynamics at a tight tolerance (A) and FIRE
-//! (B), both finished by Newton; how far they disagree is stated. A run may have fallen into another minimum, which is no lack
-//! of precision. So each end is followed by gradient flow to the minimum it belongs to. Where that is A or B, errors are those
-//! against A or B; where it is another, they are against that one, and its distance from the nearest reference is told beside.
+//! The minimum is computed by two methods that have only the forces in common: implicit dynamics at a tight tolerance
+//! (A) and FIRE (B), both followed by Newton's method. Their difference is reported. A run may end in another minimum,
+//! which is not a lack of precision. Gradient flow therefore identifies the minimum of each end state. Errors are
+//! relative to that minimum, A, B or another one; for another one its distance from the nearest reference is also
+//! reported.
 //!
 //! The relaxations are timed one after the other, each on one thread.
 
@@ -39,13 +40,13 @@ pub use settings::{PrecisionError, PrecisionSettings};
 
 use sample::of_sample;
 
-/// What a measurement tells while it works; `()` hears nothing.
+/// Progress of a measurement; `()` ignores it.
 pub trait Progress: Sync {
-    /// A sample of so many runs begins; its packing is there.
+    /// A sample with `run_count` runs begins; its packing is ready.
     fn sample(&self, name: &str, run_count: usize) {
         let _ = (name, run_count);
     }
-    /// A piece of work of that sample begins, `done` runs of it being over.
+    /// A task of that sample begins; `done` of its runs are complete.
     fn begins(&self, done: usize, what: &str) {
         let _ = (done, what);
     }
@@ -56,7 +57,7 @@ impl Progress for () {}
 /// Measures every sample of a scene.
 ///
 /// # Errors
-/// Scene or settings that make no sense; a sample whose packing or inflation cannot be had. A run that does not converge is a
+/// An invalid scene or invalid settings; a sample whose packing or inflation fails. A run that does not converge is a
 /// result.
 ///
 /// # Cost
@@ -87,7 +88,7 @@ fn of_scene<L: PairLaw>(
     scene.sample.iter().zip(packings(scene, law)).map(of_one).collect()
 }
 
-/// The packings of all samples: the only part that is not timed, so they are made side by side.
+/// The packings of all samples. Only this part is not timed, so it runs in parallel.
 fn packings<L: PairLaw>(scene: &Scene, law: &L) -> Vec<Result<Packing<2>, RunError>> {
     let one = |sample: &Sample| packing_of(scene, sample, law, &mut ()).map(|(packing, _)| packing);
     #[cfg(feature = "parallel")]

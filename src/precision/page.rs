@@ -1,4 +1,4 @@
-//! [`page`]: a report on one HTML page that needs nothing else.
+//! [`page`]: a report on one self-contained HTML page.
 
 use std::fmt::Write as _;
 

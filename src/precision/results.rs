@@ -1,4 +1,4 @@
-//! What a measurement gives: a report of samples, a sample of runs.
+//! The results of a measurement: a report of samples, a sample of runs.
 
 use serde::Serialize;
 
@@ -10,16 +10,16 @@ use crate::precision::state::Errors;
 use crate::relax::{Cost, Criterion, Stop};
 use crate::scene::Scene;
 
-/// What accuracy costs, for the samples of a scene.
+/// The cost of accuracy, for the samples of a scene.
 #[derive(Debug, Clone, Serialize)]
 pub struct PrecisionReport {
-    /// Version of jamscope that made it.
+    /// Version of jamscope that ran it.
     pub jamscope_version: &'static str,
-    /// The scene, all defaults filled in.
+    /// The scene, including all defaults.
     pub scene: Scene,
     /// The ladders.
     pub settings: PrecisionSettings,
-    /// One entry a sample.
+    /// One entry per sample.
     pub samples: Vec<SamplePrecision>,
 }
 
@@ -32,16 +32,15 @@ pub struct SamplePrecision {
     pub mobile_count: usize,
     /// Pressure before the inflation \[force / length\].
     pub pressure: f64,
-    /// Whether nothing presses the disks: then there is no minimum of its own to be found, and errors say how far two ends lie
-    /// apart.
+    /// Whether no disk is pressed. There is then no unique minimum, and errors are distances between end states.
     pub unjammed: bool,
-    /// The references against each other.
+    /// Comparison of the references.
     pub references: Disagreement,
     /// The minima in which runs ended, references first.
     pub minima: Vec<Minimum>,
-    /// One entry a run.
+    /// One entry per run.
     pub runs: Vec<Run>,
-    /// What other numerical choices move.
+    /// The effect of other numerical choices.
     pub choices: Vec<ChoiceTable>,
 }
 
@@ -50,23 +49,23 @@ pub struct SamplePrecision {
 pub struct Run {
     /// The relaxer.
     pub method: Method,
-    /// The setting its ladder varies.
+    /// The setting that its ladder varies.
     pub varied: Varied,
-    /// The value of that \[1\].
+    /// Its value \[1\].
     pub value: f64,
     /// Why it stopped.
     pub stop: Stop,
     /// Relative residual reached \[1\].
     pub residual: f64,
-    /// The minimum it belongs to, by its label.
+    /// Label of its minimum.
     pub minimum: String,
     /// Distance of that minimum from the nearest reference, 0 for a reference \[length\].
     pub minimum_distance: f64,
-    /// Its errors against that minimum.
+    /// Its errors relative to that minimum.
     pub errors: Errors,
-    /// Wall time, the only number in which two measurements of one scene differ \[s\].
+    /// Wall time, the only number that differs between two measurements of one scene \[s\].
     pub seconds: f64,
-    /// What it cost.
+    /// Cost of the relaxation.
     pub cost: Cost,
 }
 

@@ -1,4 +1,4 @@
-//! One sample: its inflated packing, the minima known of it, and a run for each rung of the ladders.
+//! One sample: its inflated packing, its known minima, and a run for each rung of the ladders.
 
 use crate::inflation::Grown;
 use crate::law::damping::DampingChoice;
@@ -14,7 +14,7 @@ use crate::relax::{Criterion, RelaxerChoice, Stop};
 use crate::run::RunError;
 use crate::scene::{Sample, Scene};
 
-/// Measures a sample, whose disks have sites if its inflation says so.
+/// Measures a sample; its disks have sites if its inflation does.
 pub(super) fn of_sample<L: PairLaw>(
     scene: &Scene,
     sample: &Sample,
@@ -58,7 +58,7 @@ pub(super) fn of_sample<L: PairLaw>(
     })
 }
 
-/// The damping of the sample's own dynamics, the default where it is not relaxed by one.
+/// The damping of the sample's own dynamics; the default if its relaxer has none.
 fn damping_of(relaxer: &RelaxerChoice) -> DampingChoice {
     match relaxer {
         RelaxerChoice::Damped(dynamics) => dynamics.damping,
@@ -67,7 +67,8 @@ fn damping_of(relaxer: &RelaxerChoice) -> DampingChoice {
     }
 }
 
-/// Whether a run needs not be made: one that used up its steps does so at a tighter limit too, on the same way.
+/// Whether a run can be skipped: after one that reached its step limit, a tighter limit on the same trajectory gives
+/// the same end.
 fn would_end_alike(last: &Run, rung: &Rung) -> bool {
     last.stop == Stop::StepLimit
         && (last.method, last.varied) == (rung.method, rung.varied)

@@ -1,4 +1,4 @@
-//! The ladders a measurement goes along, and what can be wrong with them.
+//! The ladders of a measurement, and their errors.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,13 +11,13 @@ use crate::scene::{SceneError, finite};
 pub struct PrecisionSettings {
     /// Force limits, over the mean contact force \[1\].
     pub force_limits: Vec<f64>,
-    /// Time steps of damped dynamics, over the bound on a stable one \[1\].
+    /// Time steps of damped dynamics, over the stability limit \[1\].
     pub time_steps: Vec<f64>,
     /// Tolerances of the implicit motions, over the mean overlap \[1\].
     pub tolerances: Vec<f64>,
-    /// Steps allowed to the relaxers that take one or two force evaluations a step.
+    /// Step limit of relaxers with one or two force evaluations per step.
     pub explicit_step_limit: usize,
-    /// Steps allowed to an implicit motion that finishes by its own steps.
+    /// Step limit of an implicit motion that finishes by its own steps.
     pub implicit_step_limit: usize,
     /// Force limit of the references, over the mean contact force \[1\].
     pub reference_limit: f64,
@@ -36,14 +36,14 @@ impl Default for PrecisionSettings {
     }
 }
 
-/// Why there is nothing to compare.
+/// Why nothing can be compared.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PrecisionError {
-    /// The scene makes no sense.
+    /// The scene is invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// A ladder holds a number that makes no sense.
+    /// A ladder contains an invalid number.
     #[error("{field} = {value}: must be a positive, finite number")]
     NotPositive {
         /// The field of the settings.
@@ -57,21 +57,22 @@ pub enum PrecisionError {
         /// The field of the settings.
         field: &'static str,
     },
-    /// The packing of a sample, or its inflation, could not be had.
+    /// The preparation of a sample, or its inflation, failed.
     #[error("sample \"{name}\": {source}")]
     Sample {
         /// The sample.
         name: String,
-        /// Why.
+        /// The error.
         source: RunError,
     },
 }
 
-/// Steps allowed to an implicit motion of an unjammed packing, whose disks fly until they hit nothing any more.
+/// Step limit of an implicit motion of an unjammed packing, whose disks move until they touch nothing.
 const FLIGHT_LIMIT: usize = 100;
 
 impl PrecisionSettings {
-    /// The ladders of an unjammed packing: there every limit relative to contact forces is met at once, when these are gone.
+    /// The ladders for an unjammed packing, in which all limits relative to contact forces are met as soon as these
+    /// vanish.
     pub(super) fn where_nothing_presses(&self) -> Self {
         PrecisionSettings {
             force_limits: vec![self.force_limits.iter().copied().fold(f64::INFINITY, f64::min)],
@@ -82,10 +83,10 @@ impl PrecisionSettings {
         }
     }
 
-    /// Whether every number makes sense.
+    /// Checks every number.
     ///
     /// # Errors
-    /// [`PrecisionError`] names the field and the value.
+    /// [`PrecisionError`] with the field and the value.
     pub fn check(&self) -> Result<(), PrecisionError> {
         let ladders =
             [("force_limits", &self.force_limits), ("time_steps", &self.time_steps), ("tolerances", &self.tolerances)];
@@ -101,7 +102,7 @@ impl PrecisionSettings {
         if !(value.is_finite() && value > 0.0) {
             return Err(PrecisionError::NotPositive { field: "reference_limit", value });
         }
-        // What no rule above has named: a new field.
+        // Fields that no rule above checks, such as new ones.
         Ok(finite::check(self).map_err(SceneError::from)?)
     }
 }

@@ -1,4 +1,4 @@
-//! [`State`]: where a run ended, in the numbers whose errors are asked for; [`Errors`], one state against another.
+//! [`State`]: the end of a run with the compared numbers; [`Errors`]: the differences of two states.
 
 use serde::Serialize;
 
@@ -20,31 +20,31 @@ use crate::vector::{larger, norm};
 /// The numbers of a state.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Measured {
-    /// Elastic energy, with that of the sites where there are some \[energy\].
+    /// Elastic energy, including that of sites if there are any \[energy\].
     pub energy: f64,
     /// Pressure of the circle or the box; 0 for an unjammed packing \[force / length\].
     pub pressure: f64,
     /// Contacts of the backbone.
     pub contact_count: usize,
-    /// What was fitted; absent without a fit.
+    /// The results of the fit; absent without a fit.
     pub fitted: Option<Fitted>,
 }
 
-/// What of a fit is compared.
+/// The compared results of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Fitted {
-    /// Whether the screened solution was decided for.
+    /// Whether the screened solution was selected.
     pub screened: bool,
-    /// κ of the screened solution, whatever was decided; 0 where no κ > 0 fits better \[1/length\].
+    /// κ of the screened solution for any decision; 0 if no κ > 0 fits better \[1/length\].
     pub wavenumber: f64,
     /// d_0^eff of the elastic solution \[length\].
     pub elastic_amplitude: f64,
-    /// d_0^eff of the screened solution, of the elastic one where κ = 0 \[length\].
+    /// d_0^eff of the screened solution; that of the elastic one if κ = 0 \[length\].
     pub screened_amplitude: f64,
 }
 
 impl Fitted {
-    /// d_0^eff of the solution decided for \[length\].
+    /// d_0^eff of the selected solution \[length\].
     pub fn amplitude(&self) -> f64 {
         if self.screened { self.screened_amplitude } else { self.elastic_amplitude }
     }
@@ -63,21 +63,21 @@ impl From<&ProfileFit> for Fitted {
     }
 }
 
-/// Errors of one state, taken against another.
+/// Errors of one state relative to another.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Errors {
-    /// Largest distance between the two places of a disk, over the backbone of the other state (over all mobile disks where
-    /// that is unjammed) \[length\].
+    /// Largest distance between the two positions of a disk, over the backbone of the other state (over all mobile
+    /// disks if that is unjammed) \[length\].
     pub displacement: f64,
-    /// Of the energy, over that of the other; absent where that is unjammed \[1\].
+    /// Error of the energy over that of the other state; absent if that is unjammed \[1\].
     pub energy: Option<f64>,
-    /// Of the pressure, over that of the other; absent where that is unjammed \[1\].
+    /// Error of the pressure over that of the other state; absent if that is unjammed \[1\].
     pub pressure: Option<f64>,
-    /// Of κ \[1/length\].
+    /// Error of κ \[1/length\].
     pub wavenumber: Option<f64>,
-    /// Of d_0^eff, of the solution decided for in the other state \[length\].
+    /// Error of d_0^eff, for the solution selected in the other state \[length\].
     pub amplitude: Option<f64>,
-    /// Contacts of the backbone that only one of the two has.
+    /// Number of contacts of the backbone that only one of the two has.
     pub contacts: usize,
 }
 
@@ -93,10 +93,10 @@ pub struct State {
 }
 
 impl State {
-    /// Measures a state, at rest or not; `criterion` is the one it met.
+    /// Measures a state, at rest or not; `criterion` is the limit that it met.
     ///
     /// # Errors
-    /// Only what makes forces undefined.
+    /// Only conditions that make forces undefined.
     pub fn new<L: PairLaw>(
         packing: Packing<2>,
         criterion: Option<Criterion>,
@@ -124,7 +124,7 @@ impl State {
         Ok(state)
     }
 
-    /// Whether disks have no minimum of their own: nothing presses them.
+    /// Whether no disk is pressed, so that there is no unique minimum.
     pub fn is_unjammed(&self) -> bool {
         self.unjammed
     }
@@ -147,14 +147,14 @@ impl State {
         None
     }
 
-    /// Largest distance between the two places of a disk, over the backbone of `other` \[length\].
+    /// Largest distance between the two positions of a disk, over the backbone of `other` \[length\].
     pub fn distance(&self, other: &State) -> f64 {
         let counts = |disk: &usize| !self.packing.held()[*disk] && (other.unjammed || other.backbone[*disk]);
         let way = |disk: usize| norm(displacement(&other.packing, &self.packing, disk));
         (0..self.packing.len()).filter(counts).map(way).fold(0.0, larger)
     }
 
-    /// The errors of this state against another.
+    /// The errors of this state relative to another.
     pub fn errors(&self, other: &State) -> Errors {
         let relative = |ours: f64, theirs: f64| (!other.unjammed).then(|| (ours - theirs).abs() / theirs.abs());
         let fits = self.measured.fitted.zip(other.measured.fitted);
@@ -171,14 +171,14 @@ impl State {
     }
 }
 
-/// Fits a field in rings of a width; none where the fit is refused.
+/// Fits a field in rings of a given width; none if the fit is refused.
 #[cfg(feature = "fit")]
 pub(super) fn fit(field: &DisplacementField<2>, ring_width: f64, settings: &ProfileFitSettings) -> Option<Fitted> {
     let annulus = Annulus::new(field.inner_radius, field.outer_radius).ok()?;
     fit_radial_profile(&RadialProfile::of(field, ring_width), annulus, settings).ok().as_ref().map(Fitted::from)
 }
 
-/// Number of entries that only one of two ascending lists has.
+/// Number of entries in only one of two ascending lists.
 fn differing(one: &[(u32, u32)], two: &[(u32, u32)]) -> usize {
     let shared = one.iter().filter(|pair| two.binary_search(pair).is_ok()).count();
     one.len() + two.len() - 2 * shared

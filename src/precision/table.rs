@@ -56,7 +56,7 @@ fn section(sample: &SamplePrecision, text: &mut String) {
     text.push('\n');
 }
 
-/// What must be known to read the runs of a sample: the references and the minima, a sentence each.
+/// Sentences on the references and the minima, needed to understand the runs of a sample.
 pub(super) fn facts(sample: &SamplePrecision) -> Vec<String> {
     let references = &sample.references;
     let residuals = references.residuals.map(|residual| significant(residual, 2));

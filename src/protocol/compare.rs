@@ -1,26 +1,26 @@
-//! Distances between endings, and the minima they are sorted into.
+//! Distances between end states, and the grouping of end states into minima.
 
 use std::collections::BTreeSet;
 
 use crate::inflation::{Rest, displacement};
 use crate::network::ContactNetwork;
 use crate::protocol::compared::{Compared, ProtocolSensitivity};
-use crate::protocol::descend::Landing;
+use crate::protocol::descend::EndState;
 use crate::protocol::ending::Ending;
 use crate::protocol::settings::ProtocolSettings;
 use crate::protocol::spread::Spreads;
 use crate::relax::Criterion;
 use crate::vector::{Vector, difference, larger, norm, scaled, sum};
 
-/// Sorts landings into minima and tells how far each is from the first of them.
+/// Groups end states into minima and computes the distance of each from the first.
 pub(super) fn compare<const D: usize>(
-    landings: Vec<Landing<D>>,
+    end_states: Vec<EndState<D>>,
     settings: &ProtocolSettings,
     pressure_before: f64,
     floating: bool,
 ) -> Compared<D> {
     let (mut endings, rests): (Vec<Ending>, Vec<_>) =
-        landings.into_iter().map(|landing| (landing.ending, landing.rest)).unzip();
+        end_states.into_iter().map(|state| (state.ending, state.rest)).unzip();
     for (ending, rest) in endings.iter_mut().zip(&rests) {
         ending.pressure_change = rest.as_ref().map(|_| ending.pressure - pressure_before);
     }
@@ -33,12 +33,12 @@ pub(super) fn compare<const D: usize>(
     for index in 0..rests.len() {
         let Some((rest, network)) = pressed(index) else { continue };
         if let Some((first, first_network)) = reference.and_then(pressed) {
-            let mut ways = ways(first, rest, floating);
+            let mut distances = distances(first, rest, floating);
             let ending = &mut endings[index];
-            ending.distance = Some(ways.iter().fold(0.0, |most, &(_, way)| larger(way, most)));
-            ways.retain(|&(_, way)| way > settings.differing * mean_overlap);
-            ways.sort_by(|one, two| two.1.total_cmp(&one.1));
-            ending.differing = ways.iter().map(|&(disk, _)| rest.packing.get().labels()[disk]).collect();
+            ending.distance = Some(distances.iter().fold(0.0, |most, &(_, distance)| larger(distance, most)));
+            distances.retain(|&(_, distance)| distance > settings.differing * mean_overlap);
+            distances.sort_by(|one, two| two.1.total_cmp(&one.1));
+            ending.differing = distances.iter().map(|&(disk, _)| rest.packing.get().labels()[disk]).collect();
             ending.contact_difference_count = Some(links(first_network).symmetric_difference(&links(network)).count());
         }
         let apart = |first: usize| pressed(first).map(|(other, _)| apart(other, rest, floating));
@@ -78,7 +78,7 @@ pub(super) fn compare<const D: usize>(
     Compared { sensitivity, states: rests.into_iter().map(|rest| rest.map(|(rest, _)| rest)).collect() }
 }
 
-/// Mean overlap of the contacts of the backbone, of all contacts where there is none \[length\].
+/// Mean overlap of the contacts of the backbone; of all contacts without a backbone \[length\].
 fn mean_overlap<const D: usize>(network: &ContactNetwork<D>) -> f64 {
     let mean = |overlaps: Vec<f64>| overlaps.iter().sum::<f64>() / overlaps.len().max(1) as f64;
     if network.backbone_count() > 0 {
@@ -93,8 +93,9 @@ fn links<const D: usize>(network: &ContactNetwork<D>) -> BTreeSet<(u32, u32)> {
     network.backbone_contacts().map(|contact| (contact.first, contact.second)).collect()
 }
 
-/// How far apart the mobile disks of both backbones are, of all mobile disks where one has no backbone.
-fn ways<const D: usize>(one: &Rest<D>, two: &Rest<D>, floating: bool) -> Vec<(usize, f64)> {
+/// Distances between the positions of each mobile disk of both backbones. Without one of the backbones, all mobile
+/// disks count.
+fn distances<const D: usize>(one: &Rest<D>, two: &Rest<D>, floating: bool) -> Vec<(usize, f64)> {
     let (first, second) = (one.packing.get(), two.packing.get());
     let mobile = |disk: &usize| !first.held()[*disk];
     let none = [one, two].iter().any(|rest| !(0..first.len()).any(|disk| mobile(&disk) && rest.backbone[disk]));
@@ -102,14 +103,14 @@ fn ways<const D: usize>(one: &Rest<D>, two: &Rest<D>, floating: bool) -> Vec<(us
     let disks: Vec<usize> = (0..first.len()).filter(mobile).filter(counts).collect();
     let moved: Vec<Vector<D>> = disks.iter().map(|&disk| displacement(first, second, disk)).collect();
     let shift = if floating && !moved.is_empty() {
-        scaled(1.0 / moved.len() as f64, moved.iter().fold([0.0; D], |total, &way| sum(total, way)))
+        scaled(1.0 / moved.len() as f64, moved.iter().fold([0.0; D], |total, &u| sum(total, u)))
     } else {
         [0.0; D]
     };
-    disks.into_iter().zip(moved).map(|(disk, way)| (disk, norm(difference(way, shift)))).collect()
+    disks.into_iter().zip(moved).map(|(disk, u)| (disk, norm(difference(u, shift)))).collect()
 }
 
-/// The largest of those \[length\].
+/// The largest of these distances \[length\].
 fn apart<const D: usize>(one: &Rest<D>, two: &Rest<D>, floating: bool) -> f64 {
-    ways(one, two, floating).iter().fold(0.0, |most, &(_, way)| larger(way, most))
+    distances(one, two, floating).iter().fold(0.0, |most, &(_, distance)| larger(distance, most))
 }

@@ -1,4 +1,4 @@
-//! The protocols, and one of them from start to rest.
+//! The protocols, and the relaxation of one of them from the start to rest.
 
 use crate::inflation::grown::with_centre_of_mass_of;
 use crate::inflation::{Rest, displacement};
@@ -14,7 +14,7 @@ use crate::relax::{
 };
 use crate::vector::{larger, norm};
 
-/// A relaxer under the name it has in a comparison.
+/// A relaxer and its name in a comparison.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Protocol {
     /// The name.
@@ -29,10 +29,10 @@ impl Protocol {
         Protocol { name: relaxer.name().into(), relaxer }
     }
 
-    /// The one given, then those of the others that differ from it: FIRE, FIRE and Newton, implicit dynamics with constant and
-    /// with viscoelastic damping, gradient flow, conjugate gradients, L-BFGS.
+    /// The given relaxer and all others that differ from it: FIRE, FIRE followed by Newton's method, implicit dynamics
+    /// with constant and with viscoelastic damping, gradient flow, conjugate gradients, L-BFGS.
     ///
-    /// Both damping laws have the rate of the one given, if it has one, else the model's, 500.
+    /// Both damping laws have the rate of the given relaxer if it has one, otherwise 500, the rate of the model.
     pub fn all(own: &RelaxerChoice) -> Vec<Protocol> {
         let rate = match own {
             RelaxerChoice::Damped(damped) => damped.damping.rate(),
@@ -54,20 +54,20 @@ impl Protocol {
         ];
         let mut protocols = vec![Protocol::new(*own)];
         for other in others {
-            // The scene's own keeps its place, under the name that says most.
+            // The relaxer of the scene keeps its place, with the more specific name.
             if other.relaxer == *own { protocols[0].name = other.name } else { protocols.push(other) }
         }
         protocols
     }
 }
 
-/// An ending before it is compared, with its state if it is at rest.
-pub(super) struct Landing<const D: usize> {
+/// An ending before the comparison, with its packing if it is at rest.
+pub(super) struct EndState<const D: usize> {
     pub ending: Ending,
     pub rest: Option<(Rest<D>, ContactNetwork<D>)>,
 }
 
-/// Relaxes, and finishes by Newton's method.
+/// Relaxes by the protocol, then by Newton's method.
 pub(super) fn descend<const D: usize, L: PairLaw>(
     start: &Packing<D>,
     law: &L,
@@ -75,7 +75,7 @@ pub(super) fn descend<const D: usize, L: PairLaw>(
     settings: &ProtocolSettings,
     pressure: &impl Fn(&ContactNetwork<D>) -> f64,
     trace: &mut impl Trace,
-) -> Result<Landing<D>, PackingError> {
+) -> Result<EndState<D>, PackingError> {
     let first = protocol.relaxer.relax(start.clone(), law, trace)?;
     let (stop, cost) = (first.stop, first.cost);
     let pressed =
@@ -86,11 +86,11 @@ pub(super) fn descend<const D: usize, L: PairLaw>(
         let before = first.state.clone();
         let outcome = newton.relax(first.state, law, &mut ())?;
         let backbone = ContactNetwork::new(&outcome.state, law)?.backbone;
-        let way = (0..before.len())
+        let longest = (0..before.len())
             .filter(|&disk| backbone[disk] && !before.held()[disk])
             .fold(0.0, |most, disk| larger(norm(displacement(&before, &outcome.state, disk)), most));
         let finish = outcome.stop;
-        (outcome, Some(finish), way)
+        (outcome, Some(finish), longest)
     } else {
         (first, None, 0.0)
     };
@@ -119,7 +119,7 @@ pub(super) fn descend<const D: usize, L: PairLaw>(
         fit: None,
     };
     let rest = rest(outcome, &ending, &network).map(|rest| (rest, network));
-    Ok(Landing { ending, rest })
+    Ok(EndState { ending, rest })
 }
 
 fn rest<const D: usize>(outcome: Outcome<Packing<D>>, ending: &Ending, network: &ContactNetwork<D>) -> Option<Rest<D>> {

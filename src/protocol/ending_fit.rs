@@ -1,17 +1,17 @@
-//! [`EndingFit`]: what is fitted to the radial profile of an ending.
+//! [`EndingFit`]: the fit to the radial profile of an ending.
 
 use serde::Serialize;
 
 use crate::fit::profile::{Decision, ProfileFit};
 
-/// A fit in the numbers that are compared.
+/// The numbers of a fit that are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct EndingFit {
-    /// What describes the profile.
+    /// The solution that describes the profile.
     pub decision: Decision,
     /// d_0^eff of the elastic solution \[length\].
     pub elastic_amplitude: f64,
-    /// The screened solution, where there is one.
+    /// The screened solution, if it was fitted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub screened: Option<EndingScreened>,
 }

@@ -1,11 +1,12 @@
-//! [`EndingResponse`]: angular correlation and contact changes of an ending, counted from the state before the inflation.
+//! [`EndingResponse`]: angular correlation and contact changes of an ending, relative to the state before the
+//! inflation.
 
 use serde::Serialize;
 
-/// The response of an ending in the numbers that are compared.
+/// The numbers of the response of an ending that are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct EndingResponse {
-    /// G* = −G(π) of d_r in the ring r̂ = 0.5 ± 0.03 \[1\]; absent where the ring has too few disks.
+    /// G* = −G(π) of d_r in the ring r̂ = 0.5 ± 0.03 \[1\]; absent if the ring has too few disks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub anticorrelation: Option<f64>,
     /// θ*, where G falls to 0.1 \[rad\].
@@ -13,6 +14,6 @@ pub struct EndingResponse {
     pub correlation_angle: Option<f64>,
     /// Contacts of the backbone made by the inflation.
     pub made_count: usize,
-    /// Contacts of the backbone broken by it.
+    /// Contacts of the backbone broken by the inflation.
     pub broken_count: usize,
 }

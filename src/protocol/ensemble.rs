@@ -1,4 +1,4 @@
-//! Which samples of an ensemble are compared, and what the comparisons say together.
+//! The choice of the samples that are compared, and a summary of the comparisons.
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -8,31 +8,32 @@ use crate::protocol::compared::ProtocolSensitivity;
 use crate::protocol::spread::Spread;
 use crate::vector::larger;
 
-/// Which of these samples, by name and seed, the comparison is done to: fraction × number of them, to the nearest, at least one.
+/// Chooses samples for the comparison by name and seed. Their number is `fraction` times the number of samples,
+/// rounded, at least one.
 ///
-/// The choice is a draw that depends on names and seeds only, not on the order or on threads; what a fraction takes, a larger
-/// one takes too.
+/// The choice is random but depends only on names and seeds, not on the order or on threads. A larger fraction contains
+/// all samples of a smaller one.
 pub fn chosen(samples: &[(&str, u64)], fraction: f64) -> Vec<bool> {
     let count = ((fraction * samples.len() as f64).round() as usize).clamp(1, samples.len().max(1));
-    let keys: Vec<(u64, &str)> = samples.iter().map(|&(name, seed)| (lot(name, seed), name)).collect();
+    let keys: Vec<(u64, &str)> = samples.iter().map(|&(name, seed)| (random_key(name, seed), name)).collect();
     keys.iter().map(|key| keys.iter().filter(|other| *other < key).count() < count).collect()
 }
 
-/// What a sample draws. Source of the mixing of the name: FNV-1a, 64 bits.
-fn lot(name: &str, seed: u64) -> u64 {
+/// Random key of a sample. Source of the hash of the name: FNV-1a, 64 bits.
+fn random_key(name: &str, seed: u64) -> u64 {
     let hash = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
     let name = name.bytes().fold(0xcbf2_9ce4_8422_2325, hash);
     Pcg64::seed_from_u64(seed ^ name).next_u64()
 }
 
-/// What the comparisons of an ensemble say together.
+/// Summary of the comparisons of an ensemble.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ProtocolSummary {
-    /// Samples of the scene.
+    /// Number of samples of the scene.
     pub sample_count: usize,
-    /// Samples compared.
+    /// Number of samples compared.
     pub compared_count: usize,
-    /// Those among them that ended in more than one minimum.
+    /// Number of compared samples with more than one minimum.
     pub several_minima_count: usize,
     /// Mean number of minima of a sample.
     pub mean_minimum_count: f64,
@@ -41,37 +42,37 @@ pub struct ProtocolSummary {
     /// Root mean square over the samples of the standard deviation of Δp \[force / length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pressure_change: Option<f64>,
-    /// The same of G* \[1\].
+    /// Root mean square of the standard deviation of G* \[1\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub anticorrelation: Option<f64>,
-    /// The same of θ* \[rad\].
+    /// Root mean square of the standard deviation of θ* \[rad\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub correlation_angle: Option<f64>,
-    /// The same of the number of contacts made and broken.
+    /// Root mean square of the standard deviation of the number of contacts made and broken.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_change_count: Option<f64>,
-    /// The same of d_0^eff of the elastic solution \[length\].
+    /// Root mean square of the standard deviation of d_0^eff of the elastic solution \[length\].
     #[cfg(feature = "fit")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub elastic_amplitude: Option<f64>,
-    /// The same of d_0^eff of the screened solution \[length\].
+    /// Root mean square of the standard deviation of d_0^eff of the screened solution \[length\].
     #[cfg(feature = "fit")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub screened_amplitude: Option<f64>,
-    /// The same of κ \[1/length\].
+    /// Root mean square of the standard deviation of κ \[1/length\].
     #[cfg(feature = "fit")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wavenumber: Option<f64>,
 }
 
 impl ProtocolSummary {
-    /// That of these comparisons, of a scene with so many samples; none of no comparison.
+    /// The summary of these comparisons, of a scene with `sample_count` samples; none without comparisons.
     pub fn of(sample_count: usize, compared: &[&ProtocolSensitivity]) -> Option<Self> {
         if compared.is_empty() {
             return None;
         }
         let rms = |spread: &dyn Fn(&ProtocolSensitivity) -> Option<Spread>| {
-            // One ending says nothing of a spread.
+            // A single ending has no spread.
             let spreads = compared.iter().filter_map(|it| spread(it)).filter(|spread| spread.count > 1);
             Spread::of(spreads.map(|spread| spread.standard_deviation.powi(2))).map(|squares| squares.mean.sqrt())
         };

@@ -1,4 +1,4 @@
-//! What is measured on every ending: [`Compared::measure_responses`], [`Compared::fit`].
+//! Observables of every ending: [`Compared::measure_responses`], [`Compared::fit`].
 
 use crate::displacement::DisplacementField;
 #[cfg(feature = "fit")]
@@ -20,7 +20,7 @@ use crate::reference::Annulus;
 
 #[cfg(feature = "fit")]
 impl Compared<2> {
-    /// Fits the response of every ending at rest, counted from the state before, and adds the spreads.
+    /// Fits the response of every ending at rest, relative to the state before the inflation, and adds the spreads.
     ///
     /// An ending whose profile cannot be fitted has no fit.
     pub fn fit(&mut self, inflated: &Inflated<2>, ring_width: f64, settings: &ProfileFitSettings) {
@@ -35,14 +35,14 @@ impl Compared<2> {
     }
 }
 
-/// The threshold of θ*, the usual one of the study \[1\].
+/// The threshold of θ* in the study \[1\].
 const THRESHOLD: f64 = 0.1;
 
 impl Compared<2> {
-    /// Measures the response of every ending at rest, counted from the state before, and adds the spreads.
+    /// Measures the response of every ending at rest, relative to the state before the inflation, and adds the spreads.
     ///
     /// # Errors
-    /// Only what makes forces undefined.
+    /// Only conditions that make forces undefined.
     pub fn measure_responses<L: PairLaw>(&mut self, inflated: &Inflated<2>, law: &L) -> Result<(), PackingError> {
         let settings = CorrelationSettings { thresholds: vec![THRESHOLD], ..CorrelationSettings::default() };
         for (ending, state) in self.sensitivity.endings.iter_mut().zip(&self.states) {
@@ -53,7 +53,7 @@ impl Compared<2> {
             let correlation = ring.and_then(|ring| AngularCorrelation::of(&ring, &settings)).ok();
             let changes = ContactChanges::of_inflation(&response, law)?;
             ending.response = Some(EndingResponse {
-                // NaN of a ring without variance.
+                // A ring without variance gives NaN.
                 anticorrelation: correlation.as_ref().map(|it| it.anticorrelation).filter(|value| value.is_finite()),
                 correlation_angle: correlation.as_ref().and_then(|it| it.crossing(THRESHOLD)),
                 made_count: changes.made.len(),

@@ -1,19 +1,19 @@
-//! [`ProtocolSensitivity`]: one start, several ways to come to rest, and what of the result depends on the way.
+//! [`ProtocolSensitivity`]: how much a result depends on the relaxation method, from one start.
 //!
 //! ```text
 //! |r_i − r'_i| ≤ ε ⟨δ⟩ for every disk of both backbones:  the same minimum        ⟨δ⟩ the mean overlap, ε = 10⁻⁴
 //! ```
 //!
-//! Every relaxer sets out from the same inflated packing and is finished by Newton's method to a residual of 10⁻¹⁰, so that
-//! what is left between two endings is not their force limits. Endings are then sorted into minima; an ending belongs to the
-//! first minimum whose first ending is that near. ε is far below 1: on a way shorter than the overlaps no stiffness changes by
-//! much, and between two minima it must turn negative. [`ProtocolSensitivity::farthest_within`] and
-//! [`ProtocolSensitivity::nearest_between`] tell how clear the gap around ε was.
+//! Every relaxer starts from the same inflated packing. Newton's method then reduces the residual to 10⁻¹⁰, so the
+//! force limits of the relaxers do not contribute to the distances. The endings are grouped into minima: an ending
+//! belongs to the first minimum whose first ending is within the tolerance. ε is far below 1, because stiffnesses
+//! change little over displacements below the overlaps, but become negative between two minima.
+//! [`ProtocolSensitivity::farthest_within`] and [`ProtocolSensitivity::nearest_between`] show the gap around ε.
 //!
-//! Rattlers end anywhere and are left out of distances. An ending without any contact force lies in a valley that is flat: it
-//! is in no minimum. Where nothing is held, distances are those left after the mean displacement is taken off.
+//! Positions of rattlers are arbitrary, so distances exclude them. An ending without contact forces lies in a flat
+//! valley and belongs to no minimum. If nothing is held, the mean displacement is subtracted from the distances.
 //!
-//! The standard deviation of a quantity over the endings is its error bar for "which minimum".
+//! The standard deviation of a quantity over the endings is its error bar for the choice of the minimum.
 
 mod compare;
 mod compared;
@@ -43,15 +43,15 @@ pub use settings::ProtocolSettings;
 pub use spread::{Spread, Spreads};
 
 impl<const D: usize> Compared<D> {
-    /// Relaxes `start` by every protocol and compares where they end.
+    /// Relaxes `start` by every protocol and compares the end states.
     ///
-    /// `pressure_before` is what Δp is counted from; `pressure` gives that of a state from its contacts.
+    /// Δp is relative to `pressure_before`; `pressure` computes the pressure of a state from its contacts.
     ///
     /// # Errors
-    /// Only what makes forces undefined. A protocol that does not come to rest is an ending that says so.
+    /// Only conditions that make forces undefined. A protocol that does not come to rest is an ending with that stop.
     ///
     /// # Cost
-    /// That of all protocols, one after the other, and Newton's method after each.
+    /// The sum over all protocols, and Newton's method after each.
     pub fn of_start<L: PairLaw>(
         start: &Packing<D>,
         law: &L,
@@ -61,20 +61,20 @@ impl<const D: usize> Compared<D> {
         pressure: impl Fn(&crate::network::ContactNetwork<D>) -> f64,
         trace: &mut impl Trace,
     ) -> Result<Self, PackingError> {
-        let mut landings = Vec::with_capacity(protocols.len());
+        let mut end_states = Vec::with_capacity(protocols.len());
         for protocol in protocols {
-            landings.push(descend::descend(start, law, protocol, settings, &pressure, trace)?);
+            end_states.push(descend::descend(start, law, protocol, settings, &pressure, trace)?);
         }
         let floating = !law.has_sites() && !start.held().contains(&true);
-        Ok(compare::compare(landings, settings, pressure_before, floating))
+        Ok(compare::compare(end_states, settings, pressure_before, floating))
     }
 
-    /// The protocols from the state before with its disk inflated, as an inflation relaxed it.
+    /// Like [`Compared::of_start`], from the state before an inflation with its disk inflated.
     ///
-    /// The law is the plain one; sites are those of `inflation`.
+    /// `law` is the law without sites; the sites are those of `inflation`.
     ///
     /// # Errors
-    /// As [`Compared::of_start`].
+    /// See [`Compared::of_start`].
     pub fn of_inflation<L: PairLaw>(
         inflated: &Inflated<D>,
         inflation: &Inflation,

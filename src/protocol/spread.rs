@@ -1,4 +1,4 @@
-//! [`Spread`]: how much a quantity varies over endings.
+//! [`Spread`]: how much a quantity varies over the endings.
 
 use serde::Serialize;
 
@@ -7,16 +7,16 @@ use crate::protocol::ending::Ending;
 /// Mean and standard deviation of a quantity over some endings.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spread {
-    /// Number of endings that have the quantity.
+    /// Number of endings with the quantity.
     pub count: usize,
     /// Their mean \[unit of the quantity\].
     pub mean: f64,
-    /// Standard deviation, Σ(x − mean)²/(n − 1) under the root \[the same\]; 0 for one ending.
+    /// Standard deviation, √(Σ(x − mean)²/(n − 1)) \[unit of the quantity\]; 0 for one ending.
     pub standard_deviation: f64,
 }
 
 impl Spread {
-    /// That of these values; none of no value.
+    /// The spread of these values; none without values.
     pub fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
         let values: Vec<f64> = values.collect();
         let count = values.len();
@@ -29,7 +29,7 @@ impl Spread {
     }
 }
 
-/// The spreads of what an experiment reports, over the endings at rest: its error bars for "which minimum".
+/// Spreads of the results of an experiment over the endings at rest: the error bars for the choice of the minimum.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Spreads {
     /// Of the energy \[energy\].
@@ -41,7 +41,7 @@ pub struct Spreads {
     /// Of G* \[1\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub anticorrelation: Option<Spread>,
-    /// Of θ*, over the endings that have one \[rad\].
+    /// Of θ*, over the endings with a θ* \[rad\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub correlation_angle: Option<Spread>,
     /// Of the number of contacts made and broken.
@@ -51,18 +51,18 @@ pub struct Spreads {
     #[cfg(feature = "fit")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub elastic_amplitude: Option<Spread>,
-    /// Of d_0^eff of the screened solution, over the endings that have one \[length\].
+    /// Of d_0^eff of the screened solution, over the endings with such a fit \[length\].
     #[cfg(feature = "fit")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub screened_amplitude: Option<Spread>,
-    /// Of κ, over the same \[1/length\].
+    /// Of κ, over the same endings \[1/length\].
     #[cfg(feature = "fit")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wavenumber: Option<Spread>,
 }
 
 impl Spreads {
-    /// Those of some endings; the ones not at rest are left out.
+    /// The spreads of these endings; those not at rest are left out.
     pub fn of(endings: &[Ending]) -> Self {
         let responses = || endings.iter().filter_map(|ending| ending.response);
         let at_rest = || endings.iter().filter(|ending| ending.at_rest());

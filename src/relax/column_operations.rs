@@ -1,5 +1,7 @@
-//! Operations on long columns of numbers, with sums in a fixed order. The compiler can use vector instructions for their lanes. Long
-//! columns are cut into pieces of a fixed length, which may be processed in parallel; their sums are added in order.
+//! Operations on long columns of numbers, with sums in a fixed order.
+//!
+//! The loops have lanes for the vector instructions of the processor. Long columns are cut into pieces of a fixed
+//! length. Pieces may be processed in parallel; their sums are added in order.
 
 use crate::parallel;
 use crate::processor;
@@ -24,7 +26,7 @@ pub struct Products {
 }
 
 impl Products {
-    /// The products of no disk.
+    /// The products of empty columns.
     pub const ZERO: Self = Products { power: 0.0, force_squared: 0.0, speed_squared: 0.0, largest_force: 0.0 };
 
     /// Whether all products are finite. A NaN among forces or velocities makes them NaN.
@@ -43,7 +45,8 @@ impl Products {
     }
 }
 
-/// F·v, F·F and v·v in one pass. Sums of up to some thousand terms have the given precision, the sums of these parts are double.
+/// F·v, F·F and v·v in one pass. Sums of up to some thousand terms have the precision of `T`; the sums of these parts
+/// are double.
 pub fn products<T: Summed>(force: &[T], velocity: &[T]) -> Products {
     let of_piece = |(force, velocity)| processor::dispatch(ProductsOf { force, velocity });
     if force.len() <= PIECE {

@@ -20,11 +20,11 @@ pub const CHECK_INTERVAL: usize = 20;
 /// While forces are large, one of this many checks is made.
 const FAR_CHECKS: usize = 4;
 
-/// A force is large if it is this many times the force that a check waits for \[1\].
+/// A force is large if it is this many times the limit that the check applies \[1\].
 const FAR: f64 = 30.0;
 
-/// Mean contact force below which the residual is unknown \[force\]. Residuals come from squares of net forces. Below this, the square
-/// of the last digit is less than the smallest normal number: √(2⁻¹⁰²²)/2⁻⁵².
+/// Mean contact force below which the residual is unknown \[force\]. Residuals come from squares of net forces. Below
+/// this force, the square of the last digit is less than the smallest normal number: √(2⁻¹⁰²²)/2⁻⁵².
 const SMALLEST_FORCE: f64 = f64::from_bits((1023 - 511 + 52) << 52);
 
 /// The schedule of relaxers whose steps cost one evaluation.
@@ -41,8 +41,8 @@ pub struct CheckSchedule {
     pub waits_for_rattlers: bool,
 }
 
-/// Relative rise of the elastic energy from start to rest that does not count as a gain. Two states within the same force limit may
-/// differ by the square of a residual of 10⁻⁴.
+/// Relative rise of the elastic energy from start to rest that does not count as a gain. The energies of two states
+/// within the same force limit may differ by the square of a residual of 10⁻⁴.
 const ENERGY_GAIN: f64 = 1e-8;
 
 /// Monitors one relaxation.
@@ -90,7 +90,7 @@ impl Monitor {
         Monitor {
             limit,
             schedule,
-            // An absolute limit below the threshold of no force replaces the threshold.
+            // An absolute limit below the unjammed threshold replaces the threshold.
             unjammed_force: match limit {
                 ForceLimit::Absolute(limit) => unjammed_force.min(limit),
                 ForceLimit::Relative(_) => unjammed_force,
@@ -156,9 +156,9 @@ impl Monitor {
         self.at_the_floor().then_some(Stop::RoundingFloor)
     }
 
-    /// Whether a check is due after this step. `largest_force` is the largest component of a net force. A check comes every
-    /// [`CHECK_INTERVAL`] steps; while a force is large, only one in [`FAR_CHECKS`] of these. A disk off the backbone may have a
-    /// large force for long.
+    /// Whether a check is due after this step. `largest_force` is the largest component of a net force. A check comes
+    /// every [`CHECK_INTERVAL`] steps. While a force is large, only one in [`FAR_CHECKS`] of these checks is made. A
+    /// disk off the backbone may have a large force for a long time.
     pub fn is_due(&self, step: usize, largest_force: f64) -> bool {
         let Residual { mean_contact_force: mean, .. } = self.last;
         let limit_force = match self.limit {
@@ -169,8 +169,8 @@ impl Monitor {
         step.is_multiple_of(if far { FAR_CHECKS * CHECK_INTERVAL } else { CHECK_INTERVAL })
     }
 
-    /// Whether a disk pushed from its site is too far from it. Callers also ask after every rebuilt list, since a disk may move
-    /// far between two checks.
+    /// Whether a disk pushed from its site is too far from it. Callers also call this after every rebuild of the list,
+    /// since a disk may move far between two checks.
     pub fn ran_away<const D: usize, L: PairLaw>(&self, assembly: &Assembly<D, L>) -> bool {
         assembly.law().has_sites() && assembly.longest_displacement_from_site() >= self.farthest
     }
@@ -228,7 +228,7 @@ impl Monitor {
 
     fn at_the_floor(&mut self) -> bool {
         let residual = self.last.relative();
-        // A fall by 10 % counts as progress. Fluctuations at the floor are larger, so the best value stays.
+        // A fall by 10 % counts as progress. Fluctuations at the floor are larger, so the best value is kept.
         if residual < 0.9 * self.best {
             self.best = residual;
             self.best_check = self.check_count;

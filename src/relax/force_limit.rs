@@ -1,4 +1,4 @@
-//! [`ForceLimit`]: when a packing counts as at rest; and the thresholds of no force and of a disk that ran away.
+//! [`ForceLimit`]: when a packing counts as at rest. Thresholds for an unjammed packing and for a disk that ran away.
 
 use serde::{Deserialize, Serialize};
 
@@ -33,11 +33,11 @@ impl ForceLimit {
     }
 }
 
-/// Contact forces below this share of the force at an overlap of one radius count as none: the packing is unjammed.
+/// Contact forces below this share of the force at an overlap of one radius count as zero: the packing is unjammed.
 ///
 /// 10⁻¹² is 3.5·10⁻⁸ for the Hertzian disks of the model, where a packing at p = 0.05 has contact forces of 0.05.
 pub const UNJAMMED_FORCE: f64 = 1e-12;
 
-/// Distance of a disk from its site, over the largest radius, at which it has run away \[1\]. At a diameter it has left the cage of
-/// its neighbours. Up to there contacts could have held it; beyond, the push Γu only grows.
+/// Distance of a disk from its site, over the largest radius, at which it has run away \[1\]. At a diameter it has left
+/// the cage of its neighbours. Closer to the site, contacts may still hold it; farther out, the push Γu only grows.
 pub const RUNAWAY: f64 = 2.0;

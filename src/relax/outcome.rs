@@ -12,8 +12,8 @@ pub enum Criterion {
     RelativeForce,
     /// The absolute residual.
     AbsoluteForce,
-    /// Every contact force and every net force vanished, see [`UNJAMMED_FORCE`](crate::relax::UNJAMMED_FORCE). An absolute limit
-    /// is met as well.
+    /// All contact forces and net forces vanish, see [`UNJAMMED_FORCE`](crate::relax::UNJAMMED_FORCE). An absolute
+    /// limit is met as well.
     Unjammed,
 }
 
@@ -29,20 +29,20 @@ pub enum Stop {
     RoundingFloor,
     /// A force became NaN or infinite.
     NonFinite,
-    /// Disks overlap, but the squares of their forces underflow: the stiffness constant or the radii are too small, and the residual
-    /// is unknown.
+    /// Disks overlap, but the squares of their forces underflow: the stiffness constant or the radii are too small, and
+    /// the residual is unknown.
     Underflow,
     /// A damped motion gained energy, or its energies do not balance: its steps are too long, even the shortest.
     Unstable,
     /// At rest, but with more energy than at the start. A relaxation cannot lead there.
     EnergyGained,
-    /// Disks that the law pushes from their sites (Γ > 0) ran away: one is [`RUNAWAY`](crate::relax::RUNAWAY) from where it began.
-    /// The stiffness matrix is indefinite near the sites or became so later, and there is no minimum. The state is where the disks
-    /// ran to; its residual has no meaning. Forces alone do not distinguish a saddle from a minimum: disks at a saddle count as at
-    /// rest. The number of negative eigenvalues distinguishes them, see `linear`.
+    /// Disks that the law pushes from their sites (Γ > 0) ran away: one is [`RUNAWAY`](crate::relax::RUNAWAY) from
+    /// where it began. The stiffness matrix is or became indefinite, and there is no minimum. The final state and its
+    /// residual have no meaning. Forces alone do not distinguish a saddle from a minimum: disks at a saddle count as at
+    /// rest. The number of negative eigenvalues distinguishes the two, see `linear`.
     NoMinimum,
-    /// An implicit motion stagnates. For thousands of steps its residual has not fallen by 10 %, and damping has taken less
-    /// than half of its kinetic energy.
+    /// An implicit motion stagnates. For thousands of steps its residual has not fallen by 10 %, and damping has taken
+    /// less than half of its kinetic energy.
     #[cfg(feature = "linear")]
     Restless,
     /// The factors of Newton's matrix do not fit in memory.
@@ -50,7 +50,7 @@ pub enum Stop {
     OutOfMemory,
     /// No step, however short, lowers the energy, and the residual is above the rounding floor.
     NoDescent,
-    /// The trace asked it to end: [`Trace::interrupted`](crate::relax::Trace::interrupted).
+    /// The trace interrupted it: [`Trace::interrupted`](crate::relax::Trace::interrupted).
     Interrupted,
 }
 
@@ -91,11 +91,11 @@ pub struct Outcome<T> {
 pub struct Cost {
     /// Steps taken.
     pub step_count: usize,
-    /// Rejected steps, whose error was too large; those within explicit phases included. Not written if 0.
+    /// Steps rejected because of a large error, including those within explicit phases. Not written if 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub rejected_count: usize,
-    /// Evaluations in the explicit and stabilised phases of implicit dynamics: one per explicit step, s per stabilised step of s
-    /// stages. A phase counts as one step. Not written if 0.
+    /// Evaluations in the explicit and stabilised phases of implicit dynamics: one per explicit step, s per stabilised
+    /// step of s stages. A phase counts as one step. Not written if 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub explicit_count: usize,
     /// Evaluations of all forces.

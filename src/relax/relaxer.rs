@@ -18,8 +18,8 @@ pub trait Relaxer {
         trace: &mut impl Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError>;
 
-    /// The same relaxer for intermediate states: at rest at a relative residual of `limit` \[1\]. None if its own limit is not below
-    /// that, or if it has no such limit.
+    /// The same relaxer for intermediate states, which count as at rest at a relative residual of `limit` \[1\]. None
+    /// if its own limit is absolute or not below that.
     fn passing(&self, limit: f64) -> Option<Self>
     where
         Self: Sized,

@@ -8,7 +8,7 @@ pub trait Trace {
     /// Called at every check of the residual.
     fn look(&mut self, look: &Look);
 
-    /// Asked after every check: whether the relaxer is to end here, with [`Stop::Interrupted`](crate::relax::Stop::Interrupted).
+    /// Called after every check. True ends the relaxer, with [`Stop::Interrupted`](crate::relax::Stop::Interrupted).
     fn interrupted(&mut self) -> bool {
         false
     }
@@ -19,7 +19,7 @@ pub trait Trace {
 pub struct Look {
     /// Steps taken so far.
     pub step_count: usize,
-    /// Elastic energy, with that of the sites where the law has them; it may then be negative \[energy\].
+    /// Elastic energy, including that of the sites if the law has them; it may then be negative \[energy\].
     pub energy: f64,
     /// Kinetic energy \[energy\].
     pub kinetic_energy: f64,

@@ -1,4 +1,4 @@
-//! The fitted solutions as curves beside a measured profile.
+//! The fitted solutions as curves next to a measured profile.
 
 #[cfg(feature = "fit")]
 use crate::fit::profile::{Decision, ProfileFit};
@@ -10,9 +10,9 @@ use crate::response::Response;
 
 /// One fitted solution.
 pub(crate) struct Curve {
-    /// Its name, also that of its column.
+    /// Its name, also the name of its column.
     pub name: &'static str,
-    /// Whether it is the one decided for.
+    /// Whether the fit selected it.
     #[cfg_attr(not(feature = "plot"), allow(dead_code, reason = "figures draw it in another way"))]
     pub decided: bool,
     solution: Box<dyn RadialSolution>,
@@ -31,7 +31,7 @@ pub(crate) fn fit_of(response: &Response) -> Option<&ProfileFit> {
     response.profile_fit.as_ref()?.measured()
 }
 
-/// Fitted solutions of a sample: none without a fit.
+/// Fitted solutions of a sample; empty without a fit.
 #[cfg(feature = "fit")]
 pub(crate) fn curves(response: &Response) -> Vec<Curve> {
     let Some(fit) = fit_of(response) else { return Vec::new() };
@@ -43,7 +43,7 @@ pub(crate) fn curves(response: &Response) -> Vec<Curve> {
         decided: fit.decision == Decision::Elastic,
         solution: Box::new(solution),
     });
-    // At a pole to rounding there is no finite solution, and no curve.
+    // At a pole, to rounding, there is no finite solution and no curve.
     let screened = fit
         .screened
         .and_then(|fit| Screened::<2>::new(annulus, fit.amplitude.value, fit.wavenumber.value).ok())
@@ -55,19 +55,19 @@ pub(crate) fn curves(response: &Response) -> Vec<Curve> {
     elastic.into_iter().chain(screened).collect()
 }
 
-/// Without the feature `fit` nothing is fitted.
+/// No fits without the feature `fit`.
 #[cfg(not(feature = "fit"))]
 pub(crate) fn curves(_response: &Response) -> Vec<Curve> {
     Vec::new()
 }
 
-/// Inner and outer end of the radii fitted \[length\].
+/// Smallest and largest fitted radius \[length\].
 #[cfg(feature = "fit")]
 pub(crate) fn fitted_range(response: &Response) -> Option<[f64; 2]> {
     fit_of(response).map(|fit| fit.range)
 }
 
-/// Without the feature `fit` nothing is fitted.
+/// No fits without the feature `fit`.
 #[cfg(not(feature = "fit"))]
 pub(crate) fn fitted_range(_response: &Response) -> Option<[f64; 2]> {
     None

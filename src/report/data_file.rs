@@ -1,4 +1,4 @@
-//! [`DataFile`]: which files a sample writes, and their names.
+//! [`DataFile`]: the files of a sample and their names.
 
 use crate::report::csv::response::{ResponseFile, every_ending, files};
 use crate::run::{Report, SampleResult};
@@ -18,7 +18,7 @@ pub(crate) enum DataFile {
 }
 
 impl DataFile {
-    /// Those of a sample, by what its scene asked for.
+    /// The files of a sample, by the requests of its scene.
     pub(crate) fn of(report: &Report, result: &SampleResult) -> Vec<DataFile> {
         let mut all = Vec::new();
         if report.scene.observables.displacement_field.is_some() {

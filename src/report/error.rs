@@ -6,7 +6,7 @@ use crate::io::WriteError;
 #[cfg(feature = "plot")]
 use crate::report::figures;
 
-/// Why a report was not written; the files of an earlier one are then untouched, unless the error says otherwise.
+/// Why a report was not written. The files of an earlier report are then unchanged, unless the error states otherwise.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {
@@ -15,7 +15,7 @@ pub enum ReportError {
     Folder {
         /// The folder.
         folder: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: std::io::Error,
     },
     /// Nothing can be written into the folder.
@@ -23,13 +23,13 @@ pub enum ReportError {
     NotWritable {
         /// The folder.
         folder: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: std::io::Error,
     },
-    /// A file of this name cannot be made.
+    /// No file with this name can be created.
     #[error("{field} = \"{value}\": no file `{name}` ({} letters) can be made in {folder}: {source}", name.chars().count())]
     Name {
-        /// What the name comes from.
+        /// The origin of the name.
         field: &'static str,
         /// Its value.
         value: String,
@@ -37,20 +37,21 @@ pub enum ReportError {
         name: String,
         /// The folder.
         folder: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: std::io::Error,
     },
-    /// A complete report could not be put in its place; it stays complete, and the next command on the folder tries again.
+    /// A complete report could not be moved to its place; it stays complete, and the next command on the folder tries
+    /// again.
     #[error(
         "{path}: {source}; the report is complete in a hidden folder beside it, and the next run or analysis of the folder moves it"
     )]
     Place {
         /// The file or folder.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: std::io::Error,
     },
-    /// Another process puts a report into the same folder and does not end.
+    /// Another process is moving a report into the same folder and does not end.
     #[error(
         "{folder}: locked by another process; the report is complete in a hidden folder in it, and the next run or analysis of the folder moves it"
     )]
@@ -61,12 +62,12 @@ pub enum ReportError {
     /// A file could not be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// The report has no form as JSON.
+    /// The report cannot be written as JSON.
     #[error("{path}: {source}")]
     Json {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The problem.
         source: serde_json::Error,
     },
     /// A figure could not be drawn.

@@ -22,21 +22,21 @@ use crate::report::rows::section::done;
 use crate::run::{Report, SampleReport, SampleResult};
 use crate::vector::Vector;
 
-/// Writes a report into `folder`, made if it is not there, and names the files written in that order.
+/// Writes a report into `folder`, which is created if necessary. Returns the paths of the files in the order written.
 ///
-/// The files of an earlier report are replaced by those of this one, all together; other files are left
+/// All files of an earlier report are replaced together; other files are not changed
 /// ([`output`](crate::report::output)).
 ///
 /// # Errors
-/// [`ReportError`] names the file and what is wrong.
+/// [`ReportError`] with the file and the problem.
 pub fn write(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
     write_into(report, OutputFolder::open(folder, Kind::Report)?)
 }
 
-/// As [`write()`], into a folder that was opened before the run.
+/// Like [`write()`], into a folder that was opened before the run.
 ///
 /// # Errors
-/// [`ReportError`] names the file and what is wrong.
+/// [`ReportError`] with the file and the problem.
 pub fn write_into(report: &Report, output: OutputFolder) -> Result<Vec<PathBuf>, ReportError> {
     let mut files = Files { folder: output.inside(), written: Vec::new() };
     files.json("report.json", report)?;
@@ -52,19 +52,19 @@ pub fn write_into(report: &Report, output: OutputFolder) -> Result<Vec<PathBuf>,
     output.commit(written)
 }
 
-/// Writes analyses into `folder` as [`write()`] does a report: `analysis.json`, the tables of each, and with the feature `plot`
-/// one page.
+/// Writes analyses into `folder` as [`write()`] writes a report: `analysis.json`, the tables of each, and with the
+/// feature `plot` one page.
 ///
 /// # Errors
-/// [`ReportError`] names the file and what is wrong.
+/// [`ReportError`] with the file and the problem.
 pub fn write_analyses(analyses: &[Analysis], folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
     write_analyses_into(analyses, OutputFolder::open(folder, Kind::Analysis)?)
 }
 
-/// As [`write_analyses()`], into a folder that was opened before the work.
+/// Like [`write_analyses()`], into a folder that was opened before the analysis.
 ///
 /// # Errors
-/// [`ReportError`] names the file and what is wrong.
+/// [`ReportError`] with the file and the problem.
 pub fn write_analyses_into(analyses: &[Analysis], output: OutputFolder) -> Result<Vec<PathBuf>, ReportError> {
     let mut files = Files { folder: output.inside(), written: Vec::new() };
     let vectors = Processor::own().vectors();
@@ -83,11 +83,11 @@ pub fn write_analyses_into(analyses: &[Analysis], output: OutputFolder) -> Resul
     output.commit(written)
 }
 
-/// Writes what a merged study says of the transition beside its records: `transition.json`, `transition.csv`, and with the
-/// feature `plot` `report.html`.
+/// Writes the results of a merged study on the transition: `transition.json`, `transition.csv`, and with the feature
+/// `plot` `report.html`.
 ///
 /// # Errors
-/// [`ReportError`] names the file and what is wrong.
+/// [`ReportError`] with the file and the problem.
 #[cfg(feature = "fit")]
 pub fn write_study(
     merged: &crate::study::Merged,
@@ -104,7 +104,7 @@ pub fn write_study(
     Ok(files.written.iter().map(|name| folder.join(name)).collect())
 }
 
-/// What `analysis.json` holds.
+/// The content of `analysis.json`.
 #[derive(Serialize)]
 struct Analyses<'a> {
     jamscope_version: &'static str,
@@ -216,7 +216,7 @@ impl Files<'_> {
         Ok(())
     }
 
-    /// A packing with its displacements; held disks and the centre have none and do not count.
+    /// A packing with its displacements. Held disks and the centre have none and do not count.
     fn field(
         &mut self,
         name: &str,
@@ -243,7 +243,7 @@ impl Files<'_> {
     }
 }
 
-/// The numbers of a law, as `jamscope inspect` reads them again.
+/// The parameters of a law, in the form that `jamscope inspect` reads.
 fn numbers_of(law: &LawChoice) -> Vec<(&'static str, String)> {
     match law {
         LawChoice::Hertzian(law) => vec![("stiffness", format!("{:?}", law.stiffness))],
@@ -254,7 +254,7 @@ fn numbers_of(law: &LawChoice) -> Vec<(&'static str, String)> {
     }
 }
 
-/// What a certificate says in single numbers.
+/// The single numbers of a certificate.
 fn numbers_known(certificate: &Certificate) -> Vec<(&'static str, String)> {
     let mut known = vec![
         ("relative_residual", format!("{:?}", certificate.relative_residual)),
@@ -268,12 +268,12 @@ fn numbers_known(certificate: &Certificate) -> Vec<(&'static str, String)> {
     known
 }
 
-/// Where a packing comes from, for the comment line of its file.
+/// Origin of a packing, for the comment line of its file.
 struct Origin<'a> {
     report: &'a Report,
     sample: &'a SampleReport,
     state: &'a str,
-    /// Pressure of the box, or of the circle once it is cut \[force / length\].
+    /// Pressure of the box, or of the circle after the cut \[force / length\].
     pressure: f64,
     /// R \[length\].
     outer_radius: f64,
@@ -289,13 +289,13 @@ struct Timing<'a> {
     after_inflation_seconds: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     after_deflation_seconds: Option<f64>,
-    /// Of the relaxers compared, their finish left out.
+    /// Time of the compared relaxers, without Newton's method after them.
     #[cfg(feature = "linear")]
     #[serde(skip_serializing_if = "Option::is_none")]
     protocols_seconds: Option<f64>,
 }
 
-/// Wall times of the relaxations of all samples that came to a result.
+/// Wall times of the relaxations of all samples with a result.
 fn timings(report: &Report) -> Vec<Timing<'_>> {
     let timing = |sample| {
         let result: &SampleResult = done(sample)?;

@@ -1,9 +1,9 @@
-//! Numbers for readers: significant digits, values with their errors. For programs there are the data files.
+//! Numbers for readers: significant digits, values with errors. The data files contain numbers for programs.
 
-/// Powers of ten written out; others are split off as ·10ⁿ.
+/// Powers of ten that are written out; others are written as ·10ⁿ.
 const PLAIN_EXPONENTS: std::ops::Range<i32> = -3..6;
 
-/// A number to so many significant digits; a power of ten is split off below 10⁻³ and from 10⁶ on.
+/// A number with this many significant digits; written with ·10ⁿ below 10⁻³ and from 10⁶ on.
 pub(crate) fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return format!("{value}").replace('-', "−");
@@ -34,14 +34,14 @@ pub(crate) fn with_error(value: f64, error: f64) -> String {
     format!("{value:.decimals$} ± {error:.decimals$}").replace('-', "−")
 }
 
-/// An integer in raised digits.
+/// An integer as a superscript.
 pub(crate) fn superscript(integer: i32) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let raised = |digit: char| digit.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
     integer.to_string().chars().map(raised).collect()
 }
 
-/// An integer with thin gaps between thousands, from five digits on.
+/// An integer with thin spaces between thousands, from five digits on.
 pub(crate) fn count(integer: usize) -> String {
     let digits = integer.to_string();
     if digits.len() < 5 {

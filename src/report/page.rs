@@ -1,4 +1,4 @@
-//! [`page`]: the whole report on one HTML page that needs nothing else: no scripts, no fonts, no network.
+//! [`page`]: the whole report on one self-contained HTML page: no scripts, no fonts, no network.
 
 use std::fmt::Write as _;
 
@@ -22,7 +22,7 @@ pub(crate) const STYLE: &str = include_str!("page.css");
 const TITLE: &str = "jamscope: response to an inflation";
 const HEADING: &str = "Response of a packing to the inflation of one disk";
 
-/// The page of a report. Two runs of one scene on one processor give the same bytes: wall times are left out.
+/// The page of a report. Two runs of one scene on one processor give the same bytes, since wall times are left out.
 ///
 /// # Errors
 /// A figure whose numbers are not finite.
@@ -68,7 +68,7 @@ pub fn analysis_page(analyses: &[Analysis]) -> Result<String, FigureError> {
             "<section class=\"sample\" aria-label=\"Sample {name}\">\n<h2>{name}</h2>\n<p class=\"facts\">{}</p>\n",
             facts.join(", ")
         );
-        // In the open plane a map needs no sides.
+        // A map in the open plane needs no sides of a box.
         let sides = analysis.pair.before.domain().lengths().unwrap_or([2.0 * analysis.outer_radius; 2]);
         let (radii, boundary) = (analysis.pair.before.radii(), analysis.boundary());
         let frame = MapFrame::new(boundary, analysis.outer_radius, sides, widest(radii));
@@ -94,7 +94,7 @@ pub fn analysis_page(analyses: &[Analysis]) -> Result<String, FigureError> {
     Ok(html)
 }
 
-/// All before the first section.
+/// The part before the first section.
 pub(crate) fn head(title: &str, heading: &str, introduction: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -104,7 +104,7 @@ pub(crate) fn head(title: &str, heading: &str, introduction: &str) -> String {
     )
 }
 
-/// Figures side by side.
+/// A row of figures.
 pub(crate) fn pictures(figures: Vec<Figure>) -> String {
     if figures.is_empty() {
         return String::new();
@@ -119,7 +119,7 @@ fn links(files: impl Iterator<Item = String>) -> String {
     format!("<p class=\"files\">Data:{}</p>\n", each.collect::<Vec<_>>().join(","))
 }
 
-/// What has to be known first: which states are not at rest, and what is likely; nothing where all are.
+/// A warning about states that are not at rest, with likely causes; empty if all are at rest.
 fn not_at_rest<'a>(verdicts: impl Iterator<Item = (&'a str, &'a RestVerdict)>) -> String {
     let mut html = String::new();
     for (name, verdict) in verdicts {
@@ -145,7 +145,7 @@ fn widest(radii: &[f64]) -> f64 {
     radii.iter().copied().fold(0.0, f64::max)
 }
 
-/// What is seen, in a paragraph; only what is there.
+/// A paragraph on the content of the figures.
 fn introduction(report: &Report) -> String {
     let scene = &report.scene;
     let place = match scene.inflation.boundary {
@@ -189,7 +189,7 @@ fn section(report: &Report, sample: &SampleReport) -> Result<String, FigureError
     Ok(html)
 }
 
-/// What the scene asks of a sample.
+/// The requests of the scene for a sample.
 fn asked(report: &Report, sample: &SampleReport) -> String {
     match settings(report, &sample.name).map(|sample| &sample.source) {
         Some(Source::PackingFraction(value)) => format!("packing fraction {value}"),
@@ -199,7 +199,7 @@ fn asked(report: &Report, sample: &SampleReport) -> String {
     }
 }
 
-/// Pressure, packing fraction and what was decided.
+/// Pressure, packing fraction and phase.
 fn facts(result: &SampleResult) -> String {
     let packing = &result.packing;
     let mut facts = vec![
@@ -235,14 +235,14 @@ fn decided(_response: &Response) -> Option<String> {
 
 fn figures(report: &Report, name: &str, result: &SampleResult) -> Result<Vec<Figure>, FigureError> {
     let radii = result.inflated.before.packing.get().radii();
-    // Disks whose centre lies within the boundary reach beyond it by a radius.
+    // Disks with centres within the boundary extend beyond it by a radius.
     let (boundary, outer_radius) = (report.scene.inflation.boundary, result.response.field.outer_radius);
     let frame = MapFrame::new(boundary, outer_radius, result.packing.box_sides, widest(radii));
     let heat = report.scene.observables.displacement_field.is_some();
     response_page::figures(name, &result.response, radii, &frame, heat)
 }
 
-/// All rows of all samples that came to a result.
+/// All rows of all samples with a result.
 fn numbers(report: &Report) -> String {
     let names: Vec<&str> = report.samples.iter().map(|sample| sample.name.as_str()).collect();
     let mut html = format!(
@@ -257,7 +257,7 @@ fn numbers(report: &Report) -> String {
     html
 }
 
-/// A column a name.
+/// A table with one column per name.
 fn numbers_table(names: &[&str], sections: &[Section]) -> String {
     let mut html = String::from("<div class=\"table\">\n<table>\n<thead>\n<tr><th scope=\"col\">Quantity</th>");
     for name in names {

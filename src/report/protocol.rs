@@ -1,4 +1,4 @@
-//! Protocols in a report: rows of the table, the endings as CSV and on the page, the ensemble in a sentence.
+//! Protocols in a report: rows of the table, the endings as CSV and on the page, a sentence on the ensemble.
 
 use std::fmt::Write as _;
 
@@ -52,7 +52,7 @@ pub(crate) fn section(samples: &[SampleReport]) -> Section {
     rows.section("Protocols")
 }
 
-/// What the samples compared say together.
+/// A summary of the compared samples.
 pub(crate) fn summary(report: &Report) -> Option<String> {
     let all = report.protocol.as_ref()?;
     let mut text = format!(
@@ -124,7 +124,7 @@ const COLUMNS: [(&str, &str); 18] = [
     ("factorisation_count", "1"),
 ];
 
-/// The endings: a row of names, a row of units, a row an ending; a field is empty where an ending has no such number.
+/// The endings: a row of names, a row of units, one row per ending; missing numbers are empty fields.
 pub(crate) fn csv(sensitivity: &ProtocolSensitivity) -> String {
     let (names, units): (Vec<_>, Vec<_>) = COLUMNS.into_iter().unzip();
     let mut text = format!("{}\n{}\n", names.join(","), units.join(","));

@@ -18,10 +18,10 @@ use crate::report::figures::{Figure, FigureError};
 use crate::report::number::significant;
 use crate::response::{Response, RingResponse};
 
-/// Modes drawn: isotropic, dipole, quadrupole, and one more.
+/// Highest mode drawn: isotropic, dipole, quadrupole, and one more.
 const HIGHEST_MODE: usize = 3;
 
-/// All figures of what was measured; `radii` are those of the packing before.
+/// All figures of a response; `radii` are those of the packing before the inflation.
 pub(crate) fn figures(
     name: &str,
     response: &Response,
@@ -43,13 +43,13 @@ pub(crate) fn figures(
         figures.extend(of_ring(name, ring)?);
     }
     if let Some(rings) = response.radial_dependence.as_ref().and_then(|it| it.measured()) {
-        // Without a ring that could be measured there is nothing to draw.
+        // Without a measured ring there is nothing to draw.
         figures.extend(radial_dependence_figure(name, rings).ok());
     }
     if let Some(multipoles) = response.multipoles.as_ref().and_then(|it| it.measured()) {
         #[cfg(feature = "fit")]
         let fit = response.elastic_modes.as_ref().and_then(|it| it.measured());
-        // The sign of the mean over the angle is that of its measured value.
+        // The mean over the angle has the sign of its measured value.
         #[cfg(feature = "fit")]
         let elastic = |mode: usize, radius: f64| {
             let amplitude = fit?.at(mode, radius)?.radial;
@@ -81,7 +81,7 @@ pub(crate) fn figures(
     Ok(figures)
 }
 
-/// G(θ) and S(f); neither where the ring has no variance.
+/// G(θ) and S(f); empty if the ring has no variance.
 fn of_ring(name: &str, ring: &RingResponse) -> Result<Vec<Figure>, FigureError> {
     let correlation = &ring.correlation;
     if !correlation.anticorrelation.is_finite() {
@@ -108,12 +108,12 @@ fn of_ring(name: &str, ring: &RingResponse) -> Result<Vec<Figure>, FigureError> 
     Ok(figures)
 }
 
-/// The power law and the Lorentzian fitted, where they were, and the slope −1.5 through S(1) where they were not.
+/// The fitted power law and Lorentzian; without fits the slope −1.5 through S(1).
 #[cfg(feature = "fit")]
 fn fitted<'a>(ring: &'a RingResponse, relative: &'a [f64]) -> Vec<SpectrumCurve<'a>> {
     use crate::fit::angular::CrossoverOutcome;
 
-    // The amplitude that makes the mean of S over the curve 1, as the fit has it for P over its expectation.
+    // The amplitude for which the mean of S over the curve is 1, as in the fit for P over its expectation.
     let scaled = |label: String, window: [usize; 2], shape: Box<dyn Fn(f64) -> f64>| {
         let [from, to] = [window[0], window[1].min(relative.len() - 1)];
         let ratios = (from..=to).map(|f| relative[f] / shape(f as f64));
@@ -142,13 +142,13 @@ fn fitted<'a>(_ring: &'a RingResponse, relative: &'a [f64]) -> Vec<SpectrumCurve
     vec![critical(relative)]
 }
 
-/// f^(−3/2), what the study finds at the transition.
+/// f^(−3/2), the result of the study at the transition.
 fn critical(relative: &[f64]) -> SpectrumCurve<'_> {
     let window = [1.0, (relative.len() - 1) as f64];
     SpectrumCurve { label: "f^(−1.5)".into(), of: Box::new(|f| libm::pow(f, -1.5)), window }
 }
 
-/// What the figures of these responses show, in a paragraph; only what is there.
+/// A paragraph on the content of the figures of these responses.
 pub(crate) fn legend(responses: &[&Response], heat: bool) -> String {
     let any = |has: fn(&Response) -> bool| responses.iter().any(|it| has(it));
     let mut text = String::new();

@@ -1,4 +1,5 @@
-//! [`terminal_table`], [`analysis_table`]: a report, or analyses, as plain text, a column a sample, no wider than [`WIDTH`].
+//! [`terminal_table`], [`analysis_table`]: a report, or analyses, as plain text, one column per sample, at most
+//! [`WIDTH`] wide.
 
 use crate::analysis::Analysis;
 use crate::report::rows::section::Section;
@@ -6,21 +7,21 @@ use crate::report::rows::{Times, failures, refusals, sections};
 use crate::run::{Report, SampleReport};
 use crate::verdict::RestVerdict;
 
-/// Characters in a line, at most.
+/// Largest number of characters in a line.
 pub const WIDTH: usize = 100;
 
-/// Characters of the column of labels.
+/// Width of the column of labels, in characters.
 const LABEL_WIDTH: usize = 40;
 
-/// Samples side by side.
+/// Number of samples in a row.
 const SAMPLES_ABREAST: usize = 3;
 
-/// Characters of the column of a sample.
+/// Width of the column of a sample, in characters.
 const CELL_WIDTH: usize = (WIDTH - LABEL_WIDTH) / SAMPLES_ABREAST;
 
-/// The numbers of a report for a reader at a terminal, wall times included.
+/// The numbers of a report as a table for a terminal, with wall times.
 ///
-/// Samples stand side by side, three at a time. Those that failed are told below, with the reason.
+/// Samples are in columns, three at a time. Failed samples are listed below, with the reason.
 pub fn terminal_table(report: &Report) -> String {
     let mut lines = not_at_rest(crate::report::rows::verdicts(&report.samples));
     lines.push(format!("jamscope {}, {}", report.jamscope_version, crate::report::rows::law(&report.scene.law)));
@@ -37,7 +38,7 @@ pub fn terminal_table(report: &Report) -> String {
     text(&lines)
 }
 
-/// The numbers of analyses, as those of a report.
+/// The numbers of analyses, in the form of a report.
 pub fn analysis_table(analyses: &[Analysis]) -> String {
     let law = analyses.first().map_or(String::new(), |first| format!(", {}", crate::report::rows::law(&first.law)));
     let mut lines = not_at_rest(analyses.iter().map(|analysis| (analysis.name.as_str(), &analysis.response.verdict)));
@@ -55,7 +56,7 @@ pub fn analysis_table(analyses: &[Analysis]) -> String {
     text(&lines)
 }
 
-/// What has to be known first: which states are not at rest, and what is likely.
+/// Warnings about states that are not at rest, with likely causes.
 fn not_at_rest<'a>(verdicts: impl Iterator<Item = (&'a str, &'a RestVerdict)>) -> Vec<String> {
     let mut lines = Vec::new();
     for (name, verdict) in verdicts {
@@ -72,7 +73,7 @@ fn text(lines: &[String]) -> String {
     lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
 }
 
-/// Names, and under them all rows of all sections.
+/// Names, followed by all rows of all sections.
 fn columns<'a>(names: impl Iterator<Item = &'a str>, sections: &[Section], lines: &mut Vec<String>) {
     lines.push(String::new());
     lines.push(line("", names));
@@ -93,11 +94,11 @@ fn failure_lines(samples: &[SampleReport], lines: &mut Vec<String>) {
     }
 }
 
-/// A label and cells, each set to the right of its column.
+/// A label and right-aligned cells.
 fn line<'a>(label: &str, cells: impl Iterator<Item = &'a str>) -> String {
     let mut line = format!("{label:<LABEL_WIDTH$}");
     for cell in cells {
-        // A name may be longer than its column; it is cut rather than the columns shifted.
+        // A name longer than its column is cut, so that columns stay aligned.
         let cell: String = if cell.chars().count() < CELL_WIDTH {
             cell.into()
         } else {
@@ -108,7 +109,7 @@ fn line<'a>(label: &str, cells: impl Iterator<Item = &'a str>) -> String {
     line
 }
 
-/// Text in lines of at most [`WIDTH`] characters, broken between words; a longer word stands alone.
+/// Text in lines of at most [`WIDTH`] characters, broken between words; a longer word has its own line.
 fn wrapped(text: &str) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

@@ -1,11 +1,13 @@
-//! [`Calibration`]: how often samples of an ensemble are called plastic or quasielastic, by each kind of evidence, at which pressure.
+//! [`Calibration`]: how often samples of an ensemble are classified as plastic or quasielastic, by type of evidence and
+//! pressure.
 //!
 //! ```text
-//! share of a word at p̂ = samples called so / samples of the cell nearest to p̂        p̂ = p N^(α−1)
+//! share of a phase at p̂ = samples with this phase / samples of the cell nearest to p̂        p̂ = p N^(α−1)
 //! ```
 //!
-//! The ensembles are those of the chapter *Which dynamics make the plastic phase*. A sample is held against one of its own law, relaxer and
-//! inflation, of a size within a factor of 1.5, and a cell within half a decade of its p̂; otherwise it has no calibration.
+//! The ensembles are those of the chapter *Which dynamics make the plastic phase*. A sample is compared with an
+//! ensemble of the same law, relaxer and inflation, of a size within a factor of 1.5, and with a cell within half a
+//! decade of its p̂. Otherwise it has no calibration.
 
 use std::sync::OnceLock;
 
@@ -13,44 +15,44 @@ use serde::{Deserialize, Serialize};
 
 use crate::response::phase::{Phase, PhaseDecision, PhaseOutcome};
 
-/// Ensembles of samples whose phases were counted.
+/// Ensembles of samples with known phases.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Calibration {
     /// The ensembles.
     pub ensembles: Vec<CalibratedEnsemble>,
 }
 
-/// Samples that differ in pressure and seed alone.
+/// Samples that differ only in pressure and seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CalibratedEnsemble {
     /// The contact law, by name.
     pub law: String,
-    /// How samples came to rest after the inflation, in words.
+    /// The method of relaxation after the inflation, in words.
     pub relaxer: String,
     /// Disks in the box.
     pub disk_count: usize,
     /// d_0 \[length\].
     pub increase: f64,
-    /// p̂_c by κ, where the ensemble locates it \[force / length\].
+    /// p̂_c by κ, if the ensemble determines it \[force / length\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub critical_by_wavenumber: Option<f64>,
-    /// p̂_c by Δp, likewise \[force / length\].
+    /// p̂_c by Δp, if the ensemble determines it \[force / length\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub critical_by_pressure_change: Option<f64>,
-    /// By p̂, ascending.
+    /// Cells in ascending order of p̂.
     pub cells: Vec<CalibratedCell>,
 }
 
 /// Samples of one p̂.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CalibratedCell {
-    /// p̂ asked for \[force / length\].
+    /// Target p̂ \[force / length\].
     pub reduced_pressure: f64,
-    /// Who was called what.
+    /// Numbers of samples by phase.
     pub counts: EvidenceCounts,
 }
 
-/// Samples counted by what is said of them.
+/// Numbers of samples by phase, for every type of evidence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct EvidenceCounts {
     /// All samples at rest and jammed.
@@ -63,11 +65,11 @@ pub struct EvidenceCounts {
     pub pressure_change: WordCounts,
     /// By the angular spectrum.
     pub spectrum: WordCounts,
-    /// By the contacts changed.
+    /// By the share of changed contacts.
     pub contact_changes: WordCounts,
 }
 
-/// Samples called plastic and quasielastic; of the others nothing is said, or evidence disagrees.
+/// Numbers of plastic and quasielastic samples; the others have no phase, or contradictory evidence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct WordCounts {
     /// Plastic.
@@ -76,14 +78,14 @@ pub struct WordCounts {
     pub quasielastic: usize,
 }
 
-/// What a calibration says of one sample.
+/// The calibration of one sample.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PhaseFrequency {
     /// p̂ of the sample \[force / length\].
     pub reduced_pressure: f64,
-    /// The ensemble it is held against: disks in the box.
+    /// Number of disks in the box of the ensemble.
     pub disk_count: usize,
-    /// The same: p̂ of the cell \[force / length\].
+    /// p̂ of the cell \[force / length\].
     pub cell_reduced_pressure: f64,
     /// p̂_c by κ in that ensemble \[force / length\].
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -91,18 +93,18 @@ pub struct PhaseFrequency {
     /// p̂_c by Δp \[force / length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub critical_by_pressure_change: Option<f64>,
-    /// Samples of the cell.
+    /// Number of samples of the cell.
     pub sample_count: usize,
-    /// Those with the word of this sample.
+    /// Number of these samples with the same phase.
     pub alike_count: usize,
 }
 
-/// What a sample is held against.
+/// The properties of a sample that select its ensemble.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Conditions<'a> {
     /// The contact law, by name.
     pub law: &'a str,
-    /// How it came to rest after the inflation, in words.
+    /// The method of relaxation after the inflation, in words.
     pub relaxer: &'a str,
     /// Disks in the box.
     pub disk_count: usize,
@@ -112,14 +114,15 @@ pub struct Conditions<'a> {
     pub reduced_pressure: f64,
 }
 
-/// Sizes farther apart are no comparison: the published p̂_c is one number for sizes four apart, but κ and Δp of ours drift.
+/// Largest ratio of sizes for a comparison. The published p̂_c is one number for sizes that differ by 4, but our κ and
+/// Δp depend on size.
 const LARGEST_SIZE_RATIO: f64 = 1.5;
 
-/// Cells farther away in p̂ are no comparison: they stand half a decade apart or a whole one.
+/// Largest ratio of p̂ for a comparison; cells are half a decade or a whole one apart.
 const LARGEST_PRESSURE_RATIO: f64 = 3.3;
 
 impl EvidenceCounts {
-    /// Counts one more sample; unjammed ones and those not at rest have no phase and do not count.
+    /// Adds a sample. Unjammed samples and those not at rest have no phase and do not count.
     pub fn add(&mut self, decision: &PhaseDecision) {
         let word = match decision.outcome {
             PhaseOutcome::Plastic => Some(Phase::Plastic),
@@ -135,7 +138,7 @@ impl EvidenceCounts {
         self.contact_changes.add(decision.by_contact_changes);
     }
 
-    /// Samples with this outcome; none of those that are not counted.
+    /// Number of samples with this outcome; none for outcomes that are not counted.
     pub fn alike(&self, outcome: PhaseOutcome) -> Option<usize> {
         match outcome {
             PhaseOutcome::Plastic => Some(self.phase.plastic),
@@ -157,14 +160,14 @@ impl WordCounts {
 }
 
 impl Calibration {
-    /// That of the ensembles of the book.
+    /// The calibration by the ensembles of the book.
     pub fn built_in() -> &'static Self {
         static BUILT_IN: OnceLock<Calibration> = OnceLock::new();
-        // A test reads the file; a report goes without if it could not be read.
+        // A test checks the file; if it is unreadable, a report has no calibration.
         BUILT_IN.get_or_init(|| serde_json::from_str(include_str!("calibration.json")).unwrap_or_default())
     }
 
-    /// How often samples like this one have its outcome; none where no ensemble is like it.
+    /// How often similar samples have this outcome; none without a similar ensemble.
     pub fn frequency(&self, of: &Conditions<'_>, outcome: PhaseOutcome) -> Option<PhaseFrequency> {
         let alike = |it: &&CalibratedEnsemble| {
             (it.law.as_str(), it.relaxer.as_str(), it.increase) == (of.law, of.relaxer, of.increase)
@@ -192,7 +195,7 @@ impl Calibration {
     }
 }
 
-/// The larger of two positive numbers over the smaller; infinite where one is not positive.
+/// The larger of two numbers over the smaller; infinite if one is not positive.
 fn apart(a: f64, b: f64) -> f64 {
     if a > 0.0 && b > 0.0 { (a / b).max(b / a) } else { f64::INFINITY }
 }
@@ -242,7 +245,7 @@ mod tests {
         assert_eq!(share(near, PhaseOutcome::Plastic), Some((2, 4, 5548)));
         assert_eq!(share(near, PhaseOutcome::Undecided), Some((1, 4, 5548)));
         assert_eq!(share(near, PhaseOutcome::Unjammed), None);
-        // Nothing like it: another law, relaxer, inflation, a size or p̂ too far away, a cell without samples.
+        // No similar ensemble: another law, relaxer or inflation, a size or p̂ too far away, a cell without samples.
         for other in [
             Conditions { law: "Hookean", ..near },
             Conditions { relaxer: "constant 500", ..near },

@@ -1,4 +1,4 @@
-//! [`ContactSummary`]: contacts made and broken, in numbers and where.
+//! [`ContactSummary`]: numbers and positions of contacts made and broken.
 
 use serde::Serialize;
 
@@ -13,12 +13,12 @@ pub struct ContactSummary {
     /// The deflation, if there was one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deflation: Option<CycleCounts>,
-    /// The contacts of the inflation themselves.
+    /// The changed contacts of the inflation.
     #[serde(skip)]
     pub changes: ContactChanges<2>,
 }
 
-/// Contacts from one state to another, counted.
+/// Numbers of contacts from one state to another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct ContactChangeCounts {
     /// In both states.
@@ -27,22 +27,22 @@ pub struct ContactChangeCounts {
     pub made_count: usize,
     /// In the first only.
     pub broken_count: usize,
-    /// With rattlers.
+    /// Contacts with rattlers.
     pub rattlers: RattlerContacts,
 }
 
-/// What the deflation does to contacts.
+/// Effect of the deflation on contacts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CycleCounts {
     /// From the inflated state to the deflated one.
     pub changes: ContactChangeCounts,
     /// From before the inflation to after the deflation.
     pub left: ContactChangeCounts,
-    /// Contacts that the inflation broke and that are there again.
+    /// Number of contacts that the inflation broke and the deflation restored.
     pub broken_returned_count: usize,
-    /// Contacts that the inflation made and that are gone again.
+    /// Number of contacts that the inflation made and the deflation broke again.
     pub made_returned_count: usize,
-    /// Share of all contacts changed by the inflation that return; absent where none changed \[1\].
+    /// Share of the contacts changed by the inflation that the deflation restores; absent if none changed \[1\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub returned_share: Option<f64>,
 }

@@ -1,8 +1,8 @@
-//! [`Response`]: all that is measured on what an inflation does to a packing.
+//! [`Response`]: all observables of the response of a packing to an inflation.
 //!
-//! A response is measured on two states, before and after, wherever they come from: a run makes them, an
-//! [`analysis`](crate::analysis) reads them from files. What [`Observables`] does not name is not computed; what cannot be had
-//! says why, [`Measurement::Refused`]. A phase and fits are given only with the leave of a [`RestVerdict`].
+//! A response is computed from two states, before and after. A run makes them; an [`analysis`](crate::analysis) reads
+//! them from files. Only what [`Observables`] requests is computed. An observable that cannot be computed is
+//! [`Measurement::Refused`] with a reason. A phase and fits require the permit of a [`RestVerdict`].
 
 mod calibration;
 mod contacts;
@@ -39,18 +39,18 @@ use crate::response::phase::{by_contact_changes, by_pressure_change};
 use crate::scene::{AngularCorrelationSettings, Observables};
 use crate::verdict::RestVerdict;
 
-/// Something measured, or why there is none.
+/// A measured quantity, or the reason why there is none.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Measurement<T> {
-    /// What was measured.
+    /// The quantity.
     Measured(T),
-    /// Why there is none.
+    /// The reason why there is none.
     Refused(String),
 }
 
 impl<T> Measurement<T> {
-    /// What was measured, if anything.
+    /// The quantity, if it was measured.
     pub fn measured(&self) -> Option<&T> {
         match self {
             Measurement::Measured(value) => Some(value),
@@ -58,7 +58,7 @@ impl<T> Measurement<T> {
         }
     }
 
-    /// Why there is none, if so.
+    /// The reason why there is none, if it was refused.
     pub fn refused(&self) -> Option<&str> {
         match self {
             Measurement::Measured(_) => None,
@@ -73,17 +73,17 @@ impl<T, E: Display> From<Result<T, E>> for Measurement<T> {
     }
 }
 
-/// The states a response is measured on.
+/// The states of a response.
 pub struct Subject<'a> {
     /// Whether they are at rest.
     pub verdict: RestVerdict,
-    /// The displacement from the first to the second.
+    /// The displacement field from the first to the second.
     pub field: DisplacementField<2>,
-    /// Before the inflation.
+    /// State before the inflation.
     pub before: State<'a, 2>,
-    /// After it.
+    /// State after it.
     pub after: State<'a, 2>,
-    /// After the deflation, if there was one.
+    /// State after the deflation, if there was one.
     pub deflated: Option<State<'a, 2>>,
     /// Index of the inflated disk in all of them.
     pub centre: usize,
@@ -91,23 +91,23 @@ pub struct Subject<'a> {
     pub pressure_change: f64,
 }
 
-/// Slope from which on a power law counts as that of an elastic response: the published one at p_c.
+/// Smallest slope of a power law that counts as elastic: the published one at p_c.
 #[cfg(feature = "fit")]
 const SCALE_FREE_SLOPE: f64 = 1.5;
 
-/// All that is measured on a response; what was not asked for is absent.
+/// All observables of a response; those not requested are absent.
 #[derive(Debug, Clone, Serialize)]
 pub struct Response {
-    /// Whether the states are at rest, hence whether there may be a phase and fits.
+    /// Whether the states are at rest, so that a phase and fits may be reported.
     pub verdict: RestVerdict,
-    /// Which disks the observables are measured on.
+    /// Which disks the observables include.
     pub measured_on: MeasuredOn,
-    /// Which phase the packing shows.
+    /// The phase of the packing.
     pub phase: PhaseDecision,
     /// Mean radial displacement in rings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radial_profile: Option<RadialProfile>,
-    /// The fits of it.
+    /// The fits to the radial profile.
     #[cfg(feature = "fit")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub profile_fit: Option<Measurement<ProfileFit>>,
@@ -120,7 +120,7 @@ pub struct Response {
     /// Spectrum and correlation of one ring.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub angular_correlation: Option<Measurement<RingResponse>>,
-    /// The same in rings from the inflated disk to the rim.
+    /// Spectrum and correlation in rings from the inflated disk to the rim.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radial_dependence: Option<Measurement<Vec<RingAnalysis>>>,
     /// Angular modes.
@@ -136,7 +136,7 @@ pub struct Response {
     /// ℓ_iso.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub isostatic_length: Option<Measurement<IsostaticLength>>,
-    /// How much every bond is stretched.
+    /// The stretch of every bond.
     #[serde(skip)]
     pub bond_changes: Option<BondChanges<2>>,
     /// The displacement field.
@@ -144,10 +144,10 @@ pub struct Response {
     pub field: DisplacementField<2>,
 }
 
-/// Spectrum and correlation of one ring, and what is fitted to the spectrum.
+/// Spectrum and correlation of one ring, and the fits to the spectrum.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RingResponse {
-    /// Middle of the ring, r̂ \[1\].
+    /// Midpoint of the ring, r̂ \[1\].
     pub relative_radius: f64,
     /// S(f).
     pub spectrum: PowerSpectrum,
@@ -164,7 +164,7 @@ pub struct RingResponse {
 }
 
 impl Response {
-    /// Measures what `observables` names; settings are expected to have been [checked](Observables::check).
+    /// Computes the requested observables; the settings must have been [checked](Observables::check).
     pub fn of(subject: Subject<'_>, observables: &Observables) -> Self {
         let Subject { verdict, field, before, after, deflated, centre, pressure_change } = subject;
         let increase = after.packing.radii()[centre] - before.packing.radii()[centre];
@@ -226,7 +226,7 @@ impl Response {
         response
     }
 
-    /// What the measurements say, `increase` being d_0.
+    /// The phase by all evidence; `increase` is d_0.
     fn phase(&self, pressure_change: f64, increase: f64) -> PhaseDecision {
         let Some(permit) = self.verdict.permit() else { return PhaseDecision::not_at_rest() };
         if self.measured_on == MeasuredOn::AllDisks {
@@ -242,7 +242,7 @@ impl Response {
     }
 }
 
-/// Why nothing is fitted, if so.
+/// Why fits are refused, if they are.
 fn no_fit(verdict: &RestVerdict, increase: f64) -> Option<String> {
     if increase == 0.0 {
         return Some("the radius of the inflated disk did not change: there is no response".into());
@@ -305,13 +305,13 @@ fn by_spectrum(response: &Response) -> Option<Phase> {
     }
 }
 
-/// Without the feature `fit` nothing is fitted.
+/// No fits without the feature `fit`.
 #[cfg(not(feature = "fit"))]
 fn by_profile(_response: &Response) -> Option<Phase> {
     None
 }
 
-/// Without the feature `fit` nothing is fitted.
+/// No fits without the feature `fit`.
 #[cfg(not(feature = "fit"))]
 fn by_spectrum(_response: &Response) -> Option<Phase> {
     None

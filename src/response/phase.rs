@@ -1,20 +1,21 @@
-//! [`PhaseDecision`]: unjammed, plastic or quasielastic, by four kinds of evidence.
+//! [`PhaseDecision`]: unjammed, plastic or quasielastic, by four types of evidence.
 //!
-//! | evidence | plastic | quasielastic | says nothing |
+//! | evidence | plastic | quasielastic | no decision |
 //! |---|---|---|---|
 //! | radial profile | screened, κ ≠ 0 | elastic, and any κ at or above κ_1 excluded (95 %) | neither, or κ_1 not excluded |
 //! | Δp | below 0 | above 0 | 0 |
 //! | angular spectrum | a crossover f†, or flat | a power law describes it as well, and falls as f^(−1.5) or faster | both do, or a flatter power law |
 //! | contacts changed | more than 2 % | fewer than 0.5 % | between |
 //!
-//! How often each kind of evidence says which at what pressure is counted over ensembles: chapter *Response*, [`Calibration`](crate::response::Calibration).
+//! How often each type of evidence gives which phase at which pressure: chapter *Response*,
+//! [`Calibration`](crate::response::Calibration).
 //!
-//! The sign of Δp is read the other way round where the disk shrinks, d_0 < 0, and says nothing where d_0 = 0.
+//! The sign of Δp is reversed if the disk shrinks, d_0 < 0, and gives no decision if d_0 = 0.
 //!
 //! States that are not at rest have no phase: [`PhaseDecision::from_evidence`] takes the [`VerdictPermit`] of a
-//! [`RestVerdict`](crate::verdict::RestVerdict). Without a backbone, before or after, the packing is unjammed, and nothing else is asked. Where two disagree the phase is
-//! undecided; so it is where none speaks. The evidence is that of one sample: near the transition samples of one pressure
-//! differ, and where the transition lies is a statement about many of them.
+//! [`RestVerdict`](crate::verdict::RestVerdict). Without a backbone, before or after, the packing is unjammed, whatever
+//! the evidence. If two types of evidence disagree, or none decides, the phase is undecided. The evidence is that of
+//! one sample. Near the transition samples at the same pressure differ, so locating the transition takes many samples.
 //!
 //! # Source
 //! The study: κ_fit and Δp (its second figure), the spectrum that is scale-free at p_c and a Lorentzian below.
@@ -30,32 +31,32 @@ use crate::verdict::VerdictPermit;
 pub enum Phase {
     /// Plastic events screen the response.
     Plastic,
-    /// The response is that of an elastic medium, but for its moduli.
+    /// The response is that of an elastic medium, up to its moduli.
     Quasielastic,
 }
 
-/// What a sample shows.
+/// The phase of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PhaseOutcome {
     /// No backbone before or after.
     Unjammed,
-    /// All evidence there is says plastic.
+    /// All evidence that decides is plastic.
     Plastic,
-    /// All evidence there is says quasielastic.
+    /// All evidence that decides is quasielastic.
     Quasielastic,
-    /// Evidence that disagrees, or none.
+    /// Evidence that disagrees, or no decision.
     #[default]
     Undecided,
     /// A state is not at rest: there is no phase.
     NotAtRest,
 }
 
-/// The phase of a sample and what speaks for it.
+/// The phase of a sample and the evidence for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct PhaseDecision {
-    /// What the sample shows.
+    /// The phase.
     pub outcome: PhaseOutcome,
     /// By the fit of the radial profile.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -71,7 +72,7 @@ pub struct PhaseDecision {
     pub by_contact_changes: Option<Phase>,
 }
 
-/// What each kind of evidence says, none where it says nothing.
+/// The phase by each type of evidence; none if it does not decide.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Evidence {
     /// The fit of the radial profile.
@@ -84,11 +85,11 @@ pub struct Evidence {
     pub contact_changes: Option<Phase>,
 }
 
-/// Share of the contacts that inflation makes or breaks, above which the response is plastic. Source: ensembles of 5548 and 22184 disks, d_0 = 0.1,
-/// by damped dynamics: medians are 9 % at p̂ = 10⁶ and 0.06 % at 3·10⁹, and cross 1 % where κ and Δp change over.
+/// Share of contacts made or broken by the inflation above which the response is plastic. Source: ensembles of 5548 and
+/// 22184 disks, d_0 = 0.1, by damped dynamics: the median crosses 1 % where κ and Δp change.
 const PLASTIC_CHANGES: f64 = 0.02;
 
-/// The share below which it is quasielastic. Source: the same.
+/// The share below which the response is quasielastic. Source: the same ensembles.
 const QUASIELASTIC_CHANGES: f64 = 0.005;
 
 impl PhaseDecision {
@@ -130,7 +131,7 @@ pub(super) fn by_pressure_change(change: f64, increase: f64) -> Option<Phase> {
     }
 }
 
-/// The share of contacts changed by the inflation.
+/// The phase by the share of contacts changed by the inflation.
 pub(super) fn by_contact_changes(changes: ContactChangeCounts) -> Option<Phase> {
     let changed = (changes.made_count + changes.broken_count) as f64;
     let share = changed / (changes.kept_count + changes.broken_count) as f64;
@@ -152,7 +153,7 @@ mod tests {
     use crate::packing::{Domain, Packing};
     use crate::verdict::{RestVerdict, VerdictSettings};
 
-    /// Leave for two disks that do not touch.
+    /// A permit, from two disks that do not touch.
     fn permit() -> VerdictPermit {
         let packing = Packing::new(Domain::Open, vec![[0.0, 0.0], [2.0, 0.0]], vec![0.5; 2]).expect("valid");
         let law = Hertzian::default();

@@ -1,4 +1,4 @@
-//! [`run`]: from a [`Scene`] to a [`Report`], one line a stage. The only file that knows all stages.
+//! [`run`]: from a [`Scene`] to a [`Report`], one line per stage. The only file that uses all stages.
 
 #[cfg(feature = "linear")]
 mod plastic_summary;
@@ -32,11 +32,11 @@ pub use report_data::{
     InflationSummary, PackingSummary, Report, RestSummary, SampleOutcome, SampleReport, SampleResult, StateSummary,
 };
 
-/// Why a run, or one sample of it, came to nothing.
+/// Why a run, or one sample of it, has no result.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// The scene makes no sense.
+    /// The scene is invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// A packing could not be read.
@@ -45,15 +45,15 @@ pub enum RunError {
     /// A packing could not be prepared.
     #[error("preparation: {0}")]
     Preparation(#[from] PreparationError),
-    /// A packing makes no sense.
+    /// A packing is invalid.
     #[error("packing: {0}")]
     Packing(#[from] PackingError),
-    /// A packing from a file makes no sense.
+    /// A packing from a file is invalid.
     #[error("{}: {source}", path.display())]
     PackingOfFile {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The problem.
         source: PackingError,
     },
     /// A packing from a file did not come to rest.
@@ -68,27 +68,27 @@ pub enum RunError {
         /// Relative residual reached.
         residual: f64,
     },
-    /// The inflation could not be done.
+    /// The inflation failed.
     #[error("inflation: {0}")]
     Inflation(#[from] InflationError),
 }
 
-/// What a run tells while it works; `()` hears nothing.
+/// Progress of a run; `()` ignores it.
 pub trait Progress: Sync {
-    /// A sample begins a relaxation of a stage, which brings the residual down to `limit`.
+    /// A sample begins a relaxation of a stage, with `limit` as the target of the residual.
     fn stage(&self, sample: usize, stage: &'static str, limit: f64) {
         let _ = (sample, stage, limit);
     }
-    /// The residual of the stage, every now and then.
+    /// The residual of the stage, from time to time.
     fn residual(&self, sample: usize, residual: f64) {
         let _ = (sample, residual);
     }
-    /// Whether the sample is to end where it is, as one that failed; asked at every look at the residual.
+    /// Whether to end the sample as failed; called at every check of the residual.
     fn interrupted(&self, sample: usize) -> bool {
         let _ = sample;
         false
     }
-    /// The sample is done, well or not.
+    /// The sample is done, with or without failure.
     fn done(&self, sample: usize, failure: Option<&str>) {
         let _ = (sample, failure);
     }
@@ -96,7 +96,7 @@ pub trait Progress: Sync {
 
 impl Progress for () {}
 
-/// Passes the residual of one sample on.
+/// Reports the residual of one sample.
 struct Watch<'a> {
     progress: &'a dyn Progress,
     sample: usize,
@@ -119,10 +119,11 @@ impl Trace for Watch<'_> {
     }
 }
 
-/// Runs a scene. Samples are independent; with the feature `parallel` each takes a thread, and no bit depends on it.
+/// Runs a scene. Samples are independent; with the feature `parallel` each has a thread, and results do not depend on
+/// it.
 ///
 /// # Errors
-/// A scene that makes no sense. What fails in one sample is told in its place in the report.
+/// An invalid scene. The failure of a sample is recorded in its entry of the report.
 pub fn run(scene: &Scene, progress: &dyn Progress) -> Result<Report, RunError> {
     scene.check()?;
     scene.check_memory(Memory::of_machine(), thread_count()).map_err(SceneError::from)?;
@@ -142,10 +143,10 @@ pub fn run(scene: &Scene, progress: &dyn Progress) -> Result<Report, RunError> {
     let samples: Vec<SampleReport> = {
         use rayon::prelude::*;
         if scene.sample.len() == 1 {
-            // Alone, so that its relaxations may have the threads.
+            // A single sample runs alone, so that its relaxations can use all threads.
             scene.sample.iter().enumerate().map(one).collect()
         } else {
-            // One at a time from the front: the order of the results is that of the scene.
+            // One sample per work item, so that the results keep the order of the scene.
             scene.sample.par_iter().enumerate().with_max_len(1).map(one).collect()
         }
     };
@@ -163,7 +164,7 @@ pub fn run(scene: &Scene, progress: &dyn Progress) -> Result<Report, RunError> {
     })
 }
 
-/// Samples that are run at once, where there are as many.
+/// Largest number of samples that run in parallel.
 pub(crate) fn thread_count() -> usize {
     #[cfg(feature = "parallel")]
     let count = rayon::current_num_threads();
@@ -172,7 +173,7 @@ pub(crate) fn thread_count() -> usize {
     count
 }
 
-/// What the samples say together of the protocols, where any was compared.
+/// Summary of the protocols over samples, if any was compared.
 #[cfg(feature = "linear")]
 fn protocol_summary(samples: &[SampleReport]) -> Option<ProtocolSummary> {
     let compared = samples.iter().filter_map(|sample| match &sample.result {
@@ -182,10 +183,10 @@ fn protocol_summary(samples: &[SampleReport]) -> Option<ProtocolSummary> {
     ProtocolSummary::of(samples.len(), &compared.collect::<Vec<_>>())
 }
 
-/// Runs one sample of a scene: the one place where the law is looked at.
+/// Runs one sample of a scene. The only place that matches on the law.
 ///
 /// # Errors
-/// [`RunError`] names the stage.
+/// [`RunError`] with the stage.
 pub fn run_sample(
     scene: &Scene,
     sample: &Sample,
@@ -209,7 +210,7 @@ pub(crate) fn prepared<L: PairLaw>(
     packing_of(scene, sample, law, trace)
 }
 
-/// The inflation of a packing that is there, and all that is measured on it.
+/// Inflates a packing and computes all observables.
 pub(crate) fn measure<L: PairLaw>(
     scene: &Scene,
     sample: &Sample,
@@ -254,7 +255,7 @@ pub(crate) fn measure<L: PairLaw>(
     })
 }
 
-/// How often samples like this one are called what it is called.
+/// How often similar samples have the phase of this one.
 fn phase_frequency(
     scene: &Scene,
     sample: &Sample,
@@ -272,7 +273,7 @@ fn phase_frequency(
     Calibration::built_in().frequency(&conditions, response.phase.outcome)
 }
 
-/// An inflation as the observables see it.
+/// An inflation as the input of the observables.
 fn subject<'a, L: PairLaw>(
     inflated: &'a Inflated<2>,
     law: &L,
@@ -290,7 +291,7 @@ fn subject<'a, L: PairLaw>(
     })
 }
 
-/// Whether the states of an inflation are at rest, under the pushes from sites too where there are some.
+/// Whether the states of an inflation are at rest, including the forces from sites if there are any.
 fn verdict<L: PairLaw>(scene: &Scene, inflated: &Inflated<2>, law: &L) -> Result<RestVerdict, PackingError> {
     fn state<'a, L: PairLaw>(rest: &'a Rest<2>, law: &L) -> Result<State<'a, 2>, PackingError> {
         State::new(rest.packing.get(), law)
@@ -305,14 +306,14 @@ fn verdict<L: PairLaw>(scene: &Scene, inflated: &Inflated<2>, law: &L) -> Result
     Ok(RestVerdict::of(&named, law, &scene.law, Some(place), &scene.verdict))
 }
 
-/// Whether the sample is one of the fraction whose protocols are compared.
+/// Whether the sample belongs to the fraction whose protocols are compared.
 #[cfg(feature = "linear")]
 fn takes(scene: &Scene, sample: &Sample, settings: &ProtocolSettings) -> bool {
     let names: Vec<(&str, u64)> = scene.sample.iter().map(|other| (other.name.as_str(), other.seed)).collect();
     chosen(&names, settings.fraction).into_iter().zip(&names).any(|(taken, (name, _))| taken && *name == sample.name)
 }
 
-/// The sample's own relaxer and the others from the state it set out from.
+/// Compares the relaxer of the sample with the others, from the same start.
 #[cfg(feature = "linear")]
 fn protocol_of<L: PairLaw>(
     scene: &Scene,
@@ -336,7 +337,7 @@ fn protocol_of<L: PairLaw>(
     Ok(compared.sensitivity)
 }
 
-/// The packing of a sample, made or read, at rest.
+/// The packing of a sample at rest, prepared or read.
 pub(crate) fn packing_of<L: PairLaw>(
     scene: &Scene,
     sample: &Sample,
@@ -372,7 +373,7 @@ pub(crate) fn packing_of<L: PairLaw>(
     Ok((packing, summary))
 }
 
-/// A packing from outside, relaxed if it is not at rest already; how far from rest it was is kept.
+/// A packing from a file, relaxed if it is not at rest. The verdict on the file is kept.
 fn packing_from<L: PairLaw>(
     path: &Path,
     scene: &Scene,

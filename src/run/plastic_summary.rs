@@ -1,4 +1,4 @@
-//! The plastic part of a sample in numbers.
+//! Summary of the plastic part of a sample.
 
 use crate::inflation::{Boundary, Inflated, Inflation};
 use crate::law::pair_law::PairLaw;
@@ -10,7 +10,7 @@ use crate::packing::ball_volume;
 use crate::plastic::PlasticPart;
 use crate::run::PlasticSummary;
 
-/// Against the linear response of the state before, with the sites of the scene if it has any.
+/// Relative to the linear response of the state before, with the sites of the scene if it has any.
 pub(super) fn of<L: PairLaw>(
     inflated: &Inflated<2>,
     inflation: &Inflation,
@@ -23,7 +23,7 @@ pub(super) fn of<L: PairLaw>(
     let plastic = PlasticPart::of(inflated, &response);
     let changes = response.contact_changes(before, law)?;
     let increase = inflated.after.packing.get().radii()[centre] - inflated.inner_radius;
-    // Openings of an inflation; a deflation opens contacts at the other sign.
+    // Openings for an inflation; a deflation opens contacts for which the change has the other sign.
     let openings = changes.iter().filter_map(|change| change.opens_at().filter(|_| increase > 0.0));
     let per_increase = match inflation.boundary {
         Boundary::HeldRim { .. } => {

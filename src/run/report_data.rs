@@ -18,18 +18,18 @@ use crate::response::{PhaseFrequency, Response};
 use crate::scene::Scene;
 use crate::verdict::RestVerdict;
 
-/// What a run gives.
+/// The results of a run.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
-    /// Version of jamscope that made it.
+    /// Version of jamscope that ran it.
     pub jamscope_version: &'static str,
-    /// Vector instructions of the processor that made it: what goes through a factorisation has other last digits with others.
+    /// Vector instructions of the processor; the last digits of results of factorisations depend on them.
     pub vectors: Vectors,
-    /// The scene, all defaults filled in.
+    /// The scene, including all defaults.
     pub scene: Scene,
-    /// One entry a sample, in the order of the scene.
+    /// One entry per sample, in the order of the scene.
     pub samples: Vec<SampleReport>,
-    /// What the samples whose protocols were compared say together.
+    /// Summary of the samples whose protocols were compared.
     #[cfg(feature = "linear")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub protocol: Option<ProtocolSummary>,
@@ -42,35 +42,35 @@ pub struct SampleReport {
     pub name: String,
     /// Seed of its random points and of the choice of the inflated disk.
     pub seed: u64,
-    /// What came out, or why nothing did.
+    /// Its result, or why there is none.
     #[serde(flatten)]
     pub result: SampleOutcome,
 }
 
-/// What came out of a sample, or why nothing did.
+/// The result of a sample, or why there is none.
 #[derive(Debug, Clone, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SampleOutcome {
-    /// All stages done.
+    /// All stages are done.
     Done(Box<SampleResult>),
-    /// A stage failed, in its own words.
+    /// A stage failed, with its error message.
     Failed(String),
 }
 
-/// What came out of a sample.
+/// The result of a sample.
 #[derive(Debug, Clone, Serialize)]
 pub struct SampleResult {
-    /// The packing before anything is cut or inflated.
+    /// The packing before the cut and the inflation.
     pub packing: PackingSummary,
     /// The inflation.
     pub inflation: InflationSummary,
-    /// All that is measured on it.
+    /// The observables.
     #[serde(flatten)]
     pub response: Response,
-    /// How often samples of an ensemble like this one are called what it is called.
+    /// How often similar samples of an ensemble have the phase of this one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub phase_frequency: Option<PhaseFrequency>,
-    /// What of the response is not in the linear one.
+    /// The plastic part of the response.
     #[cfg(feature = "linear")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plastic_part: Option<Measurement<PlasticSummary>>,
@@ -78,41 +78,41 @@ pub struct SampleResult {
     #[cfg(feature = "linear")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub protocol: Option<Measurement<Box<ProtocolSensitivity>>>,
-    /// What the deflation leaves of it.
+    /// The displacement that remains after the deflation.
     #[serde(skip)]
     pub cycle_field: Option<DisplacementField<2>>,
-    /// The states themselves.
+    /// The states.
     #[serde(skip)]
     pub inflated: Inflated<2>,
-    /// The packing itself.
+    /// The packing.
     #[serde(skip)]
     pub prepared: Packing<2>,
 }
 
-/// The plastic part in numbers: what of the response is not in the linear one.
+/// Summary of the plastic part: the difference between the response and the linear one.
 #[cfg(feature = "linear")]
 #[derive(Debug, Clone, Serialize)]
 pub struct PlasticSummary {
     /// √(Σ |d − d_0 u|²) over the disks that count \[length\].
     pub norm: f64,
-    /// The same over that of the response \[1\].
+    /// That norm over the norm of the response \[1\].
     pub share: f64,
-    /// Participation ratio, 1 where all disks take part alike \[1\].
+    /// Participation ratio, 1 if all disks move equally \[1\].
     pub participation_ratio: f64,
     /// Mean radial part in rings.
     pub radial_profile: RadialProfile,
-    /// d_0 at which the linear response would open its first contact; absent if it opens none \[length\].
+    /// d_0 at which the linear response opens its first contact; absent if it opens none \[length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub first_opening: Option<f64>,
     /// Δp of the linear response \[force / length\].
     pub linear_pressure_change: f64,
-    /// Negative eigenvalues of the Hessian before: 0 proves a minimum.
+    /// Negative eigenvalues of the Hessian before; 0 shows a minimum.
     pub negative_eigenvalue_count: usize,
     /// Backward error of the linear response \[1\].
     pub backward_error: f64,
 }
 
-/// A packing in numbers.
+/// Summary of a packing.
 #[derive(Debug, Clone, Serialize)]
 pub struct PackingSummary {
     /// Number of disks.
@@ -124,7 +124,7 @@ pub struct PackingSummary {
     /// Packing fraction at which random points were quenched; absent for a packing from a file \[1\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quench_packing_fraction: Option<f64>,
-    /// Whether a packing from a file was at rest as it was read; absent for a packing made here.
+    /// Verdict on a packing from a file as it was read; absent for a packing prepared here.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub as_read: Option<RestVerdict>,
     /// Pressure \[force / length\].
@@ -139,13 +139,13 @@ pub struct PackingSummary {
     pub coordination: f64,
     /// Number of relaxations.
     pub relaxation_count: usize,
-    /// How well it is at rest.
+    /// Quality of its equilibrium.
     pub rest: RestSummary,
-    /// What is known of it.
+    /// Its certificate.
     pub certificate: Certificate,
 }
 
-/// How well a state is at rest.
+/// Quality of the equilibrium of a state.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct RestSummary {
     /// Which limit was met.
@@ -154,13 +154,13 @@ pub struct RestSummary {
     pub relative_residual: f64,
     /// Largest net force on the backbone \[force\].
     pub largest_net_force: f64,
-    /// What rounding alone makes of the relative residual \[1\].
+    /// Part of the relative residual that rounding alone causes \[1\].
     pub rounding_floor: f64,
-    /// What it cost.
+    /// Cost of the relaxation.
     pub cost: Cost,
 }
 
-/// An inflation in numbers.
+/// Summary of an inflation.
 #[derive(Debug, Clone, Serialize)]
 pub struct InflationSummary {
     /// Label of the inflated disk.
@@ -171,11 +171,11 @@ pub struct InflationSummary {
     pub outer_radius: f64,
     /// Number of mobile disks.
     pub mobile_count: usize,
-    /// Before.
+    /// State before.
     pub before: StateSummary,
-    /// After.
+    /// State after.
     pub after: StateSummary,
-    /// After the deflation.
+    /// State after the deflation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deflated: Option<StateSummary>,
     /// Δp = p_after − p_before \[force / length\].
@@ -185,7 +185,7 @@ pub struct InflationSummary {
     pub scaled_pressure_change: Option<f64>,
 }
 
-/// One state of an inflation in numbers.
+/// Summary of one state of an inflation.
 #[derive(Debug, Clone, Serialize)]
 pub struct StateSummary {
     /// Pressure of the circle or the box \[force / length\].
@@ -196,8 +196,8 @@ pub struct StateSummary {
     pub contact_count: usize,
     /// Number of rattlers.
     pub rattler_count: usize,
-    /// How well it is at rest.
+    /// Quality of its equilibrium.
     pub rest: RestSummary,
-    /// What is known of it.
+    /// Its certificate.
     pub certificate: Certificate,
 }

@@ -1,4 +1,4 @@
-//! [`SceneError`]: whether every number of a scene makes sense.
+//! [`SceneError`]: checks of all numbers of a scene.
 
 use crate::inflation::Boundary;
 use crate::law::choice::LawError;
@@ -13,61 +13,61 @@ use crate::scene::observables::Observables;
 use crate::scene::size::{BYTES_A_DISK, DISK_INDEX};
 use crate::scene::source::Source;
 
-/// A number of a scene that makes no sense.
+/// An invalid number of a scene.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
-    /// No sample at all.
+    /// There is no sample.
     #[error("sample: a scene needs at least one")]
     NoSample,
-    /// Two samples of one name would write the same files.
+    /// Two samples have the same name and would write the same files.
     #[error("sample: the name \"{name}\" is used twice")]
     NameTwice {
         /// The name.
         name: String,
     },
-    /// A name becomes part of file names.
+    /// A name is not valid in file names.
     #[error("sample.name = \"{name}\": use letters, digits, '-', '_' and '.', and start with a letter or digit")]
     NameNotAFileName {
         /// The name.
         name: String,
     },
-    /// The law.
+    /// The law is invalid.
     #[error("law: {0}")]
     Law(#[from] LawError),
-    /// A number that cannot be written to a file and read back.
+    /// A number cannot be written to a file and read back.
     #[error(transparent)]
     NotWritable(#[from] NotWritable),
-    /// A count beyond memory or index types.
+    /// A count exceeds memory or index types.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
-    /// The mixture or the number of disks.
+    /// The mixture or the number of disks is invalid.
     #[error("disk_count or mixture: {0}")]
     Mixture(PackingError),
-    /// A number outside its range.
+    /// A number is outside its range.
     #[error("{field} = {value}: must be {range}")]
     OutOfRange {
-        /// The field, with its tables.
+        /// The field, including its tables.
         field: String,
-        /// The value found.
+        /// Its value.
         value: f64,
-        /// What it must be.
+        /// The valid range.
         range: &'static str,
     },
-    /// A force limit that counts states far from rest as at rest.
+    /// A force limit accepts states far from rest.
     #[error(
         "{field} = {value}: must be at most {limit:.3e}, as a residual above {} of the mean contact force is not rest",
         crate::verdict::LARGEST_RESIDUAL
     )]
     LimitTooLoose {
-        /// The field, with its tables.
+        /// The field, including its tables.
         field: String,
-        /// The value found.
+        /// Its value.
         value: f64,
-        /// The largest that is possible.
+        /// The largest valid value.
         limit: f64,
     },
-    /// Radii of which the small ones are lost in the rounding of the large ones.
+    /// Radii differ so much that forces on small disks are lost in rounding.
     #[error("mixture: radii from {smallest:e} to {largest:e} are {:.1e} apart: at most {limit:e}, beyond which forces on small disks are below the rounding of those on large ones", largest / smallest)]
     RadiiTooFarApart {
         /// The smallest \[length\].
@@ -77,36 +77,36 @@ pub enum SceneError {
         /// The largest ratio \[1\].
         limit: f64,
     },
-    /// A pressure that rounding hides.
+    /// A pressure is below the resolution of rounding.
     #[error(
         "sample \"{name}\": source.pressure = {pressure:?}: disks of radius {radius:e} would overlap by some {overlap:.1e} of it: at least {limit:e}, below which overlaps are rounding; are pressure, stiffness and radii in one unit?"
     )]
     PressureBelowRounding {
         /// The sample.
         name: String,
-        /// The pressure asked for \[force / length\].
+        /// The target pressure \[force / length\].
         pressure: f64,
-        /// About the overlap over the radius \[1\].
+        /// Estimate of the overlap over the radius \[1\].
         overlap: f64,
         /// The radius \[length\].
         radius: f64,
-        /// The smallest such overlap \[1\].
+        /// The smallest valid overlap \[1\].
         limit: f64,
     },
-    /// A setting of an observable, in its own words.
+    /// A setting of an observable is invalid, with its error message.
     #[error("observables.{observable}: {reason}")]
     Observable {
         /// The observable.
         observable: &'static str,
-        /// What is wrong, with field and value.
+        /// The problem, with field and value.
         reason: String,
     },
-    /// One observable needs another.
+    /// An observable needs another one.
     #[error("observables.{observable} needs observables.{needed}")]
     ObservableMissing {
-        /// The one asked for.
+        /// The requested observable.
         observable: &'static str,
-        /// The one it needs.
+        /// The observable that it needs.
         needed: &'static str,
     },
 }
@@ -120,10 +120,10 @@ fn positive(field: impl Into<String>, value: f64) -> Result<(), SceneError> {
 }
 
 impl Scene {
-    /// Whether every number makes sense.
+    /// Checks every number.
     ///
     /// # Errors
-    /// [`SceneError`] names the field and the value.
+    /// [`SceneError`] with the field and the value.
     pub fn check(&self) -> Result<(), SceneError> {
         self.law.check()?;
         DISK_INDEX.check("disk_count", self.disk_count, BYTES_A_DISK)?;
@@ -152,16 +152,16 @@ impl Scene {
             }
         }
         self.check_scales()?;
-        // What no rule above has named: a field that is only written, or a new one.
+        // Fields that no rule above checks, such as new ones.
         Ok(finite::check(self)?)
     }
 }
 
 impl Observables {
-    /// Whether every setting makes sense.
+    /// Checks every setting.
     ///
     /// # Errors
-    /// [`SceneError`] names the field and the value.
+    /// [`SceneError`] with the field and the value.
     pub fn check(&self) -> Result<(), SceneError> {
         if let Some(profile) = &self.radial_profile {
             positive("observables.radial_profile.ring_width", profile.ring_width)?;
@@ -197,7 +197,7 @@ impl Observables {
         Ok(finite::check_at("observables", self)?)
     }
 
-    /// Those of penetration, correlation, modes and isostatic length.
+    /// Checks the settings of penetration, correlation, modes and isostatic length.
     fn check_response(&self) -> Result<(), SceneError> {
         let wrong = |observable, reason: String| SceneError::Observable { observable, reason };
         if let Some(penetration) = &self.penetration_length {
@@ -249,7 +249,7 @@ impl Observables {
     }
 }
 
-/// The middle of a ring over R.
+/// Checks the midpoint of a ring over R.
 fn relative_radius(field: &str, radius: f64) -> Result<(), SceneError> {
     within(field, radius, "above 0 and below 1", radius > 0.0 && radius < 1.0)
 }
@@ -333,7 +333,7 @@ fn check_relaxer(field: &str, relaxer: &RelaxerChoice) -> Result<(), SceneError>
     }
 }
 
-/// What nonlinear conjugate gradients and L-BFGS have in common.
+/// Checks the common settings of nonlinear conjugate gradients and L-BFGS.
 fn check_descent(field: &str, largest_step: f64, flatness: f64) -> Result<(), SceneError> {
     positive(format!("{field}.largest_step"), largest_step)?;
     within(format!("{field}.flatness"), flatness, "between 0 and 1", flatness > 0.0 && flatness < 1.0)

@@ -11,9 +11,9 @@ use crate::scene::protocol::ProtocolChoice;
 use crate::scene::source::Source;
 use crate::verdict::VerdictSettings;
 
-/// Everything a run needs.
+/// All settings of a run.
 ///
-/// A file may name a [`ProtocolChoice`] as `protocol`: it is the relaxer of every sample that names none.
+/// A file may contain a [`ProtocolChoice`] as `protocol`: it sets the relaxer of every sample without one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Scene {
     /// Number of disks in the box.
@@ -22,25 +22,25 @@ pub struct Scene {
     pub law: LawChoice,
     /// The distribution of radii.
     pub mixture: Mixture,
-    /// How packings are made.
+    /// The preparation of packings.
     pub preparation: PreparationSettings,
     /// The inflation.
     pub inflation: Inflation,
-    /// What is measured.
+    /// The observables.
     pub observables: Observables,
-    /// When a phase and fits are given.
+    /// When a phase and fits are reported.
     pub verdict: VerdictSettings,
     /// The packings.
     pub sample: Vec<Sample>,
 }
 
-/// How packings are made.
+/// The preparation of packings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PreparationSettings {
-    /// Largest relative deviation of a pressure from the one asked for \[1\].
+    /// Largest relative deviation of a pressure from its target \[1\].
     pub pressure_tolerance: f64,
-    /// How they come to rest.
+    /// The relaxer of packings.
     pub relaxer: RelaxerChoice,
 }
 
@@ -55,23 +55,22 @@ impl Default for PreparationSettings {
 pub struct Sample {
     /// Its name in reports and file names.
     pub name: String,
-    /// Seed of the random points and of the choice of the inflated disk; 1 where a file names none.
+    /// Seed of the random points and of the choice of the inflated disk; 1 by default in a file.
     pub seed: u64,
-    /// Where the packing comes from.
+    /// Source of the packing.
     pub source: Source,
-    /// How it comes to rest after the inflation; that of the protocol where a file names none.
+    /// Relaxer after the inflation; by default in a file, that of the protocol.
     pub relaxer: RelaxerChoice,
 }
 
 impl Default for Scene {
     /// The three phases at the study's smallest size: unjammed, plastic and quasielastic.
     ///
-    /// The transition lies at p_c = p̂_c N^(−3/2) with p̂_c from 8·10⁷ to 3·10⁸ and N = 4016 disks in the circle: 300 to
-    /// 1200. As in the study, FIRE relaxes the unjammed packing and damped dynamics with viscoelastic damping the others.
+    /// The transition is at p_c = p̂_c N^(−3/2) with p̂_c from 8·10⁷ to 3·10⁸ and N = 4016 disks in the circle: 300 to
+    /// 1200. As in the study, FIRE relaxes the unjammed packing and damped dynamics with viscoelastic damping the
+    /// others.
     ///
-    /// Samples differ a lot at this size. Of unjammed packings 24 of 38 answer like this one: neither solution describes the
-    /// profile; the others feel the rim. At p = 10 the seed is the first of all: 70 of the seeds 1 to 100 are called plastic,
-    /// like this one, and 72 have Δp < 0; at p = 4000 31 of the seeds 1 to 40 are called quasielastic (`book/studies/plastic_seeds.toml`).
+    /// Samples of this size differ strongly (`book/studies/plastic_seeds.toml`).
     fn default() -> Self {
         let sample = |name: &str, seed, source| {
             let relaxer = ProtocolChoice::default().relaxer_of(&source);

@@ -1,29 +1,29 @@
-//! [`check()`]: whether all settings can be written to a file and read back, whatever their fields.
+//! [`check()`]: whether all settings can be written to a file and read back.
 //!
-//! NaN and infinity have no form in JSON: they would be written as `null`, and the file could not be read. The settings are
-//! serialised into nothing, and every number on the way is checked, so a field added later cannot be forgotten.
+//! NaN and infinity cannot be written as JSON: they would become `null`, and the file could not be read. The check
+//! serialises the settings without output and checks every number, so fields added later are included.
 
 use serde::Serialize;
 use serde::ser::{self, Serializer};
 
-/// A setting that cannot be written and read back.
+/// A setting cannot be written and read back.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotWritable {
     /// NaN or infinity.
     #[error("{field} = {value}: must be a finite number")]
     NotFinite {
-        /// The field, with its tables and its index in lists.
+        /// The field, including its tables and its index in lists.
         field: String,
-        /// The value found.
+        /// Its value.
         value: f64,
     },
-    /// A value that has no form as text, such as a path that is not Unicode.
+    /// A value cannot be written as text, such as a path that is not Unicode.
     #[error("{field}: {reason}")]
     NoForm {
         /// The field.
         field: String,
-        /// What is wrong.
+        /// The problem.
         reason: String,
     },
 }
@@ -37,7 +37,7 @@ impl ser::Error for NotWritable {
 /// Checks every number of a value.
 ///
 /// # Errors
-/// [`NotWritable`] names the first field that cannot be written, with its value.
+/// [`NotWritable`] with the first field that cannot be written, and its value.
 ///
 /// # Example
 /// ```
@@ -52,12 +52,12 @@ pub fn check<T: Serialize + ?Sized>(value: &T) -> Result<(), NotWritable> {
     check_at("", value)
 }
 
-/// Like [`check()`], of a value that is a field of this name itself.
+/// Like [`check()`], for a value that is itself the field `name`.
 pub(crate) fn check_at<T: Serialize + ?Sized>(name: &str, value: &T) -> Result<(), NotWritable> {
     Walk { path: String::new() }.go(name.into(), value)
 }
 
-/// Where in the value the walk is.
+/// The current position in the value.
 struct Walk {
     path: String,
 }
@@ -67,24 +67,24 @@ impl Walk {
         if value.is_finite() { Ok(()) } else { Err(NotWritable::NotFinite { field: self.path, value }) }
     }
 
-    /// A field below this place.
+    /// Checks a field below this position.
     fn field<T: Serialize + ?Sized>(&self, name: &str, value: &T) -> Result<(), NotWritable> {
         self.go(self.below(name), value)
     }
 
-    /// The path of a field or variant below this place.
+    /// The path of a field or variant below this position.
     fn below(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_string() } else { format!("{}.{name}", self.path) }
     }
 
-    /// An element of a list at this place.
+    /// Checks an element of a list at this position.
     fn element<T: Serialize + ?Sized>(&self, index: usize, value: &T) -> Result<(), NotWritable> {
         self.go(format!("{}[{index}]", self.path), value)
     }
 
     fn go<T: Serialize + ?Sized>(&self, path: String, value: &T) -> Result<(), NotWritable> {
         value.serialize(Walk { path: path.clone() }).map_err(|error| match error {
-            // The value does not know where it stands.
+            // The error does not contain the path yet.
             NotWritable::NoForm { field, reason } if field.is_empty() => NotWritable::NoForm { field: path, reason },
             error => error,
         })
@@ -95,7 +95,7 @@ impl Walk {
     }
 }
 
-/// A list, a tuple or a map on the way.
+/// A list, a tuple or a map.
 struct List {
     at: Walk,
     index: usize,
@@ -268,7 +268,7 @@ impl ser::SerializeTupleVariant for List {
     }
 }
 
-/// Keys and values count as the elements of a list.
+/// Keys and values count as elements of a list.
 impl ser::SerializeMap for List {
     type Ok = ();
     type Error = NotWritable;

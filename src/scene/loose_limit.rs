@@ -1,10 +1,11 @@
-//! Force limits that would count states far from rest as at rest.
+//! Checks of force limits that would accept states far from rest.
 //!
-//! A residual above [`LARGEST_RESIDUAL`] is no rest. A relative limit is compared with it. An absolute one is compared with that
-//! share of the largest mean contact force that a packing of the scene can have:
+//! A state with a residual above [`LARGEST_RESIDUAL`] is not at rest. A relative limit is compared with it. An absolute
+//! limit is compared with that share of the largest possible mean contact force of a packing of the scene:
 //!
 //! ```text
-//! ⟨F⟩ ≤ p π ⟨R²⟩ / (φ ⟨R⟩)       at a pressure p: Σ F r = 2 p V, φ = 0.8, at least one contact a disk, rattlers included
+//! ⟨F⟩ ≤ p π ⟨R²⟩ / (φ ⟨R⟩)       at a pressure p: Σ F r = 2 p V, φ = 0.8, at least one contact per disk, including
+//! rattlers
 //! ⟨F⟩ ≤ F(δ = R_max)             at a packing fraction: overlaps of a whole radius
 //! ```
 
@@ -15,11 +16,11 @@ use crate::scene::definition::{Sample, Scene};
 use crate::scene::source::Source;
 use crate::verdict::LARGEST_RESIDUAL;
 
-/// A packing fraction below that of any jammed packing of disks: it makes the bound on the force the larger \[1\].
+/// A packing fraction below that of any jammed packing of disks, for an upper bound of the force \[1\].
 const PACKING_FRACTION: f64 = 0.8;
 
 impl Scene {
-    /// Whether what counts as rest is rest: the limits of all relaxers, and that of a verdict.
+    /// Checks the limits of all relaxers and that of a verdict.
     pub(super) fn check_rest(&self) -> Result<(), SceneError> {
         let (field, limit) = ("verdict.residual_limit", self.verdict.residual_limit);
         if !(limit > 0.0 && limit <= LARGEST_RESIDUAL) {
@@ -34,7 +35,7 @@ impl Scene {
         Ok(())
     }
 
-    /// The largest mean contact force that the packing of a sample can have \[force\].
+    /// Upper bound of the mean contact force of the packing of a sample \[force\].
     fn largest_mean_force(&self, sample: &Sample) -> f64 {
         let shares: f64 = self.mixture.components.iter().map(|part| part.share).sum();
         let mean = |of: &dyn Fn(f64) -> f64| {

@@ -1,7 +1,7 @@
-//! [`Scene`]: everything a run needs, as plain data, checked once.
+//! [`Scene`]: all settings of a run as plain data, checked once.
 //!
-//! A scene has one law, one mixture, one inflation, and one or more samples: packings to which the same thing is done.
-//! What an observable needs and the scene does not name is not computed.
+//! A scene has one law, one mixture, one inflation, and one or more samples: packings with the same treatment.
+//! Observables that the scene does not contain are not computed.
 
 mod check;
 mod definition;

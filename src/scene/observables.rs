@@ -1,4 +1,4 @@
-//! [`Observables`]: what is measured, and how.
+//! [`Observables`]: the observables and their settings.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ use crate::observe::isostatic::IsostaticSettings;
 use crate::observe::multipoles::MultipoleSettings;
 use crate::observe::penetration::PenetrationSettings;
 
-/// What is measured; what is absent is not computed.
+/// The observables; absent ones are not computed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Observables {
@@ -23,7 +23,7 @@ pub struct Observables {
     #[cfg(feature = "fit")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub profile_fit: Option<ProfileFitSettings>,
-    /// How far from the inflated disk anything moves; needs the radial profile.
+    /// The largest distance from the inflated disk with a displacement; needs the radial profile.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub penetration_length: Option<PenetrationSettings>,
     /// Radial displacement against angle in rings.
@@ -36,26 +36,26 @@ pub struct Observables {
     #[cfg(feature = "fit")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spectrum_fit: Option<SpectrumFitSettings>,
-    /// The same correlation and spectrum in rings from the inflated disk to the rim.
+    /// Correlation and spectrum in rings from the inflated disk to the rim.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radial_dependence: Option<RadialDependenceSettings>,
     /// Angular modes of the displacement, ring by ring.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub multipoles: Option<MultipoleSettings>,
-    /// The elastic modes fitted to them; needs the multipoles.
+    /// Elastic modes fitted to the angular modes; needs the multipoles.
     #[cfg(feature = "fit")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub elastic_modes: Option<ElasticModeSettings>,
-    /// Contacts made and broken, and which return.
+    /// Contacts made, broken and restored.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact_changes: Option<ContactChangeSettings>,
-    /// How much every bond is stretched.
+    /// The stretch of every bond.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bond_changes: Option<BondChangeSettings>,
-    /// From where on the stretching of bonds varies as in a continuum.
+    /// The distance beyond which the stretch of bonds varies as in a continuum.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub isostatic_length: Option<IsostaticSettings>,
-    /// What of the response is not in the linear one.
+    /// The plastic part of the response.
     #[cfg(feature = "linear")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plastic_part: Option<PlasticPartSettings>,
@@ -63,7 +63,7 @@ pub struct Observables {
     #[cfg(feature = "linear")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub protocol: Option<ProtocolSettings>,
-    /// The packing before and after the inflation, with its displacement field, as files; the map of r d_r.
+    /// Files of the packing before and after the inflation, with its displacement field; the map of r d_r.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub displacement_field: Option<DisplacementFieldSettings>,
 }
@@ -96,7 +96,7 @@ impl Default for Observables {
 }
 
 impl Observables {
-    /// Nothing is measured.
+    /// No observables.
     pub fn none() -> Self {
         Observables {
             radial_profile: None,
@@ -123,7 +123,7 @@ impl Observables {
     }
 }
 
-/// The radial profile.
+/// Settings of the radial profile.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RadialProfileSettings {
@@ -132,21 +132,21 @@ pub struct RadialProfileSettings {
 }
 
 impl Default for RadialProfileSettings {
-    /// One diameter of a small disk: at r = 10 a ring holds 50 disks.
+    /// One diameter of a small disk: at r = 10 a ring contains 50 disks.
     fn default() -> Self {
         RadialProfileSettings { ring_width: 1.0 }
     }
 }
 
-/// The fits of the radial profile.
+/// Settings of the fits to the radial profile.
 #[cfg(feature = "fit")]
 pub type ProfileFitSettings = crate::fit::profile::ProfileFitSettings;
 
-/// The angular profiles.
+/// Settings of the angular profiles.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct AngularProfileSettings {
-    /// Middles of the rings, r̂ = r/R \[1\].
+    /// Midpoints of the rings, r̂ = r/R \[1\].
     pub relative_radii: Vec<f64>,
 }
 
@@ -157,7 +157,7 @@ impl Default for AngularProfileSettings {
     }
 }
 
-/// Correlation and spectrum in one ring.
+/// Settings of correlation and spectrum in one ring.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct AngularCorrelationSettings {
@@ -169,31 +169,31 @@ pub struct AngularCorrelationSettings {
     pub correlation: CorrelationSettings,
 }
 
-/// The fits of a spectrum.
+/// Settings of the fits to a spectrum.
 #[cfg(feature = "fit")]
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SpectrumFitSettings {
-    /// Which powers the slope is fitted to.
+    /// The powers used for the slope.
     pub slope: SpectrumWindowSettings,
-    /// How f† is fitted.
+    /// The fit of f†.
     pub crossover: CrossoverSettings,
 }
 
-/// Contact changes have nothing to set.
+/// Contact changes have no settings.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactChangeSettings {}
 
-/// The stretching of bonds.
+/// Settings of the stretch of bonds.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct BondChangeSettings {
-    /// Which contacts are bonds.
+    /// The contacts included.
     pub bonds: BondSet,
 }
 
-/// The plastic part.
+/// Settings of the plastic part.
 #[cfg(feature = "linear")]
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -204,17 +204,17 @@ pub struct PlasticPartSettings {
 
 #[cfg(feature = "linear")]
 impl Default for PlasticPartSettings {
-    /// As the radial profile has it.
+    /// The same width as for the radial profile.
     fn default() -> Self {
         PlasticPartSettings { ring_width: RadialProfileSettings::default().ring_width }
     }
 }
 
-/// The comparison of protocols.
+/// Settings of the comparison of protocols.
 #[cfg(feature = "linear")]
 pub type ProtocolSettings = crate::protocol::ProtocolSettings;
 
-/// The displacement field has nothing to set.
+/// The displacement field has no settings.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DisplacementFieldSettings {}

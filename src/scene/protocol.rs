@@ -1,12 +1,13 @@
-//! [`ProtocolChoice`]: how packings come to rest, by name.
+//! [`ProtocolChoice`]: the relaxation protocols, by name.
 //!
 //! ```text
-//! random points ─► quenched at φ, or quenched and brought to p, by FIRE ─► inflated ─► at rest again by the relaxer of the protocol
+//! random points ─► quenched at φ, or quenched and brought to p, by FIRE ─► inflated ─► relaxed by the relaxer of the
+//! protocol
 //! ```
 //!
-//! Near jamming a packing has many minima, and the relaxer decides which one it ends in. With viscoelastic damping a contact near jamming is
-//! underdamped: inertia carries disks over barriers that the other relaxers never cross. So the plastic phase of an ensemble depends on the protocol,
-//! and every report names it.
+//! Near jamming a packing has many minima, and the relaxer determines the final one. With viscoelastic damping a
+//! contact near jamming is underdamped: inertia carries disks over barriers that the other relaxers never cross. So the
+//! plastic phase of an ensemble depends on the protocol, and every report names it.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,34 +17,35 @@ use crate::relax::{Fire, RelaxerChoice};
 use crate::relax::{ImplicitDynamics, Staged};
 use crate::scene::source::Source;
 
-/// How packings come to rest after the inflation.
+/// The protocol of relaxation after the inflation.
 ///
-/// The default is that of the study, but FIRE in builds without the feature `linear`: explicit damped steps take a hundred times as long near jamming.
+/// The default is that of the study. In builds without the feature `linear` it is FIRE, because explicit damped steps
+/// take a hundred times longer near jamming.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ProtocolChoice {
-    /// Damped dynamics, c_ij = γ m_eff √(δ R_ij) with γ = 500: underdamped near jamming. The published study's source names viscoelastic
-    /// damping and η_n = 500.
+    /// Damped dynamics, c_ij = γ m_eff √(δ R_ij) with γ = 500: underdamped near jamming. Source: the study
+    /// (viscoelastic damping, η_n = 500).
     #[cfg_attr(feature = "linear", default)]
     Study,
     /// Damped dynamics, c_ij = γ with γ = 500: overdamped near jamming.
     Constant,
-    /// FIRE and Newton's method in turn: a minimum near the start.
+    /// FIRE followed by Newton's method: a minimum near the start.
     FireNewton,
     /// FIRE alone.
     #[cfg_attr(not(feature = "linear"), default)]
     Fire,
 }
 
-/// γ of either damping law. Source: the published study, η_n = 500.
+/// γ of either damping law. Source: the study, η_n = 500.
 const RATE: f64 = 500.0;
 
 impl ProtocolChoice {
-    /// All of them.
+    /// All protocols.
     pub const ALL: [ProtocolChoice; 4] =
         [ProtocolChoice::Study, ProtocolChoice::Constant, ProtocolChoice::FireNewton, ProtocolChoice::Fire];
 
-    /// As it stands in a scene and on the command line.
+    /// Its name in a scene and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             ProtocolChoice::Study => "study",
@@ -53,7 +55,7 @@ impl ProtocolChoice {
         }
     }
 
-    /// What it is, in a few words.
+    /// A short description.
     pub fn title(self) -> &'static str {
         match self {
             ProtocolChoice::Study => "damped dynamics, viscoelastic damping of rate 500, as the published study",
@@ -63,7 +65,8 @@ impl ProtocolChoice {
         }
     }
 
-    /// The relaxer after the inflation. Without the feature `linear` damped dynamics take explicit steps, and FIRE ends without Newton's method.
+    /// The relaxer after the inflation. Without the feature `linear` damped dynamics take explicit steps, and FIRE is
+    /// not followed by Newton's method.
     pub fn relaxer(self) -> RelaxerChoice {
         match self {
             ProtocolChoice::Study => damped(DampingChoice::Viscoelastic(ViscoelasticDamping { rate: RATE })),
@@ -81,7 +84,7 @@ impl ProtocolChoice {
         if source.is_below_jamming() { RelaxerChoice::Fire(Fire::default()) } else { self.relaxer() }
     }
 
-    /// The protocol that has this relaxer after the inflation, if one has.
+    /// The protocol with this relaxer after the inflation, if there is one.
     pub fn of(relaxer: &RelaxerChoice) -> Option<Self> {
         Self::ALL.into_iter().find(|protocol| protocol.relaxer() == *relaxer)
     }

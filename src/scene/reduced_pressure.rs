@@ -1,9 +1,10 @@
-//! The reduced pressure p̂ = p N^(α−1) of a scene: N counts the disks in the circle by area, α is the exponent of the law.
+//! The reduced pressure p̂ = p N^(α−1) of a scene: N is the number of disks in the circle by area, α the exponent of
+//! the law.
 
 use crate::inflation::Boundary;
 use crate::scene::definition::Scene;
 
-/// N, the disks in the circle by area, or all of the periodic box.
+/// N, the number of disks in the circle by area, or of the whole periodic box.
 pub(crate) fn mobile_count(disk_count: usize, boundary: Boundary) -> f64 {
     let share = match boundary {
         Boundary::HeldRim { outer_radius_over_side: ratio } => std::f64::consts::PI * ratio * ratio,

@@ -1,6 +1,7 @@
-//! Whether radii and pressures of a scene can be told from rounding: [`Scene::check_scales`].
+//! Whether radii and pressures of a scene can be resolved above rounding: [`Scene::check_scales`].
 //!
-//! A relaxation whose answer lies below rounding does not fail, it goes on to its last step. So it is refused before.
+//! A relaxation whose result is below rounding does not fail; it runs to its step limit. Such a scene is therefore
+//! refused.
 
 use crate::law::choice::LawChoice;
 use crate::law::pair_law::PairLaw;
@@ -9,16 +10,16 @@ use crate::scene::definition::Scene;
 use crate::scene::source::Source;
 use crate::vector::larger;
 
-/// Largest ratio of two radii. Contact forces go as the square of radii, so beyond it those of small disks are below the
-/// rounding, 10⁻¹⁶, of those of large ones, and no residual tells whether the small ones are at rest.
+/// Largest ratio of two radii. Contact forces scale as the square of radii. Beyond this ratio those of small disks are
+/// below the rounding, 10⁻¹⁶, of those of large ones, and residuals do not show whether small disks are at rest.
 const LARGEST_RADIUS_RATIO: f64 = 1e8;
 
-/// Smallest overlap over a radius that a pressure may stand for. Distances are known to 10⁻¹⁶ of a radius; here four digits of
-/// an overlap are left, as the tolerance of a pressure asks for.
+/// Smallest overlap over the radius for a target pressure. Distances are known to 10⁻¹⁶ of a radius, so four digits of
+/// the overlap remain, as the tolerance of a pressure requires.
 const LEAST_OVERLAP: f64 = 1e-12;
 
 impl Scene {
-    /// Radii that are not too far apart, and pressures whose overlaps are above rounding.
+    /// Checks that radii do not differ too much, and that the overlaps at the pressures are above rounding.
     pub(super) fn check_scales(&self) -> Result<(), SceneError> {
         let radii = || self.mixture.components.iter().map(|component| component.radius);
         let (smallest, largest) = (radii().fold(f64::INFINITY, f64::min), radii().fold(0.0, larger));
@@ -65,7 +66,7 @@ mod tests {
         // p 2R/F(R) = 2·10/(2·10⁵ √(1/2) 10¹⁵) = 1.4·10⁻¹⁹, to the power of 2/3: 2.7·10⁻¹³.
         let below = scene(&[1e15], 10.0).check().expect_err("overlaps below rounding").to_string();
         assert!(below.contains("source.pressure = 10") && below.contains("2.7e-13"), "{below}");
-        // The same packing in another unit of pressure is another matter.
+        // The same packing with another unit of pressure.
         assert_eq!(scene(&[1e15], 1e9).check(), Ok(()));
     }
 }

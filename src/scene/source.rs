@@ -1,8 +1,8 @@
-//! [`Source`]: where a packing comes from.
+//! [`Source`]: the source of a packing.
 
 use serde::{Deserialize, Serialize};
 
-/// Where a packing comes from.
+/// The source of a packing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
@@ -14,8 +14,8 @@ pub enum Source {
     File(std::path::PathBuf),
 }
 
-/// φ_J. Below it FIRE relaxes: viscoelastic damping vanishes with the overlaps, so that a packing without contacts never stops.
-/// Source: O'Hern, Langer, Liu, Nagel (2002), Phys. Rev. Lett. 88, 075507.
+/// φ_J. Below it FIRE relaxes: viscoelastic damping vanishes with the overlaps, so a packing without contacts would
+/// never stop. Source: O'Hern, Langer, Liu, Nagel (2002), Phys. Rev. Lett. 88, 075507.
 const JAMMING: f64 = 0.842;
 
 impl Source {

@@ -1,4 +1,4 @@
-//! [`Written`]: a scene as a file has it, where a protocol stands in for relaxers.
+//! [`Written`]: the form of a scene in a file, in which a protocol may set the relaxers.
 
 use serde::{Deserialize, Deserializer};
 
@@ -12,7 +12,7 @@ use crate::scene::protocol::ProtocolChoice;
 use crate::scene::source::Source;
 use crate::verdict::VerdictSettings;
 
-/// The fields of a [`Scene`], and `protocol`, which gives samples without a relaxer theirs.
+/// The fields of a [`Scene`], and `protocol`, which sets the relaxer of samples without one.
 #[derive(Deserialize)]
 #[serde(rename = "Scene", deny_unknown_fields, default)]
 pub(super) struct Written {

@@ -1,4 +1,4 @@
-//! The curves a record keeps of a response.
+//! The curves of a response that a record contains.
 
 use std::collections::BTreeMap;
 
@@ -7,10 +7,11 @@ use crate::observe::fluctuations::Fluctuations;
 use crate::response::Response;
 use crate::scene::Scene;
 
-/// Every so many angles of a correlation function are kept: two degrees apart is enough to draw.
+/// Stride of the angles kept of a correlation function: two degrees apart is enough for a figure.
 const ANGLE_STRIDE: usize = 4;
 
-/// Significant digits of a curve: single samples scatter by a percent and more, and a study of a thousand samples has a million points.
+/// Significant digits of a curve. Single samples scatter by a percent and more, and a study of a thousand samples has a
+/// million points.
 const DIGITS: usize = 6;
 
 /// Curves by name, as pairs of abscissa and ordinate.
@@ -46,7 +47,7 @@ pub(super) fn curves(scene: &Scene, response: &Response) -> BTreeMap<String, Vec
     if let Some(isostatic) = response.isostatic_length.as_ref().and_then(|it| it.measured()) {
         let points = isostatic.curve.iter().map(|point| [point.scaled_radius, point.scaled_fluctuation]);
         put("isostatic_fluctuation".into(), points.collect());
-        // y = (h_∥/h_0) xⁿ, undone.
+        // h_∥/h_0 from y = (h_∥/h_0) xⁿ.
         let unit = isostatic.unit.unwrap_or(f64::NAN);
         let stretching = isostatic.curve.iter().map(|point| {
             [point.radius, unit * point.scaled_fluctuation / point.scaled_radius.powi(isostatic.tail.power())]
@@ -59,9 +60,9 @@ pub(super) fn curves(scene: &Scene, response: &Response) -> BTreeMap<String, Vec
     all
 }
 
-/// To [`DIGITS`] significant digits.
+/// Rounds to [`DIGITS`] significant digits.
 fn rounded(value: f64) -> f64 {
-    // What was printed is always a number.
+    // A printed number can always be parsed.
     format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
 }
 

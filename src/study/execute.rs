@@ -1,4 +1,4 @@
-//! [`execute()`]: runs what is missing of a study.
+//! [`execute()`]: runs the missing tasks of a study.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,9 +18,9 @@ use crate::study::settings::{Study, StudyError};
 use crate::study::store::{Problem, Store, TaskState};
 use crate::study::store_error::StoreError;
 
-/// What a study tells while it runs; `()` hears nothing.
+/// Progress of a study; `()` ignores it.
 pub trait StudyProgress: Sync {
-    /// A task is done; `records` are its samples, `seconds` its wall time, none if it was there already.
+    /// A task is done. `records` are its samples; `seconds` is its wall time, none if its file already existed.
     fn task(&self, task: &Task, records: &[Record], seconds: Option<f64>) {
         let _ = (task, records, seconds);
     }
@@ -28,28 +28,28 @@ pub trait StudyProgress: Sync {
 
 impl StudyProgress for () {}
 
-/// What was done.
+/// Summary of an execution.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Execution {
-    /// Samples of the part that was asked for.
+    /// Samples of the requested part.
     pub sample_count: usize,
-    /// Those of them that were there already.
+    /// Samples whose records already existed.
     pub found_count: usize,
-    /// Those run now.
+    /// Samples run now.
     pub run_count: usize,
-    /// Samples that failed, found or run, by kind.
+    /// Samples that failed, earlier or now, by type of failure.
     pub failures: BTreeMap<FailureKind, usize>,
-    /// Files that are not what they should be: left alone, and their samples not run.
+    /// Invalid files: not changed, and their samples not run.
     pub damaged: Vec<Problem>,
-    /// Files of no sample of this study: left alone.
+    /// Files of no sample of this study: not changed.
     pub foreign: Vec<Problem>,
 }
 
-/// Why a study was not run to its end; what is finished stays.
+/// Why a study was not completed; finished tasks are kept.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExecuteError {
-    /// The study makes no sense.
+    /// The study is invalid.
     #[error(transparent)]
     Study(#[from] StudyError),
     /// The folder cannot be used.
@@ -57,12 +57,12 @@ pub enum ExecuteError {
     Store(#[from] StoreError),
 }
 
-/// Runs all tasks of a part of a study that are not in `folder` yet, with the feature `parallel` on all threads.
+/// Runs all tasks of a part of a study whose files are missing in `folder`, with the feature `parallel` on all threads.
 ///
-/// `replace` lets the study take the place of another one in the folder.
+/// `replace` lets the study replace another one in the folder.
 ///
 /// # Errors
-/// A study that makes no sense; a folder that cannot be written or is in use. A sample that fails is a record, no error.
+/// An invalid study; a folder that cannot be written or is in use. A sample that fails gives a record, not an error.
 pub fn execute(
     study: &Study,
     folder: &Path,
@@ -76,21 +76,22 @@ pub fn execute(
     execute_in(&store, &plan, shard, progress)
 }
 
-/// What [`execute_and_merge()`] did.
+/// The result of [`execute_and_merge()`].
 #[derive(Debug)]
 pub struct Whole {
-    /// What was done.
+    /// Summary of the execution.
     pub execution: Execution,
-    /// All records and their statistics; none where files are damaged.
+    /// All records and their statistics; none if files are damaged.
     pub merged: Option<Merged>,
-    /// While it lives, no other study takes the place of this one.
+    /// Lock that prevents another study from replacing this one.
     pub lock: StudyLock,
 }
 
-/// Like [`execute()`] of the whole study, then merges it, with the study's lock held throughout: what is merged is this study.
+/// Like [`execute()`] for the whole study, then merges it. The lock of the study is held throughout, so that this study
+/// is merged.
 ///
 /// # Errors
-/// As [`execute()`] and [`merge()`](crate::study::merge()).
+/// See [`execute()`] and [`merge()`](crate::study::merge()).
 pub fn execute_and_merge(
     study: &Study,
     folder: &Path,
@@ -108,7 +109,7 @@ pub fn execute_and_merge(
     Ok(Whole { execution, merged, lock })
 }
 
-/// Runs what is missing in a folder that is locked.
+/// Runs the missing tasks in a locked folder.
 fn execute_in(
     store: &Store,
     plan: &Plan,
@@ -123,7 +124,7 @@ fn execute_in(
         ..Execution::default()
     });
     let note = |change: &dyn Fn(&mut Execution)| {
-        // A thread that panicked has left counts behind, nothing worse.
+        // After a panic of another thread only counts may be wrong.
         change(&mut done.lock().unwrap_or_else(std::sync::PoisonError::into_inner));
     };
     let one = |task: &&Task| -> Result<(), StoreError> {
@@ -165,7 +166,7 @@ fn execute_in(
     Ok(execution)
 }
 
-/// Ends a sample when its time is over.
+/// Ends a sample when its time limit is reached.
 struct Deadline(Option<Instant>);
 
 impl Progress for Deadline {
@@ -174,7 +175,7 @@ impl Progress for Deadline {
     }
 }
 
-/// The records of a task: the packing is prepared once, then inflated in every way.
+/// The records of a task: the packing is prepared once, then used for every inflation.
 fn run_task(task: &Task, time_limit: Option<f64>) -> Vec<Record> {
     let allowed = time_limit.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
     let deadline = Deadline(allowed.and_then(|allowed| Instant::now().checked_add(allowed)));

@@ -1,11 +1,11 @@
-//! Locks of a study's folder, so that no process changes what another one runs.
+//! Locks of the folder of a study, so that no process changes a study that another one runs.
 //!
 //! ```text
-//! .lock          shared by all that run or merge the study; exclusive while study.json is written
+//! .lock          shared by all processes that run or merge the study; exclusive while study.json is written
 //! .lock-I-of-N   exclusive, one for each part of the plan
 //! ```
 //!
-//! The system releases a lock when its process ends, however it ends.
+//! The operating system releases a lock when its process ends for any reason.
 
 use std::fs::{File, TryLockError};
 use std::path::Path;
@@ -14,26 +14,26 @@ use std::time::{Duration, Instant};
 use crate::study::plan::Shard;
 use crate::study::store_error::StoreError;
 
-/// A study.json is written in less time; whoever holds its lock longer has been stopped.
+/// Longest wait for a lock. Writing a study.json takes less time; a process that holds its lock longer is suspended.
 pub(super) const PATIENCE: Duration = Duration::from_secs(3);
 
 /// Time between two tries.
 pub(super) const PAUSE: Duration = Duration::from_millis(10);
 
-/// Opens the file of a lock, made if it is not there.
+/// Opens the file of a lock, and creates it if necessary.
 fn open(path: &Path) -> Result<File, StoreError> {
     let file = File::options().create(true).truncate(false).write(true).open(path);
     file.map_err(|source| StoreError::Io { path: path.into(), source })
 }
 
-/// The lock of the study: as long as it lives, no other study takes the place of this one.
+/// The lock of the study: while it exists, no other study replaces this one.
 #[derive(Debug)]
 pub struct StudyLock {
     file: File,
 }
 
 impl StudyLock {
-    /// The lock of a folder that is there, shared with others. Waits while a study.json is written.
+    /// The shared lock of an existing folder. Waits while a study.json is written.
     pub(super) fn shared(folder: &Path) -> Result<Self, StoreError> {
         let path = folder.join(".lock");
         let file = open(&path)?;
@@ -48,7 +48,7 @@ impl StudyLock {
         }
     }
 
-    /// The lock of a folder that is there, for this process alone.
+    /// The exclusive lock of an existing folder.
     pub(super) fn exclusive(folder: &Path) -> Result<Self, StoreError> {
         let path = folder.join(".lock");
         exclusive(&path).map(|file| StudyLock { file })
@@ -57,7 +57,7 @@ impl StudyLock {
 
 impl Drop for StudyLock {
     fn drop(&mut self) {
-        // Closing the file releases it anyway, later on some systems.
+        // Closing the file also releases it, but later on some systems.
         let _ = self.file.unlock();
     }
 }

@@ -16,17 +16,17 @@ use crate::study::statistics::CellStatistics;
 use crate::study::store::{Problem, Store, TaskState};
 use crate::study::store_error::StoreError;
 
-/// What a merge found.
+/// The result of a merge.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Merged {
     /// The study.
     pub study: Study,
-    /// Samples of the plan.
+    /// Number of samples of the plan.
     pub sample_count: usize,
-    /// Those that have a record.
+    /// Number of samples with a record.
     pub record_count: usize,
-    /// Records by the vector instructions they were computed with. More than one entry: records of different processors, whose digits
-    /// differ in the last places where they went through a factorisation.
+    /// Numbers of records by the vector instructions that computed them. With more than one entry, records come from
+    /// different processors. Results of factorisations then differ in their last digits.
     pub records_by_vectors: BTreeMap<String, usize>,
     /// Files that cannot be used; their samples are missing.
     pub damaged: Vec<Problem>,
@@ -34,7 +34,7 @@ pub struct Merged {
     pub foreign: Vec<Problem>,
     /// Statistics in the order of the plan.
     pub cells: Vec<CellStatistics>,
-    /// What the statistics are of, cell by cell.
+    /// The samples behind the statistics, cell by cell.
     #[serde(skip)]
     pub samples: Vec<CellSamples>,
     /// The files written.
@@ -42,11 +42,11 @@ pub struct Merged {
     pub files: Vec<PathBuf>,
 }
 
-/// Why nothing was merged.
+/// Why the merge failed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MergeError {
-    /// The study of the folder makes no sense.
+    /// The study of the folder is invalid.
     #[error(transparent)]
     Study(#[from] StudyError),
     /// The folder cannot be used.
@@ -55,25 +55,25 @@ pub enum MergeError {
     /// The result cannot be written.
     #[error(transparent)]
     Write(#[from] crate::io::WriteError),
-    /// The result has no form as JSON.
+    /// The result cannot be written as JSON.
     #[error("summary.json: {0}")]
     Json(#[from] serde_json::Error),
 }
 
-/// Gathers what is there of the study in `folder`: `records.jsonl` (a record a line), `summary.json`, `summary.csv` (a row a
-/// cell and number).
+/// Collects the records of the study in `folder`. Writes `records.jsonl` (one record per line), `summary.json` and
+/// `summary.csv` (one row per cell and number).
 ///
-/// Records are read one task at a time; what is kept of each is told by [`CellSamples`].
+/// Records are read one task at a time; [`CellSamples`] contains what is kept of each.
 ///
 /// # Errors
-/// A folder without a study, or that cannot be written.
+/// A folder without a study; a folder that cannot be written.
 pub fn merge(folder: &Path) -> Result<Merged, MergeError> {
     let (store, study, _lock) = Store::held(folder)?;
     let plan = Plan::of(&study)?;
     merge_in(&store, study, &plan)
 }
 
-/// Merges a folder that is locked.
+/// Merges a locked folder.
 pub(super) fn merge_in(store: &Store, study: Study, plan: &Plan) -> Result<Merged, MergeError> {
     let mut merged = Merged {
         study,
@@ -104,7 +104,7 @@ pub(super) fn merge_in(store: &Store, study: Study, plan: &Plan) -> Result<Merge
                 serde_json::to_writer(&mut *writer, record)?;
                 writer.write_all(b"\n")?;
                 merged.record_count += 1;
-                // A cell stands together with those it shares packings with: the last few are enough to look at.
+                // Cells that share packings are adjacent, so the search from the end is short.
                 match cells.iter_mut().rev().find(|cell| cell.has(record)) {
                     Some(cell) => cell.add(record),
                     None => {
@@ -127,7 +127,7 @@ pub(super) fn merge_in(store: &Store, study: Study, plan: &Plan) -> Result<Merge
     Ok(merged)
 }
 
-/// What `summary.json` holds.
+/// The content of `summary.json`.
 #[derive(Serialize)]
 struct Summary<'a> {
     jamscope_version: &'static str,
@@ -135,7 +135,7 @@ struct Summary<'a> {
     merged: &'a Merged,
 }
 
-/// A row a cell and number; names of relaxers have commas, so they stand in quotes.
+/// One row per cell and number; names of relaxers contain commas, so they are quoted.
 fn table(cells: &[CellStatistics]) -> String {
     let mut text = String::from(
         "cell,disk_count,target,target_value,increase,relaxer,law,number,count,mean,standard_error,lower_quartile,median,\
@@ -169,7 +169,7 @@ fn table(cells: &[CellStatistics]) -> String {
 }
 
 impl Merged {
-    /// What to know of records that were computed with different vector instructions; none if all were with the same.
+    /// A warning if records were computed with different vector instructions.
     pub fn mixed_vectors(&self) -> Option<String> {
         if self.records_by_vectors.len() < 2 {
             return None;
@@ -192,7 +192,7 @@ mod tests {
     use crate::study::record::{Cell, Record, RecordOutcome};
     use crate::study::settings::{Seeds, Target};
 
-    /// A record of the size one of 5548 disks has: 45 numbers, 16 curves.
+    /// A record of the size for 5548 disks: 45 numbers, 16 curves.
     fn record(task: &Task) -> Record {
         let scene = &task.scenes()[0];
         let sample = &scene.sample[0];
@@ -222,7 +222,7 @@ mod tests {
         Record { cell, seed: sample.seed, outcome }
     }
 
-    /// Largest memory of this process so far \[bytes\], where the system tells.
+    /// Peak memory of this process so far \[bytes\], if the system reports it.
     fn peak() -> Option<f64> {
         let status = std::fs::read_to_string("/proc/self/status").ok()?;
         let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
@@ -248,7 +248,7 @@ mod tests {
         if let (Some(before), Some(after)) = (before, peak()) {
             let seconds = start.elapsed().as_secs_f64();
             println!("peak {:.0} MB before, {:.0} MB after the merge of {seconds:.0} s", before / 1e6, after / 1e6);
-            // 116 numbers a sample are 93 MB, twice that while they grow, and 10⁵ names of files.
+            // 116 numbers per sample are 93 MB, twice that while vectors grow, and 10⁵ file names.
             assert!(after < 4e8, "{after} bytes");
         }
     }

@@ -1,13 +1,15 @@
-//! [`Study`]: one experiment over sizes, pressures, inflations, laws, relaxers and seeds, run so that an interruption loses
-//! nothing.
+//! [`Study`]: one experiment for several sizes, pressures, inflations, laws, relaxers and seeds. An interruption loses
+//! no results.
 //!
 //! ```text
-//! Study → Plan: one task a packing, with all inflations done to it → records, one file a task → Merged → statistics by cell
+//! Study → Plan: one task per packing, with all its inflations → records, one file per task → Merged → statistics by
+//! cell
 //! ```
 //!
-//! A task writes one file, whole or not at all, and is never run again while that file is sound. What a task computes depends on
-//! the study and, in the last digits of what goes through a factorisation, on the processor, so any number of threads, shards and
-//! interruptions gives the same merged bytes on processors of one kind. A sample that fails is a record too.
+//! A task writes one file, either complete or not at all, and is not repeated while that file is valid. Its results
+//! depend only on the study and, in the last digits of results of factorisations, on the processor. So the merged bytes
+//! do not depend on the number of threads, shards and interruptions on processors of one type. A sample that fails also
+//! gives a record.
 //!
 //! Start from [`execute()`] and [`merge()`].
 
@@ -38,7 +40,7 @@ pub use store_error::StoreError;
 
 use std::path::Path;
 
-/// The wall time the samples of a task took \[s\], where they are in the folder and sound.
+/// The wall time of the samples of a task \[s\], if the folder contains a valid file of it.
 pub fn measured_seconds(folder: &Path, task: &Task) -> Option<f64> {
     match store::Store::there(folder).state(task) {
         store::TaskState::Finished(_, seconds, _) => Some(seconds),

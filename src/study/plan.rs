@@ -1,4 +1,4 @@
-//! [`Plan`]: all packings of a study with the inflations done to each, in an order that only the study decides.
+//! [`Plan`]: all packings of a study with their inflations, in an order determined by the study alone.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -12,12 +12,12 @@ use crate::scene::Scene;
 use crate::scene::reduced_pressure::mobile_count;
 use crate::study::settings::{Study, StudyError, Target};
 
-/// One packing and what is done to it.
+/// One packing and its inflations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Task {
-    /// Its place in the plan, from 0.
+    /// Its index in the plan, from 0.
     pub index: usize,
-    /// What it was asked to be prepared to.
+    /// Target of the preparation.
     pub target: Target,
     /// The contact law.
     pub law: LawChoice,
@@ -25,30 +25,30 @@ pub struct Task {
     pub disk_count: usize,
     /// The seed.
     pub seed: u64,
-    /// All the rest, shared by all tasks of a part: a scene apiece would take 4 kB.
+    /// The other settings, shared by all tasks of a part: one scene per task would take 4 kB.
     study: Arc<Study>,
 }
 
 /// All tasks of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// In the order of the merged result: seeds innermost, so that every cell stands together.
+    /// In the order of the merged result: seeds innermost, so that samples of a cell are adjacent.
     pub tasks: Vec<Task>,
-    /// Wall time allowed to a task \[s\].
+    /// Wall time limit of a task \[s\].
     pub time_limit: Option<f64>,
 }
 
 /// One part of a plan: every `count`-th task from `index` on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
-    /// From 0.
+    /// Index of the part, from 0.
     pub index: usize,
-    /// How many parts there are.
+    /// Number of parts.
     pub count: usize,
 }
 
 impl Default for Shard {
-    /// All of it.
+    /// The whole plan.
     fn default() -> Self {
         Shard { index: 0, count: 1 }
     }
@@ -65,12 +65,12 @@ impl Plan {
     /// The plan of a study.
     ///
     /// # Errors
-    /// A study that makes no sense.
+    /// An invalid study.
     pub fn of(study: &Study) -> Result<Self, StudyError> {
         study.check()?;
         let mut plan = Plan { tasks: Vec::new(), time_limit: study.time_limit };
         let mut known = HashSet::new();
-        // The lists of one part have no value twice, so its packings differ; those of several parts are compared.
+        // The lists of one part have no duplicates, so its packings differ; packings of several parts are compared.
         let several = study.parts.len() > 1;
         for (place, part) in study.parted().into_iter().enumerate() {
             let first = plan.tasks.len();
@@ -99,14 +99,14 @@ impl Plan {
         }
     }
 
-    /// Whether the packings of the plan fit into memory, so many of them relaxed at once.
+    /// Checks whether the packings of the plan fit into memory if `at_once` of them are relaxed in parallel.
     ///
     /// # Errors
-    /// [`TooLarge`] names `disk_count`, the largest possible, and the memory it would take.
+    /// [`TooLarge`] with `disk_count`, the largest possible value and the memory needed.
     pub fn check_memory(&self, memory: Memory, at_once: usize) -> Result<(), TooLarge> {
         let alike = |a: &Task, b: &Task| a.disk_count == b.disk_count && Arc::ptr_eq(&a.study, &b.study);
         for tasks in self.tasks.chunk_by(alike) {
-            // Scenes of a task are inflated one after the other, tasks are run at once.
+            // Scenes of a task run one after the other; tasks run in parallel.
             let at_once = at_once.min(tasks.len());
             for mut scene in tasks[0].scenes() {
                 scene.sample = vec![scene.sample[0].clone(); at_once];
@@ -116,14 +116,14 @@ impl Plan {
         Ok(())
     }
 
-    /// Samples, one an inflation.
+    /// Number of samples, one per inflation.
     pub fn sample_count(&self) -> usize {
         self.tasks.iter().map(Task::scene_count).sum()
     }
 }
 
 impl Task {
-    /// One scene of one sample an inflation; they differ in increase and relaxer.
+    /// One scene with one sample per inflation; they differ in increase and relaxer.
     pub fn scenes(&self) -> Vec<Scene> {
         let relaxers = self.study.relaxers(self.target);
         let scene = |increase, relaxer| {
@@ -133,29 +133,29 @@ impl Task {
         increases.flat_map(|increase| relaxers.iter().map(move |&relaxer| scene(increase, relaxer))).collect()
     }
 
-    /// How many.
+    /// Number of scenes.
     pub fn scene_count(&self) -> usize {
         self.study.increases().len() * self.study.relaxers(self.target).len()
     }
 
-    /// What is held.
+    /// The boundary.
     pub fn boundary(&self) -> Boundary {
         self.study.scene.inflation.boundary
     }
 
-    /// What tells this task from all others, and from the same one of another version: SHA-256 of version and scenes, in hex.
+    /// Unique identifier of this task and version: SHA-256 of version and scenes, in hexadecimal.
     ///
-    /// The place in the plan is left out: a study with more seeds has the old tasks unchanged.
+    /// It does not contain the index in the plan, so adding seeds to a study does not change its existing tasks.
     pub fn identity(&self) -> String {
-        // A scene is plain data: it always has a form as JSON.
+        // A scene is plain data and can always be written as JSON.
         let scenes = serde_json::to_string(&(self.target, self.scenes())).unwrap_or_default();
         hash(&[env!("CARGO_PKG_VERSION"), &scenes])
     }
 
-    /// What it may take on one core \[s\]: c n^(3/2) p^(−1/4) (0.6 + 0.4 k) for n disks and k inflations, c = 1.4·10⁻⁵ s.
+    /// Estimated time on one core \[s\]: c n^(3/2) p^(−1/4) (0.6 + 0.4 k) for n disks and k inflations, c = 1.4·10⁻⁵ s.
     ///
-    /// FIRE's steps grow as the square root of n and towards jamming. A rough guide for jammed packings, by the medium study of
-    /// the chapter on the transition (1387 to 22184 disks, p from 0.5 to 4000); beside other work they took up to ten times as
+    /// The number of FIRE steps grows as the square root of n and towards jamming. The estimate is rough and for jammed
+    /// packings; unjammed ones, with p = 1 here, take a tenth and less.
     /// long, and unjammed packings, for which p = 1 is taken, take a tenth and less.
     pub fn expected_seconds(&self) -> f64 {
         let mobile = mobile_count(self.disk_count, self.boundary());
@@ -168,13 +168,13 @@ impl Task {
         1.4e-5 * size * libm::pow(pressure, -0.25) * (0.6 + 0.4 * self.scene_count() as f64)
     }
 
-    /// The file of its records.
+    /// File name of its records.
     pub fn file_name(&self) -> String {
         format!("{}.jsonl", &self.identity()[..24])
     }
 }
 
-/// SHA-256 of some texts, each with its length before it, in hex.
+/// SHA-256 of several texts, each preceded by its length, in hexadecimal.
 pub(super) fn hash(texts: &[&str]) -> String {
     let mut state = Sha256::new();
     for text in texts {

@@ -1,7 +1,7 @@
-//! [`Recipe`]: the studies behind the figures of the published study, ready to run at three scales.
+//! [`Recipe`]: the studies for the figures of the published study, at three scales.
 //!
-//! Six recipes look at one and the same study, [`Recipe::Kappa`] to [`Recipe::Isostatic`]: run in one folder, its samples are
-//! run once.
+//! Six recipes, [`Recipe::Kappa`] to [`Recipe::Isostatic`], use the same study: in a common folder its samples are run
+//! once.
 
 use serde::Serialize;
 
@@ -26,7 +26,7 @@ pub enum Recipe {
     OrderParameters,
     /// ℓ_s and ℓ_iso against p (fig. 5).
     Matching,
-    /// θ* by the threshold it is defined with (fig. S4).
+    /// θ* for several thresholds (fig. S4).
     Threshold,
     /// h_∥ and h_r against r ΔZ (fig. S8).
     Isostatic,
@@ -40,13 +40,13 @@ pub enum Recipe {
     Jamming,
     /// Hookean disks: G*, θ* against p N and p N^(3/2) (fig. S5).
     Hookean,
-    /// S(f) at p̂_c by distance, both laws (fig. S6).
+    /// S(f) at p̂_c in several rings, both laws (fig. S6).
     Radius,
     /// Contacts changed by inflation and deflation (fig. S9).
     ContactChanges,
 }
 
-/// How much of a recipe is run.
+/// The size of a recipe.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scale {
@@ -58,11 +58,12 @@ pub enum Scale {
     Full,
 }
 
-/// A size and how much of its box the circle takes. Source: design §4; below 5548 disks as for 5548.
+/// Number of disks, and outer radius of the circle over the side of the box. Source: the study; below 5548 disks the
+/// value for 5548.
 const SIZES: [(usize, f64); 4] = [(1387, 0.480), (5548, 0.480), (22184, 0.486), (88776, 0.491)];
 
 impl Recipe {
-    /// All of them.
+    /// All recipes.
     pub const ALL: [Recipe; 14] = [
         Recipe::Radial,
         Recipe::Kappa,
@@ -80,7 +81,7 @@ impl Recipe {
         Recipe::ContactChanges,
     ];
 
-    /// As it stands on the command line.
+    /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Recipe::Radial => "radial",
@@ -100,7 +101,7 @@ impl Recipe {
         }
     }
 
-    /// What it shows, with its place in the published study.
+    /// Its content, with the figure of the published study.
     pub fn title(self) -> &'static str {
         match self {
             Recipe::Radial => "radial profiles of the three phases, and their means over samples (figs. 1, S2)",
@@ -120,15 +121,15 @@ impl Recipe {
         }
     }
 
-    /// The study, by the protocol of the published one.
+    /// The study, with the protocol of the published one.
     pub fn study(self, scale: Scale) -> Study {
         self.study_by(scale, ProtocolChoice::default().relaxer())
     }
 
-    /// The study by a relaxer. Packings below jamming come to rest by FIRE all the same: damped dynamics would not end there.
+    /// The study with another relaxer. Packings below jamming always use FIRE, because damped dynamics would not end.
     pub fn study_by(self, scale: Scale, relaxer: RelaxerChoice) -> Study {
         let mut study = self.of_scale(scale);
-        // Parts below jamming have a relaxer of their own.
+        // Parts below jamming have their own relaxer.
         if self != Recipe::Jamming {
             study.relaxers = vec![relaxer];
         }
@@ -158,10 +159,10 @@ impl Recipe {
 }
 
 impl Scale {
-    /// All of them.
+    /// All scales.
     pub const ALL: [Scale; 3] = [Scale::Small, Scale::Medium, Scale::Full];
 
-    /// As it stands on the command line.
+    /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Scale::Small => "small",
@@ -171,7 +172,7 @@ impl Scale {
     }
 }
 
-/// What all of them have in common: FIRE to a packing, then the protocol of the published study.
+/// Common settings: FIRE for the packing, then the protocol of the published study.
 fn common() -> Study {
     let observables = Observables {
         angular_profiles: None,
@@ -195,7 +196,7 @@ fn reduced(values: &[f64]) -> Vec<Target> {
     values.iter().map(|&value| Target::ReducedPressure(value)).collect()
 }
 
-/// One size at these targets.
+/// A part with one size and these targets.
 fn part(size: usize, targets: Vec<Target>, count: usize) -> Part {
     let (disk_count, ratio) = SIZES[size];
     Part {
@@ -247,7 +248,7 @@ fn inflations(scale: Scale, laws: &[LawChoice]) -> Study {
     let hertzian: &[f64] = &[1e6, 1e7, 3e7, 1e8, 2e8, 4e8, 1e9];
     let mut parts = Vec::new();
     for &law in laws {
-        // Hookean pressures at about the same packing fractions, by φ(p) of both laws.
+        // Hookean pressures at about the same packing fractions, from φ(p) of both laws.
         let targets = |values: &[f64]| match law {
             LawChoice::Hookean(_) => {
                 reduced(&values.iter().map(|p| 1.6e7 * libm::pow(p / 1e8, 2.0 / 3.0)).collect::<Vec<_>>())
@@ -290,7 +291,7 @@ fn radius(scale: Scale) -> Study {
     Study { parts, ..common() }
 }
 
-/// The study has ten samples of 2774 disks.
+/// The published study uses ten samples of 2774 disks.
 fn periodic(scale: Scale) -> Study {
     let count = match scale {
         Scale::Small => 10,

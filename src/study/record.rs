@@ -1,4 +1,4 @@
-//! [`Record`]: what a study keeps of a sample.
+//! [`Record`]: the results of a sample that a study keeps.
 
 use std::collections::BTreeMap;
 
@@ -20,86 +20,87 @@ use crate::study::curves::curves;
 use crate::study::plan::Task;
 use crate::study::settings::Target;
 
-/// Samples that differ in nothing but the seed.
+/// The settings of samples that differ only in the seed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
     /// The contact law.
     pub law: LawChoice,
     /// Disks in the box.
     pub disk_count: usize,
-    /// What the packing was prepared to.
+    /// Target of the preparation.
     pub target: Target,
     /// d_0 \[length\].
     pub increase: f64,
-    /// How it came to rest after the inflation.
+    /// Relaxer after the inflation.
     pub relaxer: RelaxerChoice,
-    /// What is held.
+    /// The boundary.
     pub boundary: Boundary,
 }
 
 impl Cell {
-    /// Whether another cell has all but the target in common.
+    /// Whether two cells differ only in the target.
     pub fn differs_in_target_alone(&self, other: &Cell) -> bool {
         Cell { target: self.target, ..*other } == *self
     }
 
-    /// N, the disks in the circle by area, or all of the periodic box.
+    /// N, the number of disks in the circle by area, or of the whole periodic box.
     pub fn mobile_count(&self) -> f64 {
         mobile_count(self.disk_count, self.boundary)
     }
 }
 
-/// What a study keeps of a sample.
+/// The results of a sample that a study keeps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// What it is one of.
+    /// Its cell.
     pub cell: Cell,
     /// Its seed.
     pub seed: u64,
-    /// What came out.
+    /// Its outcome.
     pub outcome: RecordOutcome,
 }
 
-/// What came out of a sample.
+/// Outcome of a sample.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RecordOutcome {
-    /// It was measured.
+    /// The sample was measured.
     Done {
-        /// Which phase it shows, by which evidence.
+        /// Its phase and the evidence for it.
         phase: PhaseDecision,
-        /// Single numbers by name, in the units of the names' table in the book; what a sample does not have is absent.
+        /// Single numbers by name, in the units of the table of names in the book; numbers that the sample does not
+        /// have are absent.
         numbers: BTreeMap<String, f64>,
         /// Curves by name, as pairs of abscissa and ordinate.
         curves: BTreeMap<String, Vec<[f64; 2]>>,
     },
-    /// It was not.
+    /// The sample failed.
     Failed {
-        /// At which stage, and how.
+        /// The type of failure.
         kind: FailureKind,
-        /// In its own words.
+        /// The error message.
         reason: String,
     },
 }
 
-/// How a sample failed.
+/// Type of failure of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FailureKind {
-    /// The packing did not come to rest in the steps it had.
+    /// The packing did not come to rest within the step limit.
     PreparationNotAtRest,
-    /// No packing fraction gave the pressure asked for.
+    /// No packing fraction gave the target pressure.
     PressureNotReached,
-    /// It did not come to rest after the inflation.
+    /// The sample did not come to rest after the inflation.
     InflationNotAtRest,
-    /// The wall time allowed was used up.
+    /// The time limit was reached.
     TimeLimit,
-    /// All else: what the sample itself makes impossible.
+    /// Any other failure of the sample.
     Other,
 }
 
 impl FailureKind {
-    /// In words.
+    /// A description in words.
     pub fn name(self) -> &'static str {
         match self {
             FailureKind::PreparationNotAtRest => "preparation not at rest",
@@ -141,7 +142,7 @@ impl Record {
             },
             Err(error) => {
                 let kind = FailureKind::of(error);
-                // A time limit ends a sample wherever it is: its words would tell how fast the machine was.
+                // A time limit ends a sample at a point that depends on the machine, so its message is not recorded.
                 let reason = match kind {
                     FailureKind::TimeLimit => "the wall time allowed was used up".into(),
                     _ => error.to_string(),
@@ -152,7 +153,7 @@ impl Record {
         Record { cell, seed: sample.seed, outcome }
     }
 
-    /// A number of a sample that was measured \[unit in the table of names in the book\].
+    /// A number of a measured sample \[unit in the table of names in the book\].
     pub fn number(&self, name: &str) -> Option<f64> {
         match &self.outcome {
             RecordOutcome::Done { numbers, .. } => numbers.get(name).copied(),
@@ -161,7 +162,7 @@ impl Record {
     }
 }
 
-/// Numbers by name; those that are none are left out.
+/// Numbers by name; values that are not finite are left out.
 struct Numbers(BTreeMap<String, f64>);
 
 impl Numbers {
@@ -264,7 +265,7 @@ impl Numbers {
             self.maybe("wavenumber_bound", fit.elastic.wavenumber_bound);
             self.maybe("screened_share_described", fit.screened.map(|screened| screened.share_described));
             self.maybe("chance_of_elastic", fit.screened.map(|screened| screened.chance_of_elastic));
-            // κ of the best fit; 0 where no κ above 0 fits better.
+            // κ of the best fit; 0 if no κ above 0 fits better.
             self.put("wavenumber", fit.screened.map_or(0.0, |screened| screened.wavenumber.value));
             self.maybe("wavenumber_error", fit.screened.map(|screened| screened.wavenumber.standard_error));
             self.maybe("screened_amplitude", fit.screened.map(|screened| screened.amplitude.value));

@@ -1,8 +1,8 @@
-//! [`CellSamples`]: what is kept of all samples of a cell, so that a study of any length fits in memory.
+//! [`CellSamples`]: the data kept of all samples of a cell. A study of any length fits in memory.
 //!
-//! Of every sample its numbers, the powers of its ring and, where it has an isostatic length, the stretching fluctuation of its rings; of curves
-//! sums over samples; of the first few samples the radial profile as it is. Of 5548 disks that is some 120 numbers a sample, 41 of them
-//! for the rings: 1 kB, so 100 MB for 10⁵ samples.
+//! Of every sample: its numbers, the powers of its ring, and the stretching fluctuation of its rings if it has an
+//! isostatic length. Of curves: sums over samples. Of the first few samples: the radial profile. For 5548 disks this is
+//! about 120 numbers per sample, 41 of them for the rings: 1 kB, so 100 MB for 10⁵ samples.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::response::{EvidenceCounts, PhaseOutcome};
 use crate::study::record::{Cell, FailureKind, Record, RecordOutcome};
 use crate::study::statistics::{CellStatistics, NumberStatistics, PhaseCounts};
 
-/// Samples whose radial profile is kept as it is.
+/// Number of samples with their own radial profile.
 const SINGLE_COUNT: usize = 4;
 
 /// All samples of a cell.
@@ -20,17 +20,18 @@ pub struct CellSamples {
     pub cell: Cell,
     /// Samples measured.
     pub done_count: usize,
-    /// Samples that failed, by kind.
+    /// Samples that failed, by type of failure.
     pub failures: BTreeMap<FailureKind, usize>,
     /// Samples of every phase.
     pub phases: PhaseCounts,
-    /// Samples by what each kind of evidence says.
+    /// Numbers of samples by phase, for every type of evidence.
     pub evidence: EvidenceCounts,
-    /// Numbers by name \[unit in the table of names in the book\], of the samples that have them, in the order of the plan.
+    /// Numbers by name \[unit in the table of names in the book\], of the samples with this number, in the order of the
+    /// plan.
     pub numbers: BTreeMap<String, Vec<f64>>,
-    /// P_f over the variance of the ring, f = 1, 2, …, of every sample that has it.
+    /// P_f over the variance of the ring, f = 1, 2, …, of every sample with this spectrum.
     pub powers: Vec<Vec<f64>>,
-    /// h_∥ of every ring with ΔZ, of every sample that has both: 8 bytes a ring.
+    /// h_∥ of every ring with ΔZ, of every sample with both: 8 bytes per ring.
     pub stretching: Vec<StretchingRow>,
     /// Curves by name, averaged.
     pub curves: BTreeMap<String, MeanCurve>,
@@ -38,12 +39,12 @@ pub struct CellSamples {
     pub singles: Vec<Single>,
 }
 
-/// One sample's fluctuation of the stretching of bonds.
+/// The stretching fluctuation of one sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StretchingRow {
     /// ΔZ \[1\].
     pub excess: f64,
-    /// Mean h_∥ of the rings from r = i to i + 1 in place i \[length\]; NaN where there is none.
+    /// Mean h_∥ of the rings from r = i to i + 1 at index i \[length\]; NaN if there is none.
     pub rings: Vec<f64>,
 }
 
@@ -72,12 +73,13 @@ pub struct Single {
     pub numbers: BTreeMap<String, f64>,
 }
 
-/// A curve averaged over samples, place by place.
+/// A curve averaged over samples, bin by bin.
 ///
-/// Angles and frequencies are the same in all samples; points at distances and r̂ go to places one ring, or a tenth of R, wide.
+/// Angles and frequencies are the same in all samples. Points at distances are in bins as wide as a ring, those at r̂
+/// in bins of a tenth of R.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MeanCurve {
-    /// By place.
+    /// By bin.
     sums: BTreeMap<i64, Sums>,
 }
 
@@ -85,7 +87,7 @@ pub struct MeanCurve {
 struct Sums {
     count: usize,
     abscissa: f64,
-    /// About the first value, so that no digits are lost.
+    /// First value; sums are relative to it, so that no digits are lost.
     first: f64,
     ordinate: f64,
     square: f64,
@@ -98,9 +100,9 @@ pub struct MeanPoint {
     pub x: f64,
     /// Mean ordinate \[unit in the list of curves in the book\].
     pub y: f64,
-    /// Its standard error \[the same\]; none from one sample.
+    /// Its standard error \[unit of the ordinate\]; none from one sample.
     pub standard_error: Option<f64>,
-    /// Samples in it.
+    /// Number of samples.
     pub count: usize,
 }
 
@@ -115,7 +117,7 @@ impl MeanCurve {
         }
     }
 
-    /// Its points, ascending.
+    /// Its points, in ascending order.
     pub fn points(&self) -> Vec<MeanPoint> {
         let point = |sums: &Sums| {
             let count = sums.count as f64;
@@ -129,7 +131,7 @@ impl MeanCurve {
 }
 
 impl CellSamples {
-    /// Without samples yet.
+    /// A cell without samples.
     pub fn new(cell: Cell) -> Self {
         CellSamples {
             cell,

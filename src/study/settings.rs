@@ -1,4 +1,4 @@
-//! [`Study`]: what is varied, as plain data.
+//! [`Study`]: the parameters that are varied, as plain data.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,60 +9,61 @@ use crate::relax::RelaxerChoice;
 use crate::scene::reduced_pressure::reduction;
 use crate::scene::{NotWritable, ProtocolChoice, Sample, Scene, SceneError, Source, finite};
 
-/// One scene and the lists of what is varied in it.
+/// A scene and the lists of its varied parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Study {
-    /// What all samples have in common; it names no samples, the lists make them.
+    /// Common settings of all samples. It contains no samples; the lists define them.
     pub scene: Scene,
-    /// Numbers of disks in the box; empty, that of the scene.
+    /// Numbers of disks in the box; if empty, that of the scene.
     pub disk_counts: Vec<usize>,
     /// Pressures, reduced pressures or packing fractions.
     pub targets: Vec<Target>,
-    /// Increases d_0; empty, that of the scene \[length\].
+    /// Increases d_0; if empty, that of the scene \[length\].
     pub increases: Vec<f64>,
-    /// Contact laws; empty, that of the scene.
+    /// Contact laws; if empty, that of the scene.
     pub laws: Vec<LawChoice>,
-    /// How samples come to rest after the inflation; empty, as the default [`ProtocolChoice`] says.
+    /// Relaxers after the inflation; if empty, that of the default [`ProtocolChoice`].
     pub relaxers: Vec<RelaxerChoice>,
     /// Samples of every combination.
     pub seeds: Seeds,
-    /// Parts, run one after the other, each with lists of its own; none, the lists above are all there is.
+    /// Parts, run one after the other, each with its own lists; if empty, the lists above are the only ones.
     #[serde(rename = "part", skip_serializing_if = "Vec::is_empty")]
     pub parts: Vec<Part>,
-    /// Wall time allowed to a packing and its inflations \[s\]; absent, as long as it takes. What is beyond is recorded as failed.
+    /// Time limit of a packing and its inflations \[s\]; if absent, unlimited. Samples beyond it are recorded as
+    /// failed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_limit: Option<f64>,
 }
 
-/// A part of a study: what it names stands in the place of what the study names.
+/// A part of a study; its lists replace those of the study.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Part {
-    /// Numbers of disks in the box; empty, those of the study.
+    /// Numbers of disks in the box; if empty, those of the study.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub disk_counts: Vec<usize>,
-    /// Pressures, reduced pressures or packing fractions; empty, those of the study.
+    /// Pressures, reduced pressures or packing fractions; if empty, those of the study.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub targets: Vec<Target>,
-    /// Increases d_0; empty, those of the study \[length\].
+    /// Increases d_0; if empty, those of the study \[length\].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub increases: Vec<f64>,
-    /// Contact laws; empty, those of the study.
+    /// Contact laws; if empty, those of the study.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub laws: Vec<LawChoice>,
-    /// How samples come to rest; empty, as the study says.
+    /// Relaxers; if empty, those of the study.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub relaxers: Vec<RelaxerChoice>,
-    /// Samples of every combination; absent, those of the study.
+    /// Samples of every combination; if absent, those of the study.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seeds: Option<Seeds>,
-    /// The boundary; absent, that of the scene.
+    /// The boundary; if absent, that of the scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub boundary: Option<Boundary>,
 }
 
-/// What a packing is prepared to.
+/// Target of the preparation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Target {
@@ -75,7 +76,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// What it is called in a table, and its value \[force / length of a pressure, 1 of a packing fraction\].
+    /// Its name in a table, and its value \[force / length for a pressure, 1 for a packing fraction\].
     pub fn name_and_value(self) -> (&'static str, f64) {
         match self {
             Target::Pressure(value) => ("pressure", value),
@@ -85,18 +86,18 @@ impl Target {
     }
 }
 
-/// Seeds, one after the other.
+/// Consecutive seeds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Seeds {
-    /// The first one.
+    /// The first seed.
     pub first: u64,
-    /// How many.
+    /// Number of seeds.
     pub count: usize,
 }
 
 impl Default for Study {
-    /// The built-in scene's size and law at p = 10, one sample.
+    /// The size and the law of the built-in scene at p = 10, one sample.
     fn default() -> Self {
         Study {
             scene: Scene { sample: Vec::new(), ..Scene::default() },
@@ -112,37 +113,37 @@ impl Default for Study {
     }
 }
 
-/// A study that makes no sense.
+/// An invalid study.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyError {
-    /// What a sample of it would be makes no sense.
+    /// A sample of the study is invalid.
     #[error("{0}")]
     Scene(#[from] SceneError),
-    /// A number that cannot be written to a file and read back.
+    /// A number cannot be written to a file and read back.
     #[error(transparent)]
     NotWritable(#[from] NotWritable),
-    /// More packings than a plan holds.
+    /// The number of packings is too large.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
-    /// The scene of a study names no samples.
+    /// The scene of the study contains samples.
     #[error("scene.sample: the lists of a study make its samples, it names none itself")]
     SamplesNamed,
-    /// Nothing to do.
+    /// A list is empty.
     #[error("{list}: it is empty, so there is nothing to run")]
     Empty {
         /// The list.
         list: &'static str,
     },
-    /// A number outside its range.
+    /// A number is outside its range.
     #[error("{field} = {value}: must be a positive number")]
     NotPositive {
         /// The field.
         field: &'static str,
-        /// The value found.
+        /// Its value.
         value: f64,
     },
-    /// A value twice would give a sample two places.
+    /// A list contains a value twice.
     #[error("{list}: {value} stands twice")]
     Twice {
         /// The list.
@@ -150,46 +151,46 @@ pub enum StudyError {
         /// The value.
         value: String,
     },
-    /// Two parts have a packing in common.
+    /// Two parts contain the same packing.
     #[error("part {part}: {disk_count} disks at {target:?} with seed {seed} are in an earlier part already")]
     PartsOverlap {
         /// The later part, from 1.
         part: usize,
-        /// Disks of the packing.
+        /// Number of disks of the packing.
         disk_count: usize,
         /// Its target.
         target: Target,
         /// Its seed.
         seed: u64,
     },
-    /// Seeds beyond the largest number.
+    /// A seed exceeds the largest integer.
     #[error("seeds: {count} from {first} on is beyond the largest seed")]
     SeedsTooLarge {
-        /// The first.
+        /// The first seed.
         first: u64,
-        /// How many.
+        /// Number of seeds.
         count: usize,
     },
 }
 
-/// Packings of a study: each is a file of one folder, and the plan of all is held in memory.
+/// Largest number of packings: each has a file in one folder, and the whole plan is in memory.
 const MOST_PACKINGS: Limit =
     Limit { largest: 1_000_000, reason: "a study has at most a million packings, a file each" };
 
-/// A task of the plan, and the name of its file while those of the folder are compared \[bytes\].
+/// Memory of a task of the plan and of its file name \[bytes\].
 const BYTES_A_PACKING: f64 = 256.0;
 
 impl Study {
-    /// So many seeds, from the first one on, in every part.
+    /// Sets the number of seeds in every part; the first seed stays.
     pub fn set_seed_count(&mut self, count: usize) {
         self.seeds.count = count;
         self.parts.iter_mut().filter_map(|part| part.seeds.as_mut()).for_each(|seeds| seeds.count = count);
     }
 
-    /// Whether every sample of it would make sense.
+    /// Checks the study and every sample of it.
     ///
     /// # Errors
-    /// [`StudyError`] names list or field and value.
+    /// [`StudyError`] with list or field and value.
     pub fn check(&self) -> Result<(), StudyError> {
         if !self.scene.sample.is_empty() {
             return Err(StudyError::SamplesNamed);
@@ -199,7 +200,7 @@ impl Study {
         }
         let parts = self.parted();
         parts.iter().try_for_each(Study::check_lists)?;
-        // After the lists are known not to be empty: their lengths multiply to the number of packings.
+        // The lists are not empty, so their lengths multiply to the number of packings.
         let mut others = 0;
         for part in &parts {
             let count = part.packing_count();
@@ -208,22 +209,22 @@ impl Study {
             }
             others += count;
         }
-        // What no rule above has named: a field that is only written, or a new one.
+        // Fields that no rule above checks, such as new ones.
         Ok(finite::check(self)?)
     }
 
-    /// Packings of a study without parts.
+    /// Number of packings of a study without parts.
     fn packing_count(&self) -> usize {
         self.combination_count().saturating_mul(self.seeds.count)
     }
 
-    /// Combinations of all lists but the seeds.
+    /// Number of combinations of all lists except the seeds.
     fn combination_count(&self) -> usize {
         let lists = [self.laws.len().max(1), self.disk_counts.len().max(1), self.targets.len()];
         lists.into_iter().fold(1, usize::saturating_mul)
     }
 
-    /// The error of a part with too many packings beside so many others.
+    /// The error for a part with too many packings, given the number of the others.
     fn too_many(&self, others: usize) -> TooLarge {
         let combinations = self.combination_count();
         let largest = (MOST_PACKINGS.largest - others as u64) / combinations as u64;
@@ -236,7 +237,7 @@ impl Study {
         }
     }
 
-    /// Studies without parts, one after the other; itself, if it has none.
+    /// The parts as studies without parts; the study itself if it has no parts.
     pub(super) fn parted(&self) -> Vec<Study> {
         if self.parts.is_empty() {
             return vec![self.clone()];
@@ -284,7 +285,7 @@ impl Study {
         twice("increases", &self.increases)?;
         twice("laws", &self.laws)?;
         twice("relaxers", &self.relaxers)?;
-        // One scene of every combination but the seeds.
+        // One scene for every combination except the seeds.
         for law in self.laws() {
             for disk_count in self.disk_counts() {
                 for target in &self.targets {
@@ -299,7 +300,7 @@ impl Study {
         Ok(())
     }
 
-    /// The laws, that of the scene where none is named.
+    /// The laws; that of the scene if the list is empty.
     pub(super) fn laws(&self) -> Vec<LawChoice> {
         if self.laws.is_empty() { vec![self.scene.law] } else { self.laws.clone() }
     }

@@ -10,25 +10,25 @@ use crate::observe::angular::quantile;
 use crate::response::EvidenceCounts;
 use crate::study::record::{Cell, FailureKind};
 
-/// Resamplings of a bootstrap: its ends at 2.5 and 97.5 % then stand on the 25th value from either end.
+/// Number of bootstrap resamplings: the ends at 2.5 % and 97.5 % are then the 25th values from either end.
 const RESAMPLINGS: usize = 1000;
 
-/// One number over the samples of a cell that have it.
+/// Statistics of one number over the samples of a cell with this number.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct NumberStatistics {
-    /// Samples that have it.
+    /// Number of samples with this number.
     pub count: usize,
-    /// Mean \[unit of the number, as all below\].
+    /// Mean \[unit of the number, also below\].
     pub mean: f64,
-    /// Standard error of the mean; absent from one sample.
+    /// Standard error of the mean; absent for one sample.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub standard_error: Option<f64>,
-    /// Lower quartile, median, upper quartile, linear between order statistics.
+    /// Lower quartile, median, upper quartile, by linear interpolation between order statistics.
     pub quartiles: [f64; 3],
-    /// Bootstrap interval of the mean, 95 %; absent from fewer than three samples.
+    /// Bootstrap interval of the mean, 95 %; absent for fewer than three samples.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_interval: Option<[f64; 2]>,
-    /// The same of the median.
+    /// Bootstrap interval of the median, 95 %.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub median_interval: Option<[f64; 2]>,
 }
@@ -40,17 +40,17 @@ pub struct CellStatistics {
     pub cell: Cell,
     /// Samples measured.
     pub done_count: usize,
-    /// Samples that failed, by kind.
+    /// Samples that failed, by type of failure.
     pub failures: BTreeMap<FailureKind, usize>,
     /// Samples of every phase.
     pub phases: PhaseCounts,
-    /// Jammed samples by what each kind of evidence says.
+    /// Numbers of jammed samples by phase, for every type of evidence.
     pub evidence: EvidenceCounts,
-    /// Every number.
+    /// Statistics of every number.
     pub numbers: BTreeMap<String, NumberStatistics>,
 }
 
-/// Samples of every phase.
+/// Numbers of samples by phase.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct PhaseCounts {
     /// No backbone.
@@ -61,7 +61,7 @@ pub struct PhaseCounts {
     pub quasielastic: usize,
     /// Undecided.
     pub undecided: usize,
-    /// Not at rest, so without a phase; not written where there are none.
+    /// Not at rest, so without a phase; not written if 0.
     #[serde(skip_serializing_if = "is_zero")]
     pub not_at_rest: usize,
 }
@@ -71,7 +71,8 @@ fn is_zero(count: &usize) -> bool {
 }
 
 impl NumberStatistics {
-    /// Of at least one value. The bootstrap draws the same resamplings for every number: same values, same bits.
+    /// Statistics of at least one value. The bootstrap uses the same resamplings for every number, so it is
+    /// reproducible.
     ///
     /// # Panics
     /// Without values.
@@ -88,7 +89,7 @@ impl NumberStatistics {
     }
 }
 
-/// Intervals of mean and median: the middle 95 % of those of resamplings (percentile method).
+/// Intervals of mean and median: the central 95 % of the resampled values (percentile method).
 ///
 /// Source: Efron (1979), Ann. Stat. 7, 1.
 fn bootstrap(values: &[f64]) -> [[f64; 2]; 2] {
@@ -125,8 +126,9 @@ mod tests {
 
     #[test]
     fn intervals_of_the_mean_hold_it_as_often_as_they_say() {
-        // 40 uniform numbers: the percentile interval is too narrow by a share of about 1/40 (its width takes n for n − 1, and
-        // normal for Student's quantiles): 94 % of 500 expected, with a standard deviation of 1.1 %; three of them.
+        // 40 uniform numbers: the percentile interval is too narrow by about 1/40 (it uses n for n − 1, and normal
+        // quantiles for Student's). Expected coverage of 500: 94 %, standard deviation 1.1 %; the tolerance is three of
+        // them.
         let mut generator = Pcg64::seed_from_u64(5);
         let held = (0..500).filter(|_| {
             let values: Vec<f64> = (0..40).map(|_| generator.random()).collect();

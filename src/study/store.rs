@@ -1,8 +1,8 @@
-//! The folder of a study: one file a task, which is sound or named as what is wrong with it.
+//! The folder of a study: one file per task, which is either valid or reported with its problem.
 //!
 //! ```text
-//! study.json             the study, for whoever merges
-//! samples/IDENTITY.jsonl  {"jamscope_version", "vectors", "identity", "checksum"} / the records / the wall time, a line each
+//! study.json             the study, for the merge samples/IDENTITY.jsonl  {"jamscope_version", "vectors", "identity",
+//! "checksum"} / the records / the wall time, one line each
 //! ```
 
 use std::fs::File;
@@ -20,21 +20,22 @@ use crate::study::record::Record;
 use crate::study::settings::Study;
 use crate::study::store_error::StoreError;
 
-/// A file of the folder that is not what it should be; it is left alone.
+/// An invalid file of the folder; it is not changed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Problem {
     /// The file.
     pub path: PathBuf,
-    /// What is wrong.
+    /// The problem.
     pub reason: String,
 }
 
-/// What is there of a task.
+/// State of a task in the folder.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum TaskState {
-    /// Nothing.
+    /// No file.
     Missing,
-    /// All its records, the wall time they took \[s\], and the vectors they were computed with, if the file says so.
+    /// All its records, their wall time \[s\], and the vector instructions that computed them, if the file contains
+    /// them.
     Finished(Vec<Record>, f64, Option<Vectors>),
     /// A file that cannot be used.
     Damaged(Problem),
@@ -45,7 +46,7 @@ pub(super) enum TaskState {
 #[serde(deny_unknown_fields)]
 struct Header {
     jamscope_version: String,
-    /// Absent in files written before it was.
+    /// Absent in older files.
     #[serde(default)]
     vectors: Option<Vectors>,
     identity: String,
@@ -59,11 +60,11 @@ struct Timing {
     seconds: f64,
 }
 
-/// What is written of a study besides its samples.
+/// Files of a study besides its samples.
 const RESULTS: [&str; 6] =
     ["records.jsonl", "summary.json", "summary.csv", "transition.json", "transition.csv", "report.html"];
 
-/// Letters in the name of a file of samples.
+/// Length of the file name of samples.
 const SAMPLE_NAME_LENGTH: usize = 24 + ".jsonl".len();
 
 /// The folder of a study.
@@ -73,16 +74,18 @@ pub(super) struct Store {
 }
 
 impl Store {
-    /// The folder of this study, made if it is not there, with its lock. `replace` lets the study take the place of another one.
+    /// Opens the folder of this study with its lock, and creates it if necessary. `replace` lets the study replace
+    /// another one.
     ///
-    /// Nothing of a study that is there is changed before it is certain that no process runs it.
+    /// An existing study is not changed before it is certain that no process runs it.
     pub(super) fn open(folder: &Path, study: &Study, replace: bool) -> Result<(Self, StudyLock), StoreError> {
         let store = Store { folder: folder.into() };
         let samples = store.samples();
         std::fs::create_dir_all(&samples).map_err(|source| StoreError::Io { path: samples, source })?;
         let start = Instant::now();
         loop {
-            // A file is replaced at once, so it can be read without a lock; what was read may have changed before the lock is had.
+            // A file is replaced atomically, so it can be read without a lock. It may have changed before the lock is
+            // acquired.
             if store.has(study, replace)? {
                 let lock = StudyLock::shared(folder)?;
                 if store.has(study, replace)? {
@@ -95,7 +98,7 @@ impl Store {
                             store.take_over(study)?;
                         }
                     }
-                    // Perhaps another part of this very study, started at the same time, is writing it.
+                    // Another part of this study may have been started at the same time and be writing it.
                     Err(StoreError::Locked { .. }) if start.elapsed() < PATIENCE => std::thread::sleep(PAUSE),
                     Err(error) => return Err(error),
                 }
@@ -103,7 +106,7 @@ impl Store {
         }
     }
 
-    /// Whether the folder has this very study; not, where it has none or may be replaced.
+    /// Whether the folder contains this study; false if it contains none or one that may be replaced.
     fn has(&self, study: &Study, replace: bool) -> Result<bool, StoreError> {
         match self.study() {
             Ok(there) if there == *study => Ok(true),
@@ -114,13 +117,13 @@ impl Store {
         }
     }
 
-    /// Writes the study in the place of the one that is there. What was merged of that one goes first: it would be taken for
-    /// results of this one. Its samples stay.
+    /// Replaces the existing study. Its merged results are removed first, because they would be taken for those of this
+    /// study. Its samples are kept.
     fn take_over(&self, study: &Study) -> Result<(), StoreError> {
         let path = self.study_path();
         let text = serde_json::to_string_pretty(study)
             .map_err(|error| StoreError::Unreadable { path: path.clone(), reason: error.to_string() })?;
-        // Without a study there are no results of one: files of these names are somebody's.
+        // Without a study, files with these names are not results of one.
         let results = if path.exists() { &RESULTS[..] } else { &[] };
         for name in results {
             let path = self.folder.join(name);
@@ -135,7 +138,7 @@ impl Store {
         Ok(())
     }
 
-    /// Removes what processes that were killed had begun to write, and tries whether samples can be written.
+    /// Removes partial files of killed processes, and tests whether samples can be written.
     fn ready(self, lock: StudyLock) -> Result<(Self, StudyLock), StoreError> {
         let samples = self.samples();
         let failed = |path: &Path| {
@@ -151,17 +154,17 @@ impl Store {
         Ok((self, lock))
     }
 
-    /// The lock of the folder of whatever study is there, and the study.
+    /// Opens an existing folder: the store, its study and the lock.
     pub(super) fn held(folder: &Path) -> Result<(Self, Study, StudyLock), StoreError> {
         let store = Store::there(folder);
-        // A folder that is none of a study has no lock made in it.
+        // No lock is created in a folder without a study.
         store.study()?;
         let lock = StudyLock::shared(folder)?;
         let study = store.study()?;
         Ok((store, study, lock))
     }
 
-    /// The folder of whatever study is there.
+    /// The store of an existing folder, whatever its study.
     pub(super) fn there(folder: &Path) -> Self {
         Store { folder: folder.into() }
     }
@@ -179,7 +182,7 @@ impl Store {
         self.folder.join("study.json")
     }
 
-    /// The study that lives there.
+    /// The study in the folder.
     pub(super) fn study(&self) -> Result<Study, StoreError> {
         let path = self.study_path();
         let text = match std::fs::read_to_string(&path) {
@@ -190,12 +193,12 @@ impl Store {
         serde_json::from_str(&text).map_err(|error| StoreError::Unreadable { path, reason: error.to_string() })
     }
 
-    /// Keeps others from running the same part as long as the file lives.
+    /// Locks a part: prevents other processes from running it while the file is open.
     pub(super) fn lock(&self, shard: Shard) -> Result<File, StoreError> {
         lock::part(&self.folder, shard)
     }
 
-    /// What is there of a task.
+    /// The state of a task.
     pub(super) fn state(&self, task: &Task) -> TaskState {
         let path = self.samples().join(task.file_name());
         let text = match std::fs::read_to_string(&path) {
@@ -233,7 +236,7 @@ impl Store {
         Ok(())
     }
 
-    /// Files among the samples that are of no task of the plan.
+    /// Files among the samples that belong to no task of the plan.
     pub(super) fn foreign(&self, tasks: &[Task]) -> Result<Vec<Problem>, StoreError> {
         let folder = self.samples();
         let failed = |source| StoreError::Io { path: folder.clone(), source };
@@ -242,7 +245,7 @@ impl Store {
         for entry in std::fs::read_dir(&folder).map_err(failed)? {
             let entry = entry.map_err(failed)?;
             let name = entry.file_name().to_string_lossy().into_owned();
-            // What another process writes.
+            // A partial file of another process.
             let begun = name.starts_with('.') && name.ends_with(".part");
             if !known.contains(&name) && !begun {
                 found.push(Problem { path: entry.path(), reason: "of no sample of this study".into() });
@@ -260,7 +263,7 @@ impl Store {
     }
 }
 
-/// The records of a file, what they took, and the vectors they were computed with.
+/// The records of a file, their wall time, and the vector instructions that computed them.
 fn records(text: &str, identity: &str) -> Result<(Vec<Record>, f64, Option<Vectors>), String> {
     let mut lines = text.split('\n');
     let (Some(header), Some(body), Some(timing), Some(""), None) =

@@ -8,41 +8,41 @@ use crate::io::WriteError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StoreError {
-    /// The system refused.
+    /// An error of the operating system.
     #[error("{path}: {source}")]
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: std::io::Error,
     },
     /// A file could not be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// Another study lives there.
+    /// The folder contains another study.
     #[error(
         "{path}: the folder holds another study; give this one a folder of its own, or say that it takes that one's place \
          (samples both have are kept, those of the other are left alone)"
     )]
     OtherStudy {
-        /// The file that says so.
+        /// The file of that study.
         path: PathBuf,
     },
-    /// No study lives there.
+    /// The folder contains no study.
     #[error("{path}: not there, so the folder holds no study")]
     NoStudy {
-        /// The file looked for.
+        /// The missing file.
         path: PathBuf,
     },
-    /// The study of the folder cannot be understood.
+    /// The study of the folder cannot be read.
     #[error("{path}: {reason}")]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The problem.
         reason: String,
     },
-    /// Somebody else runs the same part of it.
+    /// Another process runs the same part.
     #[error("{path}: locked, another process runs the study in this folder, or this part of it; nothing was changed")]
     Locked {
         /// The lock.

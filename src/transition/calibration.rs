@@ -5,10 +5,10 @@ use crate::study::{Merged, Target};
 use crate::transition::pressure::Method;
 use crate::transition::series::Series;
 
-/// Digits of p̂_c: its interval is tens of percent wide.
+/// Significant digits of p̂_c: its interval is tens of percent wide.
 const DIGITS: usize = 3;
 
-/// How often samples of every series are called what, by which evidence.
+/// How often samples of every series are classified in each phase, by type of evidence.
 pub(super) fn calibration(merged: &Merged, series: &[Series]) -> Calibration {
     let ensemble = |one: &Series| {
         let critical = |method| {

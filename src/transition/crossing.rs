@@ -1,7 +1,8 @@
-//! Where a series passes from plastic to quasielastic: by halves of the samples, or by a mean that passes a level.
+//! The transition of a series from plastic to quasielastic: where half of the samples are plastic, or where a mean
+//! crosses a level.
 //!
-//! Cells come in ascending p̂, and all of them count: they have the least number of samples. What a crossing and a bound need beyond that
-//! is told in [`evidence`](super::evidence).
+//! Cells are in ascending order of p̂, and all of them have the minimum number of samples. Further conditions for a
+//! crossing and a bound are in [`evidence`](super::evidence).
 
 use crate::fit::ensemble::{
     BootstrapInterval, HalfCrossing, HitCount, Trend, bootstrap, half_crossing, half_crossing_interval,
@@ -9,7 +10,7 @@ use crate::fit::ensemble::{
 use crate::transition::evidence::{CannotTell, LEAST_CELLS_OF_SIDE, LEAST_SAMPLES_OF_SIDE, RESAMPLINGS, excludes_half};
 use crate::transition::pressure::TransitionPressure;
 
-/// On which side of the transition a cell lies, and whether that is clear at 95 %.
+/// The side of the transition of a cell, and whether it is significant at 95 %.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Place {
     plastic: bool,
@@ -20,7 +21,7 @@ fn cannot_tell(reason: CannotTell) -> TransitionPressure {
     TransitionPressure::Uninformative { reason }
 }
 
-/// Where half of the samples are plastic, (ln p̂, plastic or not) by cell.
+/// The crossing where half of the samples are plastic, from (ln p̂, plastic or not) by cell.
 pub(super) fn by_halves(groups: &[(f64, Vec<bool>)]) -> TransitionPressure {
     let counts: Vec<HitCount> = groups
         .iter()
@@ -36,7 +37,7 @@ pub(super) fn by_halves(groups: &[(f64, Vec<bool>)]) -> TransitionPressure {
     };
     let at: Vec<f64> = counts.iter().map(|group| libm::exp(group.x)).collect();
     let bound = || bound(&at, &counts.iter().map(place).collect::<Vec<_>>());
-    // A crossing beyond the cells that were measured is a guess: it is told as a bound.
+    // A crossing outside the measured cells is an extrapolation, so it is reported as a bound.
     let found = match half_crossing(&counts, Trend::Falling) {
         Ok(HalfCrossing::Separated { between, middle }) => {
             Some((middle, TransitionPressure::Between(between.map(libm::exp))))
@@ -49,7 +50,7 @@ pub(super) fn by_halves(groups: &[(f64, Vec<bool>)]) -> TransitionPressure {
     };
     match found {
         Some((crossing, found)) if enough_on_both_sides(&counts, crossing) => found,
-        // Few hits in the first cell and none beyond also separate the sides there: that is a bound.
+        // Few hits in the first cell and none in the others also separate the sides there: that is a bound.
         Some(_) => match bound() {
             TransitionPressure::Unordered => cannot_tell(CannotTell::OneSide),
             bound => bound,
@@ -66,10 +67,10 @@ fn enough_on_both_sides(counts: &[HitCount], crossing: f64) -> bool {
     enough(|x, crossing| x < crossing) && enough(|x, crossing| x > crossing)
 }
 
-/// What cells without a crossing between them say.
+/// The bound given by cells without a crossing between them.
 fn bound(at: &[f64], places: &[Place]) -> TransitionPressure {
     let clear = |plastic: bool| places.contains(&Place { plastic, clear: true });
-    // The plastic side ends at the last cell, the elastic one begins at the first.
+    // The plastic side ends at the last cell; the elastic side begins at the first.
     let (plastic, end) = match (clear(true), clear(false)) {
         (true, true) => return TransitionPressure::Unordered,
         (true, false) => (true, places.len() - 1),
@@ -85,7 +86,7 @@ fn bound(at: &[f64], places: &[Place]) -> TransitionPressure {
     if plastic { TransitionPressure::Above(at[end]) } else { TransitionPressure::Below(at[end]) }
 }
 
-/// Where what rises with p̂ passes a level; `value` is that of a cell for some of its samples.
+/// The crossing where a quantity that rises with p̂ reaches a level. `value` computes it for some samples of a cell.
 pub(super) fn by_level(
     at: &[f64],
     sizes: &[usize],
@@ -112,7 +113,7 @@ pub(super) fn by_level(
     places.map_or(cannot_tell(CannotTell::NoValue), |places| bound(at, &places))
 }
 
-/// ln p̂ where ascending values pass the level.
+/// ln p̂ where ascending values cross the level.
 fn crossing(at: &[f64], values: &[f64], level: f64) -> Option<f64> {
     let below = values.iter().rposition(|&value| value < level)?;
     let (low, high) = (values[below], *values.get(below + 1)?);
@@ -120,7 +121,7 @@ fn crossing(at: &[f64], values: &[f64], level: f64) -> Option<f64> {
     Some((1.0 - share) * libm::log(at[below]) + share * libm::log(at[below + 1]))
 }
 
-/// The nearest values that nowhere fall, by weighted least squares: neighbours that do are pooled.
+/// Isotonic regression: the nearest non-decreasing values, by weighted least squares.
 ///
 /// Source: Ayer, Brunk, Ewing, Reid, Silverman (1955), Ann. Math. Stat. 26, 641 (pool adjacent violators).
 fn ascending(values: &[f64], weights: &[f64]) -> Vec<f64> {
@@ -140,7 +141,7 @@ fn ascending(values: &[f64], weights: &[f64]) -> Vec<f64> {
     pools.into_iter().flat_map(|(mean, _, count)| std::iter::repeat_n(mean, count)).collect()
 }
 
-/// The interval of e^x; the standard error to first order.
+/// The interval of e^x; the standard error is to first order.
 fn exponential(of: BootstrapInterval) -> BootstrapInterval {
     let best = libm::exp(of.best);
     BootstrapInterval {
@@ -168,7 +169,7 @@ mod tests {
     fn values_that_fall_are_pooled() {
         assert_eq!(ascending(&[1.0, 2.0, 3.0], &[1.0; 3]), [1.0, 2.0, 3.0]);
         assert_eq!(ascending(&[1.0, 4.0, 2.0, 5.0], &[1.0; 4]), [1.0, 3.0, 3.0, 5.0]);
-        // 4 has three times the weight of 2: (3·4 + 2)/4 = 3.5. A last low one pools all.
+        // 4 has three times the weight of 2: (3·4 + 2)/4 = 3.5. A low last value pools all.
         assert_eq!(ascending(&[1.0, 4.0, 2.0, 5.0], &[1.0, 3.0, 1.0, 1.0]), [1.0, 3.5, 3.5, 5.0]);
         assert_eq!(ascending(&[3.0, 2.0, 1.0], &[1.0; 3]), [2.0; 3]);
     }
@@ -185,7 +186,7 @@ mod tests {
         reason
     }
 
-    /// Whether a pressure is another to rounding.
+    /// Whether two pressures agree to rounding.
     fn about(found: f64, expected: f64) -> bool {
         (found / expected - 1.0).abs() < 1e-12
     }
@@ -195,14 +196,14 @@ mod tests {
         let TransitionPressure::Above(highest) = halves(&[(1e6, 12, 12), (1e7, 12, 12)]) else { panic!("all plastic") };
         let TransitionPressure::Below(lowest) = halves(&[(1e6, 0, 12), (1e7, 0, 12)]) else { panic!("all elastic") };
         assert!(about(highest, 1e7) && about(lowest, 1e6));
-        // Few hits at the one end, none beyond.
+        // Few hits at one end and none in the other cell.
         let TransitionPressure::Below(lowest) = halves(&[(1e6, 3, 20), (1e7, 0, 20)]) else { panic!("few plastic") };
         assert!(about(lowest, 1e6));
     }
 
     #[test]
     fn a_bound_needs_an_end_cell_that_excludes_one_half() {
-        // 14 of 20 excludes one half neither way, 15 does.
+        // 14 of 20 does not exclude one half on either side; 15 does.
         assert_eq!(reason(halves(&[(1e6, 20, 20), (1e7, 14, 20)])), CannotTell::EndUndecided);
         assert!(matches!(halves(&[(1e6, 20, 20), (1e7, 15, 20)]), TransitionPressure::Above(_)));
         assert_eq!(reason(halves(&[(1e6, 6, 20), (1e7, 1, 20)])), CannotTell::EndUndecided);
@@ -211,7 +212,7 @@ mod tests {
 
     #[test]
     fn a_bound_needs_two_cells_on_its_side() {
-        // 9 of 20 is on the other side, though not clear of one half.
+        // 9 of 20 is on the other side, but one half is not excluded.
         assert_eq!(reason(halves(&[(1e6, 9, 20), (1e7, 16, 20)])), CannotTell::FewCells);
         assert!(matches!(halves(&[(1e6, 10, 20), (1e7, 16, 20)]), TransitionPressure::Above(_)));
     }
@@ -238,7 +239,7 @@ mod tests {
         assert_eq!(halves(&twice), TransitionPressure::Unordered);
     }
 
-    /// Cells with these values of ten samples each: the mean, and 0.1 above and below in turn.
+    /// Cells with these means, of ten samples each: alternately 0.1 above and below.
     fn level(means: &[f64]) -> TransitionPressure {
         let at: Vec<f64> = (6..).map(|power| libm::pow(10.0, f64::from(power))).take(means.len()).collect();
         let value = |cell: usize, chosen: &[usize]| {
@@ -250,13 +251,13 @@ mod tests {
 
     #[test]
     fn a_mean_bounds_where_its_end_cell_is_clear_of_the_level() {
-        // The mean of ten scatters by 0.1/√10 = 0.032, so ends are about 0.06 away.
+        // The mean of ten scatters by 0.1/√10 = 0.032, so the ends are about 0.06 away.
         assert_eq!(level(&[0.0, 0.1, 0.2]), TransitionPressure::Above(1e8));
         assert_eq!(reason(level(&[0.0, 0.1, 0.26])), CannotTell::EndUndecided);
         assert_eq!(level(&[0.4, 0.5]), TransitionPressure::Below(1e6));
         assert_eq!(reason(level(&[0.34, 0.5])), CannotTell::EndUndecided);
         assert!(matches!(level(&[0.1, 0.5]), TransitionPressure::Found(_)));
-        // Falling means are pooled to one: without the cells on their own they would be a bound.
+        // Falling means are pooled to one; without the check of single cells they would be a bound.
         assert_eq!(level(&[0.5, 0.05]), TransitionPressure::Unordered);
         let none = by_level(&[1e6, 1e7], &[10, 10], 0.3, |cell, _| (cell == 0).then_some(0.1));
         assert_eq!(reason(none), CannotTell::NoValue);

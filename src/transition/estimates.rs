@@ -1,4 +1,4 @@
-//! The p̂_c of a series by every method that has its observable: [`estimates`].
+//! The p̂_c of a series by every method whose observable was measured: [`estimates`].
 
 use crate::study::CellSamples;
 use crate::transition::crossing::{by_halves, by_level};
@@ -10,10 +10,11 @@ use crate::transition::pressure::{
 use crate::transition::series_point::{ANGLE, ANTICORRELATION, SeriesPoint};
 use crate::transition::spectra::{crossover_of, likelihood_slope_of, slope_of};
 
-/// f† below which S ∼ f^(−1.5) from f = 1 on, within 0.1^1.5 = 3 %.
+/// f† below which the spectrum is S ∼ f^(−1.5) from f = 1 on, within 0.1^1.5 = 3 %.
 const VANISHED: f64 = 0.1;
 
-/// One method, of all cells that have its observable: p̂, samples, what the method asks of them. None of fewer than two cells.
+/// One method, from all cells with its observable: p̂, number of samples, and the input of the method. None for fewer
+/// than two cells.
 fn estimate<T>(
     method: Method,
     mut cells: Vec<(f64, usize, T)>,
@@ -37,10 +38,10 @@ fn estimate<T>(
     Some(MethodEstimate { method, pressure: find(&at, &sizes, &all), measured, sample_count })
 }
 
-/// p̂, samples that have a number, and the cell with their values.
+/// p̂, the number of samples with a number, and the cell with their values.
 type NumberCell<'a> = (f64, usize, (&'a CellSamples, &'a [f64]));
 
-/// Every cell that has a number.
+/// Every cell with a number.
 fn numbers<'a>(points: &[SeriesPoint], samples: &[&'a CellSamples], name: &str) -> Vec<NumberCell<'a>> {
     let mut all = Vec::new();
     for (point, &samples) in points.iter().zip(samples) {
@@ -51,7 +52,7 @@ fn numbers<'a>(points: &[SeriesPoint], samples: &[&'a CellSamples], name: &str) 
     all
 }
 
-/// All methods that have their observable.
+/// All methods whose observable was measured.
 pub(super) fn estimates(points: &[SeriesPoint], samples: &[&CellSamples]) -> Vec<MethodEstimate> {
     let plastic = |method, name: &str, is_plastic: &dyn Fn(&CellSamples, f64) -> bool| {
         estimate(method, numbers(points, samples, name), |at, _, cells| {
@@ -90,7 +91,7 @@ pub(super) fn estimates(points: &[SeriesPoint], samples: &[&CellSamples]) -> Vec
         mean(Method::Angle, ANGLE, SCALE_FREE_ANGLE),
         spectrum(Method::Spectrum, SCALE_FREE_SLOPE, slope_of),
         spectrum(Method::SpectrumLikelihood, SCALE_FREE_SLOPE, likelihood_slope_of),
-        // What falls below a level rises above its opposite.
+        // A value that falls below a level has a negative that rises above minus the level.
         spectrum(Method::Crossover, -VANISHED, |powers, chosen| Some(-crossover_of(powers, chosen)?)),
     ]
     .into_iter()

@@ -1,69 +1,72 @@
-//! How much a number needs to rest on before it says something: [`CannotTell`], [`Sampled`].
+//! Minimum evidence for a statement: [`CannotTell`], [`Sampled`].
 //!
-//! | rule | least |
+//! | rule | minimum |
 //! |---|---|
 //! | a cell counts | 8 samples |
 //! | half of the samples: either side of the crossing | 2 cells and 20 samples |
-//! | a bound | the end cell is clear of one half, or of the level, at 95 %; 2 cells lie on its side |
+//! | a bound | the end cell excludes one half, or the level, at 95 %; 2 cells on its side |
 //! | θ†(p̂) as a divergence | 5 cells |
 //! | a comparison | an interval, 8 samples in every cell, and an interval that is not too wide |
 //!
-//! An interval that holds the published value is too wide where its ends are more than a factor of 10 apart (a pressure), or where it is
-//! wider than the published value and wider than 0.1 (any other number). A pressure is never compared where its interval goes more
-//! than a factor of 10 to either side of the best value, or beyond the cells.
+//! An interval that contains the published value may be too wide. For a pressure, its ends are then more than a factor
+//! of 10 apart. For any other number, it is wider than the published value and wider than 0.1. A pressure is not
+//! compared if its interval extends by more than a factor of 10 from the best value, or beyond the cells.
 
 use serde::Serialize;
 
 use crate::fit::ensemble::BootstrapInterval;
 
-/// Samples from which on a cell counts. An interval of 95 % by resampling takes n for n − 1 and normal quantiles for Student's: from 8
-/// normal numbers it holds their mean in 89 %, from 3 in 75 %.
+/// Minimum number of samples of a cell. A 95 % bootstrap interval uses n for n − 1 and normal quantiles for Student's.
+/// Its coverage of the mean of normal numbers is 89 % for 8 samples and 75 % for 3.
 pub(crate) const LEAST_SAMPLES: usize = 8;
 
-/// Cells on either side of a crossing by halves, and on the side of a bound. One cell alone may be an outlier, and nothing would show it.
+/// Minimum number of cells on either side of a crossing by halves, and on the side of a bound. A single cell could be
+/// an outlier.
 pub(super) const LEAST_CELLS_OF_SIDE: usize = 2;
 
-/// Samples on either side of a crossing by halves: the standard error of a share of 20 is at most √(1/4/20) = 0.11.
+/// Minimum number of samples on either side of a crossing by halves. The standard error of a share of 20 is at most
+/// √(1/4/20) = 0.11.
 pub(super) const LEAST_SAMPLES_OF_SIDE: f64 = 20.0;
 
-/// Cells of a divergence. A, μ and p̂_c are fitted: five points leave two to judge the fit by.
+/// Minimum number of cells of a divergence. A, μ and p̂_c are fitted: five points leave two degrees of freedom.
 pub(crate) const LEAST_CELLS: usize = 5;
 
 /// Square of the normal quantile of 95 %, 1.959 964.
 const QUANTILE_SQUARED: f64 = 3.841_459;
 
-/// A factor between pressures that tells nothing any more: recipes span two to three decades.
+/// Widest informative factor between pressures: recipes span two to three decades.
 const WIDEST_FACTOR: f64 = 10.0;
 
-/// Published numbers nearer to 0 than this are compared as if they were it: of Δp/p^(1/3) = −0.05 an interval of ±0.05 still tells the sign.
+/// Published numbers below this are compared on this scale. For Δp/p^(1/3) = −0.05, an interval of ±0.05 still
+/// determines the sign.
 const SMALLEST_SCALE: f64 = 0.1;
 
-/// Why a study does not tell.
+/// Why a study gives no conclusion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CannotTell {
     /// Fewer than 8 samples in a cell, or fewer than two cells with 8.
     FewSamples,
-    /// A bound by one cell alone.
+    /// A bound from a single cell.
     FewCells,
-    /// Fewer than two cells, or than 20 samples, on one side of the crossing.
+    /// Fewer than two cells, or fewer than 20 samples, on one side of the crossing.
     OneSide,
-    /// The end cell, which would bound it, may lie on either side.
+    /// The end cell, which would give a bound, may lie on either side.
     EndUndecided,
     /// A cell has samples, but they do not give the number.
     NoValue,
-    /// Cells are clear, but not in the order of a transition.
+    /// Cells are significant, but not in the order of a transition.
     Unordered,
-    /// There is no interval: more than a tenth of the resamplings do not give the number.
+    /// No interval: more than a tenth of the resamplings give no number.
     NoInterval,
     /// The interval is too wide.
     WideInterval,
-    /// The interval goes beyond the cells that were measured.
+    /// The interval extends beyond the measured cells.
     BeyondCells,
 }
 
 impl CannotTell {
-    /// In words.
+    /// A description in words.
     pub fn words(self) -> &'static str {
         match self {
             CannotTell::FewSamples => "fewer than 8 samples in a cell",
@@ -79,40 +82,40 @@ impl CannotTell {
     }
 }
 
-/// A number, its interval, and what it rests on.
+/// A number, its interval, and the number of samples behind it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Sampled {
     /// The number with its interval.
     #[serde(flatten)]
     pub found: BootstrapInterval,
-    /// Samples of the cell with the fewest.
+    /// Smallest number of samples of a cell.
     pub sample_count: usize,
 }
 
-/// What a comparison is of.
+/// Type of a compared quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
-    /// A pressure: factors count.
+    /// A pressure, compared by ratio.
     Pressure,
-    /// Any other number: differences count.
+    /// Any other number, compared by difference.
     Number,
 }
 
 impl Quantity {
-    /// Whether an interval is too wide for its holding the published value to mean anything.
+    /// Whether an interval is too wide for its agreement with the published value to be significant.
     pub fn too_wide(self, [low, high]: [f64; 2], published: f64) -> bool {
         match self {
-            // NaN and what is not positive are too wide.
+            // NaN and values that are not positive are too wide.
             Quantity::Pressure => !(low > 0.0 && high <= WIDEST_FACTOR * low),
             Quantity::Number => (high - low).is_nan() || high - low > published.abs().max(SMALLEST_SCALE),
         }
     }
 }
 
-/// Why a pressure found is not to be compared, if so.
+/// Why a pressure cannot be compared, if so.
 pub(super) fn unsound(found: &BootstrapInterval, measured: [f64; 2]) -> Option<CannotTell> {
     let Some([low, high]) = found.interval else { return Some(CannotTell::NoInterval) };
-    // Ends computed from the same cells by e^(ln p̂) may be off by rounding.
+    // Ends computed from the same cells as e^(ln p̂) may differ by rounding.
     let slack = 1e-9;
     if low < (1.0 - slack) * measured[0] || high > (1.0 + slack) * measured[1] {
         return Some(CannotTell::BeyondCells);
@@ -121,14 +124,15 @@ pub(super) fn unsound(found: &BootstrapInterval, measured: [f64; 2]) -> Option<C
     wide.then_some(CannotTell::WideInterval)
 }
 
-/// Whether a share excludes one half by the interval of Wilson, 95 %.
+/// Whether the 95 % Wilson interval of a share excludes one half.
 ///
-/// Source: Wilson (1927), J. Am. Stat. Assoc. 22, 209: the interval has the shares P with (h − n P)² ≤ z² n P (1 − P).
+/// Source: Wilson (1927), J. Am. Stat. Assoc. 22, 209: the interval contains the shares P with (h − n P)² ≤ z² n P (1 −
+/// P).
 pub(super) fn excludes_half(hits: f64, count: f64) -> bool {
     (2.0 * hits - count).powi(2) > QUANTILE_SQUARED * count
 }
 
-/// Resamplings of a bootstrap here: its ends then stand on the tenth value from either end.
+/// Number of bootstrap resamplings: the ends of an interval are then the tenth values from either end.
 pub(crate) const RESAMPLINGS: usize = 400;
 
 #[cfg(test)]
@@ -152,7 +156,7 @@ mod tests {
             let (u, v): (f64, f64) = (generator.random(), generator.random());
             libm::sqrt(-2.0 * libm::log(1.0 - u)) * libm::cos(2.0 * std::f64::consts::PI * v)
         };
-        // Resampled means of n scatter by the root of Σ (x − mean)²/n².
+        // Resampled means of n have the standard deviation √(Σ (x − mean)²/n²).
         let mut held = |count: usize| {
             let holds = (0..20_000).filter(|_| {
                 let values: Vec<f64> = (0..count).map(|_| normal()).collect();
@@ -173,7 +177,7 @@ mod tests {
         assert!(!pressure([4e7, 4e8]) && pressure([4e7, 4.1e8]) && pressure([0.0, 1e8]));
         let number = |interval, published| Quantity::Number.too_wide(interval, published);
         assert!(number([-0.78, 1.13], 0.75) && !number([0.5, 1.24], 0.75));
-        // Next to 0 the scale is 0.1.
+        // Near 0 the scale is 0.1.
         assert!(!number([-0.1, -0.001], -0.05) && number([-0.1, 0.01], -0.05));
         assert!(number([f64::NAN, 1.0], 0.75));
     }

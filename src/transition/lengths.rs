@@ -5,8 +5,8 @@
 //! y(x) = (h_∥(r)/h_∥(1.5)) x, x = r ΔZ, of the means over samples        ℓ_iso: the smallest r with y ≥ 1.3
 //! ```
 //!
-//! The interval of ℓ_iso is that of drawing the samples of the cell, each with its h_∥ and ΔZ. The radii of rings stay as they are, means
-//! over all samples.
+//! The interval of ℓ_iso is from resampling the samples of the cell, each with its h_∥ and ΔZ. The radii of rings are
+//! fixed: means over all samples.
 //!
 //! Source: the study, appendix C and S8 (threshold 1.3), S3 (ξ, φ_J = 0.842).
 
@@ -19,19 +19,19 @@ use crate::study::{Cell, CellSamples, MeanPoint, Merged, NumberStatistics, Stret
 use crate::transition::evidence::{RESAMPLINGS, Sampled};
 use crate::transition::series_point::SeriesPoint;
 
-/// y from which on bonds stretch as in a continuum. Source: the study.
+/// y beyond which bonds stretch as in a continuum. Source: the study.
 pub(crate) const ISOSTATIC_THRESHOLD: f64 = 1.3;
 
-/// Where h_∥ is taken as its unit \[length\].
+/// Radius at which h_∥ is the unit \[length\].
 const NEAR_CENTRE: f64 = 1.5;
 
-/// φ_J. Source: O'Hern, Langer, Liu, Nagel (2002), Phys. Rev. Lett. 88, 075507, as the study cites it.
+/// φ_J. Source: O'Hern, Langer, Liu, Nagel (2002), Phys. Rev. Lett. 88, 075507, as cited by the study.
 pub(crate) const JAMMING: f64 = 0.842;
 
-/// Beyond this share of R the rim holds ξ back.
+/// Share of R above which the rim limits ξ.
 const LARGEST_SHARE: f64 = 0.5;
 
-/// Thresholds of ξ the study has.
+/// Thresholds of ξ in the study.
 const THRESHOLDS: [&str; 4] = ["0.001", "0.0001", "0.00001", "0.000001"];
 
 /// Both lengths of a cell.
@@ -45,10 +45,10 @@ pub struct Lengths {
     /// ℓ_s \[length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub screening: Option<LengthPoint>,
-    /// ℓ_iso \[length\]; absent where y is above the threshold from the start or never.
+    /// ℓ_iso \[length\]; absent if y is above the threshold in all rings or in none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub isostatic: Option<Sampled>,
-    /// ℓ_iso ΔZ \[length\], ΔZ that of the samples drawn.
+    /// ℓ_iso ΔZ \[length\], with ΔZ of the resampled samples.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scaled_isostatic: Option<Sampled>,
     /// r \[length\], x, y, h_r/h_r(1.5) x \[1\].
@@ -61,10 +61,10 @@ pub struct Lengths {
 pub struct LengthPoint {
     /// Mean \[length\].
     pub mean: f64,
-    /// Its standard error, from two samples on \[length\].
+    /// Its standard error, for at least two samples \[length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub standard_error: Option<f64>,
-    /// Samples that have it.
+    /// Number of samples with this length.
     pub count: usize,
 }
 
@@ -103,7 +103,7 @@ fn isostatic(samples: &CellSamples) -> [Option<Sampled>; 2] {
     [0, 1].map(|i| found.get(i).map(|&found| Sampled { found, sample_count: rows.len() }))
 }
 
-/// Place and mean radius of every ring \[length\].
+/// Index and mean radius of every ring \[length\].
 fn ring_radii(samples: &CellSamples) -> Vec<(usize, f64)> {
     let points = samples.curves.get("stretching_fluctuation").map_or(Vec::new(), |curve| curve.points());
     points.iter().map(|point| (point.x.floor() as usize, point.x)).collect()
@@ -127,7 +127,8 @@ fn isostatic_of(rows: &[StretchingRow], radii: &[(usize, f64)], chosen: &[usize]
     Some([reached(&curve)?, excess])
 }
 
-/// p where ℓ_iso falls to the longest screening length, linear in logarithms between cells; the samples of all cells are drawn.
+/// p where ℓ_iso falls to the longest screening length, by linear interpolation in logarithms; the samples of all cells
+/// are resampled.
 pub(super) fn matching(points: &[SeriesPoint], samples: &[&CellSamples]) -> Option<Sampled> {
     let radii = samples.first()?.numbers.get("outer_radius")?;
     let longest = NumberStatistics::of(radii).mean / super::pressure::FIRST_ZERO;
@@ -145,7 +146,7 @@ pub(super) fn matching(points: &[SeriesPoint], samples: &[&CellSamples]) -> Opti
     Some(Sampled { found, sample_count: sizes[cells[0]].min(sizes[cells[1]]) })
 }
 
-/// p where a length falls to another, and the two cells it lies between.
+/// p where a length falls to another, and the two cells around it.
 fn matched(pressures: &[f64], lengths: &[Option<f64>], longest: f64) -> Option<(f64, [usize; 2])> {
     let points: Vec<(usize, [f64; 2])> = lengths
         .iter()
@@ -177,7 +178,7 @@ fn curve(samples: &CellSamples, excess: f64) -> Vec<[f64; 4]> {
         .collect()
 }
 
-/// The smallest r at which y rises to the threshold, linear between rings.
+/// The smallest r at which y rises to the threshold, by linear interpolation between rings.
 fn reached(curve: &[(f64, f64)]) -> Option<f64> {
     let after = curve.iter().position(|point| point.1 >= ISOSTATIC_THRESHOLD).filter(|&place| place > 0)?;
     let (low, high) = (curve[after - 1], curve[after]);
@@ -188,18 +189,18 @@ fn reached(curve: &[(f64, f64)]) -> Option<f64> {
 /// ξ of one size against φ.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JammingSeries {
-    /// The cell of the lowest φ.
+    /// The cell with the lowest φ.
     pub cell: Cell,
     /// d_th \[length\].
     pub threshold: f64,
-    /// ξ.
+    /// ξ of every cell.
     pub points: Vec<PenetrationPoint>,
-    /// Samples of the point with the fewest, of those fitted; 0 without one.
+    /// Smallest number of samples of a fitted point; 0 without fitted points.
     pub sample_count: usize,
-    /// ν with φ_J = 0.842, of the points with ξ up to R/2.
+    /// ν for φ_J = 0.842, from the points with ξ up to R/2.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_jamming: Option<DivergenceAt>,
-    /// ν and φ_J together.
+    /// Fit of both ν and φ_J.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub free: Option<DivergenceOutcome>,
 }
@@ -297,7 +298,7 @@ mod tests {
         assert_eq!(reached(&curve[..2]), None);
     }
 
-    /// A cell whose samples have h_∥ = unit (1 + scatter), flat from the centre on, and ΔZ about 0.3.
+    /// A cell whose samples have h_∥ = unit (1 + scatter) at all radii, and ΔZ about 0.3.
     fn cell_of(seed: u64, count: usize, pressure: f64, unit: f64) -> (SeriesPoint, CellSamples) {
         let mut generator = Pcg64::seed_from_u64(seed);
         let cell = Cell {
@@ -338,18 +339,19 @@ mod tests {
         let lengths = of(1, 40);
         let found = lengths.isostatic.expect("it is reached");
         assert_eq!(found.sample_count, 40);
-        // The means of the curve, read as before, and those of the rows are one.
+        // The means of the curve and those of the rows agree.
         let curve: Vec<(f64, f64)> = lengths.curve.iter().map(|row| (row[0], row[2])).collect();
         assert!((found.found.best / reached(&curve).expect("it is reached") - 1.0).abs() < 1e-12);
         let product = lengths.scaled_isostatic.expect("likewise").found;
         assert!((product.best / found.found.best - lengths.excess.expect("ΔZ")).abs() < 1e-12);
-        // Intervals of 95 % of 30 studies of 40 samples: 28.5 expected to hold the truth, with a standard deviation of 1.2.
+        // 95 % intervals of 30 studies of 40 samples: 28.5 are expected to contain the true value, with a standard
+        // deviation of 1.2.
         let held = (0..30).filter(|&seed| of(100 + seed, 40).isostatic.expect("it is reached").found.holds(1.3 / 0.3));
         let held = held.count();
         assert!(held >= 25, "{held} of 30");
         let Some([low, high]) = of(1, 160).isostatic.and_then(|it| it.found.interval) else { panic!("no interval") };
         let Some([wide_low, wide_high]) = found.found.interval else { panic!("no interval") };
-        // Four times the samples: half of the width, to a fifth.
+        // Four times the samples: half the width, to a fifth.
         let share = (high - low) / (wide_high - wide_low);
         assert!((0.35..0.7).contains(&share), "{share}");
     }

@@ -1,16 +1,16 @@
-//! [`Comparison`]: what was found beside what is published.
+//! [`Comparison`]: results next to published values.
 //!
-//! A published value agrees where the interval of 95 % holds it, and differs where it does not. Three rules come first; below them a
-//! comparison [cannot tell](Verdict::Uninformative), and says why:
+//! A published value agrees if the 95 % interval contains it, and differs otherwise. Three conditions come first;
+//! otherwise the comparison is [uninformative](Verdict::Uninformative), with a reason:
 //!
 //! 1. There is an interval.
-//! 2. Every cell the number rests on has at least 8 samples.
-//! 3. An interval that holds the published value is not too wide. A pressure: its ends are at most a factor of 10 apart. Any other
-//!    number: it is no wider than the published value, or than 0.1 where that is larger.
+//! 2. Every cell behind the number has at least 8 samples.
+//! 3. An interval that contains the published value is not too wide. For a pressure, its ends are at most a factor of 10
+//!    apart. For any other number, it is no wider than the published value, or than 0.1 if that is larger.
 //!
-//! The interval of a p̂_c must also lie within the cells measured and within a factor of 10 to either side of the best value.
+//! The interval of a p̂_c must also lie within the measured cells and within a factor of 10 of the best value.
 //!
-//! Source: design §6; the study.
+//! Source: the study.
 
 use serde::Serialize;
 
@@ -24,48 +24,48 @@ use crate::transition::pressure::{
 use crate::transition::scaling::{ExponentOutcome, PressureLaw, Scaling, beta};
 use crate::transition::series::Series;
 
-/// One number beside its published value.
+/// A result and the published value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
-    /// What it is, in words.
+    /// The quantity, in words.
     pub quantity: String,
-    /// Of which series or law.
+    /// The series or the law.
     pub of: String,
-    /// What was found \[unit of the quantity\].
+    /// The result \[unit of the quantity\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
-    /// Its interval, 95 % \[the same\].
+    /// Its 95 % interval \[unit of the quantity\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interval: Option<[f64; 2]>,
-    /// What is published \[the same\].
+    /// The published value \[unit of the quantity\].
     pub published: f64,
-    /// Samples of the cell with the fewest, of those it rests on.
+    /// Smallest number of samples of a cell behind the result.
     pub sample_count: usize,
     /// Whether they agree.
     pub verdict: Verdict,
-    /// Why it cannot be told, where it cannot.
+    /// Why the comparison is uninformative, if it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<CannotTell>,
 }
 
-/// Whether a found and a published number agree.
+/// Whether a result agrees with a published value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// The interval holds the published value.
+    /// The interval contains the published value.
     Agrees,
-    /// It does not.
+    /// The interval does not contain it.
     Differs,
-    /// The series bounds it, and the published value is beyond the bound: no contradiction, and no confirmation.
+    /// The series gives a bound, and the published value is allowed by it: neither a contradiction nor a confirmation.
     Beyond,
-    /// The series bounds it on the other side.
+    /// The series gives a bound that excludes the published value.
     Excluded,
-    /// The study cannot tell: too few samples or cells, no interval, or one that is too wide.
+    /// No conclusion: too few samples or cells, no interval, or one that is too wide.
     Uninformative,
 }
 
 impl Verdict {
-    /// In words.
+    /// A description in words.
     pub fn name(self) -> &'static str {
         match self {
             Verdict::Agrees => "agrees",
@@ -77,7 +77,7 @@ impl Verdict {
     }
 }
 
-/// What is compared, and of what.
+/// A quantity to compare, and its series or law.
 struct Subject<'a> {
     quantity: &'a str,
     of: &'a str,
@@ -142,7 +142,7 @@ impl Subject<'_> {
                 Comparison { value: Some(found.best), interval: found.interval, ..bound(verdict) }
             }
             TransitionPressure::Between(ends) => {
-                // Pressures of packings are met within a hundredth.
+                // Pressures of packings are within one percent of their targets.
                 let wide = [0.98 * ends[0], 1.02 * ends[1]];
                 self.interval((ends[0] * ends[1]).sqrt(), Some(wide), sample_count)
             }
@@ -158,7 +158,7 @@ impl Subject<'_> {
     }
 }
 
-/// All that can be compared.
+/// All comparisons.
 pub(super) fn comparisons(
     series: &[Series],
     scaling: &[Scaling],
@@ -201,7 +201,7 @@ pub(super) fn comparisons(
     all
 }
 
-/// A number that is no pressure.
+/// A quantity that is not a pressure.
 fn number<'a>(quantity: &'a str, of: &'a str, published: f64) -> Subject<'a> {
     Subject { quantity, of, kind: Quantity::Number, published }
 }
@@ -211,7 +211,7 @@ fn pressure<'a>(quantity: &'a str, of: &'a str, published: f64) -> Subject<'a> {
     Subject { quantity, of, kind: Quantity::Pressure, published }
 }
 
-/// All of one series of Hertzian disks.
+/// All comparisons of one series of Hertzian disks.
 fn of_series(one: &Series) -> Vec<Comparison> {
     let mut all = Vec::new();
     let of = one.name();
@@ -266,7 +266,7 @@ fn of_series(one: &Series) -> Vec<Comparison> {
     all
 }
 
-/// An observable in words.
+/// The name of an observable in words.
 pub(crate) fn words(observable: &str) -> String {
     match observable.strip_prefix("correlation_angle_at_") {
         Some(threshold) => format!("θ*, G = {threshold}"),
@@ -290,11 +290,11 @@ mod tests {
         assert_eq!(verdict(0.75, Some([0.4, 0.7]), 8), (Verdict::Differs, None));
         let cannot = |reason| (Verdict::Uninformative, Some(reason));
         assert_eq!(verdict(0.75, None, 400), cannot(CannotTell::NoInterval));
-        // An interval from −0.78 to 1.13 had agreed with 3/4, and three samples a cell had differed by 4956 half widths.
+        // An interval from −0.78 to 1.13 must not agree with 3/4, and three samples per cell must not differ.
         assert_eq!(verdict(0.75, Some([-0.78, 1.13]), 400), cannot(CannotTell::WideInterval));
         assert_eq!(verdict(0.75, Some([0.5, 0.500_1]), 3), cannot(CannotTell::FewSamples));
         assert_eq!(verdict(0.75, Some([0.6, 0.9]), 7), cannot(CannotTell::FewSamples));
-        // Wide, but elsewhere.
+        // Wide, but without the published value.
         assert_eq!(verdict(0.75, Some([0.8, 4.0]), 8), (Verdict::Differs, None));
         assert_eq!(verdict(-0.05, Some([-0.1, -0.01]), 8), (Verdict::Agrees, None));
         assert_eq!(verdict(-0.05, Some([-0.1, 0.05]), 8), cannot(CannotTell::WideInterval));
@@ -319,7 +319,7 @@ mod tests {
         let cannot = |reason| (Verdict::Uninformative, Some(reason));
         assert_eq!(found([5e7, 4.9e8]), (Verdict::Agrees, None));
         assert_eq!(found([5e7, 5.1e8]), cannot(CannotTell::WideInterval));
-        // Not too wide to differ, as long as each half is less than a decade.
+        // Not too wide to differ, if each half is less than a decade.
         assert_eq!(found([2e6, 5e7]), (Verdict::Differs, None));
         assert_eq!(found([1.1e6, 2.0e8]), cannot(CannotTell::WideInterval));
         assert_eq!(found([2e8, 3e10]), cannot(CannotTell::BeyondCells));

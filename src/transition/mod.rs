@@ -1,18 +1,19 @@
-//! [`Transition`]: what a study says of the plastic-to-elastic transition, of jamming, and of how both scale.
+//! [`Transition`]: the results of a study on the plastic-to-elastic transition, on jamming, and on their scaling.
 //!
 //! ```text
-//! series = cells that differ in the pressure alone        p̂ = p N^(α−1)
+//! series = cells that differ only in the pressure        p̂ = p N^(α−1)
 //! p̂_c    by κ_fit, by the sign of Δp, by G* and θ* at their values of a scale-free spectrum, by the slope of S(f), by f† → 0
 //! θ† ∼ (p̂_c − p̂)^(−μ)        G*, θ* = F(p N^a d_0^(−b))        N^β p_c ∼ (N² d_0)^(β/4)        ξ ∼ (φ_J − φ)^(−ν)
 //! ```
 //!
-//! Everything has an interval: the samples of every cell are drawn anew, [`bootstrap_all`](crate::fit::ensemble::bootstrap_all). What
-//! cannot be had says why, and what rests on too little says so: [`CannotTell`].
+//! Every number has an interval, from resampling the samples of every cell
+//! ([`bootstrap_all`](crate::fit::ensemble::bootstrap_all)). A number without a result or with too little evidence has
+//! a reason: [`CannotTell`].
 //!
-//! Series that differ in how their packings come to rest are series of their own, and no law is fitted through several of them.
+//! Packings relaxed by different methods are in separate series, and no law is fitted through several of them.
 //!
 //! # Source
-//! The study; what is taken from where stands with each number.
+//! The study; details are given with each number.
 
 mod calibration;
 mod crossing;
@@ -55,28 +56,28 @@ pub(crate) use series_point::{ANGLE, ANTICORRELATION};
 use crate::response::Calibration;
 use crate::study::Merged;
 
-/// What a study says.
+/// The results of a study.
 #[derive(Debug, Clone, Serialize)]
 pub struct Transition {
-    /// Cells above jamming that differ in the pressure alone, in the order of the plan.
+    /// Cells above jamming that differ only in the pressure, in the order of the plan.
     pub series: Vec<Series>,
-    /// How the series of a law and relaxer scale, one an observable.
+    /// Scaling of the series of a law and relaxer, one entry per observable.
     pub scaling: Vec<Scaling>,
-    /// p_c of all series of a law and relaxer as one power law.
+    /// p_c of all series of a law and relaxer as a power law.
     pub pressure_laws: Vec<PressureLaw>,
     /// ξ below jamming, by size.
     pub jamming: Vec<JammingSeries>,
-    /// What was found beside what is published.
+    /// Results next to published values.
     pub comparisons: Vec<Comparison>,
-    /// How often samples are called plastic or quasielastic, by which evidence, at which pressure.
+    /// How often samples are classified as plastic or quasielastic, by type of evidence and pressure.
     pub calibration: Calibration,
 }
 
 impl Transition {
-    /// Of a merged study.
+    /// The results of a merged study.
     ///
     /// # Cost
-    /// Some seconds for a study of ten cells of a hundred samples: 400 resamplings of everything.
+    /// Some seconds for a study of ten cells of a hundred samples: 400 resamplings of every number.
     pub fn of(merged: &Merged) -> Self {
         let series = Series::all(merged);
         let scaling = Scaling::all(merged, &series);

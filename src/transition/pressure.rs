@@ -4,17 +4,17 @@
 //! |---|---|---|
 //! | κ | half of the samples have κ_fit ≥ κ_1/2 | logistic regression in ln p̂ |
 //! | Δp | half of the samples have Δp < 0 | the same |
-//! | G* | the mean passes 1 − 2^(−1/2) = 0.293, its value for S ∝ f^(−1.5) | linear in ln p̂ between cells, after falling neighbours are pooled |
-//! | θ* | the mean passes 0.303 π, likewise | the same |
-//! | S(f), least squares | the slope of the mean spectrum by least squares in logarithms passes 1.5 | the same |
+//! | G* | the mean crosses 1 − 2^(−1/2) = 0.293, its value for S ∝ f^(−1.5) | linear in ln p̂ between cells, after isotonic regression |
+//! | θ* | the mean crosses 0.303 π, its value for S ∝ f^(−1.5) | the same |
+//! | S(f), least squares | the slope of the mean spectrum by least squares in logarithms crosses 1.5 | the same |
 //! | S(f), likelihood | the same slope by maximum likelihood | the same |
 //! | f† | f† of the mean spectrum falls below 0.1: from f = 1 on a power law within 3 % | the same |
 //!
-//! A cell counts with at least 8 samples. By κ and Δp two such cells and 20 samples lie on either side of a crossing. A bound needs an end
-//! cell that is clear of one half, or of the level, at 95 %, and two cells on its side. Below that a method
-//! [cannot tell](TransitionPressure::Uninformative).
+//! A cell counts if it has at least 8 samples. For κ and Δp, two such cells and 20 samples must lie on either side of a
+//! crossing. A bound needs two cells on its side, and an end cell that excludes one half, or the level, at 95 %.
+//! Otherwise the method is [uninformative](TransitionPressure::Uninformative).
 //!
-//! κ_1 R = 3.8317, the first zero of J_1: κ_fit of single samples is near 0 or from κ_1 on (the study, fig. 2).
+//! κ_1 R = 3.8317, the first zero of J_1: κ_fit of single samples is either near 0 or at least κ_1 (the study, fig. 2).
 
 use serde::Serialize;
 
@@ -24,16 +24,16 @@ use crate::transition::evidence::CannotTell;
 /// First zero of J_1.
 pub(crate) const FIRST_ZERO: f64 = 3.831_705_970_207_512;
 
-/// G* of S ∝ f^(−1.5). Source: design §5, 1 − 2^(−1/2).
+/// G* for S ∝ f^(−1.5): 1 − 2^(−1/2).
 pub(crate) const SCALE_FREE_ANTICORRELATION: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 
-/// θ* of the same, threshold 0.1 \[rad\]. Source: design §5.
+/// θ* for S ∝ f^(−1.5), threshold 0.1 \[rad\].
 pub(crate) const SCALE_FREE_ANGLE: f64 = 0.303_004 * std::f64::consts::PI;
 
-/// Its slope.
+/// Slope of the scale-free spectrum.
 pub(crate) const SCALE_FREE_SLOPE: f64 = 1.5;
 
-/// How p̂_c is found.
+/// Method to determine p̂_c.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
@@ -54,7 +54,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// In words.
+    /// A description in words.
     pub fn name(self) -> &'static str {
         match self {
             Method::Wavenumber => "κ",
@@ -68,44 +68,44 @@ impl Method {
     }
 }
 
-/// One method's p̂_c.
+/// p̂_c by one method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MethodEstimate {
     /// The method.
     pub method: Method,
-    /// What it gives.
+    /// The result.
     pub pressure: TransitionPressure,
-    /// Lowest and highest p̂ of the cells that count; none where fewer than two do \[force / length\].
+    /// Lowest and highest p̂ of the cells that count; none for fewer than two \[force / length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<[f64; 2]>,
-    /// Samples of the cell with the fewest, of those that count; of all where fewer than two count.
+    /// Smallest number of samples of the cells that count; of all cells if fewer than two count.
     pub sample_count: usize,
 }
 
 impl MethodEstimate {
-    /// What the slope of the spectrum gives, by least squares.
+    /// p̂_c by the slope of the spectrum by least squares, if this method was used.
     pub(super) fn by_spectrum(&self) -> Option<TransitionPressure> {
         (self.method == Method::Spectrum).then_some(self.pressure)
     }
 }
 
-/// Where the transition lies.
+/// The position of the transition.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TransitionPressure {
     /// At this p̂, with its interval.
     Found(BootstrapInterval),
-    /// Between the p̂ of two cells: up to the one all samples are plastic, from the other on none.
+    /// Between the p̂ of two cells: all samples are plastic up to the first, none from the second on.
     Between([f64; 2]),
-    /// Beyond the highest p̂ of the series: all its cells are plastic.
+    /// Above the highest p̂ of the series: all its cells are plastic.
     Above(f64),
     /// Below the lowest p̂ of the series: all its cells are quasielastic.
     Below(f64),
-    /// Cells are clearly plastic and clearly quasielastic, but not in this order.
+    /// There are significantly plastic and quasielastic cells, but not in this order.
     Unordered,
-    /// The study cannot tell.
+    /// No conclusion.
     Uninformative {
-        /// Why.
+        /// The reason.
         reason: CannotTell,
     },
 }
@@ -120,7 +120,7 @@ impl TransitionPressure {
         }
     }
 
-    /// Its interval \[force / length\], as far as there is one.
+    /// Its interval \[force / length\]; one-sided for a bound.
     pub fn interval(self) -> Option<[f64; 2]> {
         match self {
             TransitionPressure::Found(found) => found.interval,

@@ -1,11 +1,12 @@
-//! [`Scaling`]: with which powers of N and d_0 the curves of a law lie on one; [`PressureLaw`]: how p_c depends on both.
+//! [`Scaling`]: the exponents of N and d_0 that collapse the curves of a law; [`PressureLaw`]: how p_c depends on both.
 //!
 //! ```text
-//! G*, θ* = F(p N^a d_0^(−b))        a = β/2, b = β/4, β = 2(α − 1): 3/2 and 3/4 of Hertzian disks, 1 and 1/2 of Hookean ones
+//! G*, θ* = F(p N^a d_0^(−b))        a = β/2, b = β/4, β = 2(α − 1): 3/2 and 3/4 for Hertzian disks, 1 and 1/2 for
+//! Hookean ones
 //! N^β p_c = C (N² d_0)^c            c = β/4
 //! ```
 //!
-//! Series of one law whose packings come to rest in other ways do not share a curve: each relaxer has exponents of its own.
+//! Series relaxed by different methods do not collapse: each relaxer has its own exponents.
 //!
 //! Source: the study, appendix D.
 
@@ -22,13 +23,13 @@ use crate::transition::pressure::{Method, TransitionPressure};
 use crate::transition::series::Series;
 use crate::transition::series_point::ANTICORRELATION;
 
-/// Resamplings of a collapse, which is a search of its own each time.
+/// Number of bootstrap resamplings of a collapse; each is a separate minimisation.
 const RESAMPLINGS: usize = 100;
 
-/// Samples a point of a curve needs: the error of its mean is one of few otherwise.
+/// Minimum number of samples of a point of a curve; with fewer the error of its mean is unreliable.
 const LEAST_SAMPLES: usize = 4;
 
-/// What is collapsed: G*, and θ* of every threshold of the study.
+/// Collapsed observables: G*, and θ* for every threshold of the study.
 const OBSERVABLES: [&str; 5] = [
     ANTICORRELATION,
     "correlation_angle_at_0.1",
@@ -37,40 +38,40 @@ const OBSERVABLES: [&str; 5] = [
     "correlation_angle_at_0.2",
 ];
 
-/// How the curves of one observable of one law and relaxer collapse.
+/// The collapse of the curves of one observable, for one law and relaxer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Scaling {
     /// The law.
     pub law: LawChoice,
-    /// How packings came to rest after the inflation.
+    /// Relaxer after the inflation.
     pub relaxer: RelaxerChoice,
     /// The observable, by its name in records.
     pub observable: &'static str,
-    /// Curves: series of several pressures.
+    /// Number of curves: series with several pressures.
     pub curve_count: usize,
-    /// Samples of the cell with the fewest, of those on the curves.
+    /// Smallest number of samples of a cell on the curves.
     pub sample_count: usize,
-    /// a of N^a; absent where all sizes are one.
+    /// a of N^a; absent if all sizes are equal.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size_exponent: Option<ExponentOutcome>,
-    /// b of d_0^(−b); absent where all inflations are one.
+    /// b of d_0^(−b); absent if all inflations are equal.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub inflation_exponent: Option<ExponentOutcome>,
-    /// S at the best exponents: 1 where curves agree within their errors.
+    /// S at the best exponents: 1 if curves agree within their errors.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quality: Option<CollapseQuality>,
-    /// S at the published ones.
+    /// S at the published exponents.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub published_quality: Option<CollapseQuality>,
 }
 
-/// What the curves say of an exponent.
+/// The result for an exponent.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ExponentOutcome {
-    /// It, with its interval.
+    /// The exponent with its interval.
     Found(BootstrapInterval),
-    /// The collapse is best at the end of the range searched, −1 to 4.
+    /// The best collapse is at the end of the search range, −1 to 4.
     AtEdge(f64),
     /// The curves do not overlap at any exponent.
     NoOverlap,
@@ -81,15 +82,15 @@ pub enum ExponentOutcome {
 pub struct PressureLaw {
     /// The law.
     pub law: LawChoice,
-    /// How packings came to rest after the inflation.
+    /// Relaxer after the inflation.
     pub relaxer: RelaxerChoice,
-    /// How p_c is found.
+    /// Method to determine p_c.
     pub method: Method,
-    /// Samples of the cell with the fewest, of those p_c rests on.
+    /// Smallest number of samples of a cell behind p_c.
     pub sample_count: usize,
     /// (N² d_0, N^β p_c, its standard error).
     pub points: Vec<MeasuredPoint>,
-    /// The fit; absent with fewer than three points.
+    /// The fit; absent for fewer than three points.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fit: Option<PowerLaw>,
 }
@@ -212,7 +213,7 @@ fn exponents<const K: usize>(curves: &[([f64; 2], Values<'_>)], which: [usize; K
     Exponents { outcomes, quality, published }
 }
 
-/// Mean and standard error of the samples drawn; none where all are one sample.
+/// Mean and standard error of the resampled samples; none if all are the same sample.
 fn measured(x: f64, values: &[f64], chosen: &[usize]) -> Option<MeasuredPoint> {
     let count = chosen.len() as f64;
     let y = chosen.iter().map(|&i| values[i]).sum::<f64>() / count;

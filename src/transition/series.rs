@@ -1,4 +1,4 @@
-//! [`Series`]: the cells of a study that differ in the pressure alone.
+//! [`Series`]: the cells of a study that differ only in the pressure.
 
 use serde::Serialize;
 
@@ -11,36 +11,36 @@ use crate::transition::pressure::{MethodEstimate, TransitionPressure};
 use crate::transition::series_point::{ANGLE, ANTICORRELATION, SeriesPoint};
 use crate::transition::spectra::{AngleDivergence, CellSpectrum, likelihood_slope_of, slope_of};
 
-/// Cells that differ in the pressure alone, ascending in it.
+/// Cells that differ only in the pressure, in ascending order.
 #[derive(Debug, Clone, Serialize)]
 pub struct Series {
-    /// The cell of the lowest pressure; its target says nothing of the others.
+    /// The cell with the lowest pressure; its target does not apply to the others.
     pub cell: Cell,
     /// The cells.
     pub points: Vec<SeriesPoint>,
-    /// S(f) of every cell that has one.
+    /// S(f) of every cell with a spectrum.
     pub spectra: Vec<CellSpectrum>,
     /// θ†(p̂) below the transition.
     pub divergence: AngleDivergence,
-    /// p̂_c by every method that has its observable.
+    /// p̂_c by every method whose observable was measured.
     pub estimates: Vec<MethodEstimate>,
-    /// G* and θ* at p̂_c by the slope of the spectrum, by least squares, where there is one.
+    /// G* and θ* at p̂_c by the slope of the spectrum (least squares), if that p̂_c exists.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_transition: Option<AtPressure>,
-    /// The same, with the slope, at the p̂_c that is published for Hertzian disks, 10⁸, where the series spans it.
+    /// G*, θ* and slope at the p̂_c published for Hertzian disks, 10⁸, if the series spans it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_published: Option<AtPressure>,
     /// ℓ_s and ℓ_iso of every cell.
     pub lengths: Vec<Lengths>,
-    /// p where ℓ_iso is R/3.83 = 1/κ_1, the longest screening length, linear in logarithms between cells; its interval by drawing the
-    /// samples of all of them \[force / length\].
+    /// p where ℓ_iso equals R/3.83 = 1/κ_1, the longest screening length, by linear interpolation in logarithms. Its
+    /// interval is from resampling all cells \[force / length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub matching: Option<Sampled>,
-    /// Δp/p^((α−2)/(α−1)) of every cell that has it.
+    /// Δp/p^((α−2)/(α−1)) of every cell with this number.
     pub pressure_changes: Vec<Option<NumberStatistics>>,
 }
 
-/// What there is at one p̂, between two cells linear in ln p̂.
+/// Values at one p̂, by linear interpolation in ln p̂ between two cells.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AtPressure {
     /// p̂ = p N^(α−1) \[force / length, as p\].
@@ -54,16 +54,16 @@ pub struct AtPressure {
     /// s of S ∝ f^(−s), by least squares in logarithms.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slope: Option<Sampled>,
-    /// The same by maximum likelihood.
+    /// s by maximum likelihood.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub likelihood_slope: Option<Sampled>,
 }
 
-/// p̂_c of Hertzian disks by the spectrum. Source: the study.
+/// p̂_c for Hertzian disks by the spectrum. Source: the study.
 pub(crate) const PUBLISHED: f64 = 1e8;
 
 impl Series {
-    /// All of a study.
+    /// All series of a study.
     pub(super) fn all(merged: &Merged) -> Vec<Series> {
         let mut grouped: Vec<(Cell, Vec<SeriesPoint>)> = Vec::new();
         for (index, samples) in merged.samples.iter().enumerate() {
@@ -113,12 +113,12 @@ impl Series {
         }
     }
 
-    /// N, the disks in the circle by area.
+    /// N, the number of disks in the circle by area.
     pub fn mobile_count(&self) -> f64 {
         self.cell.mobile_count()
     }
 
-    /// Its law, size, inflation and relaxer in words.
+    /// A description with law, size, inflation and relaxer.
     pub fn name(&self) -> String {
         let Cell { law, disk_count, increase, relaxer, .. } = self.cell;
         format!("{} {disk_count} disks, d_0 = {increase}, {}", law.name(), relaxer.description())
@@ -128,7 +128,7 @@ impl Series {
 impl AtPressure {
     fn of(points: &[SeriesPoint], samples: &[&CellSamples], reduced_pressure: f64) -> Option<Self> {
         let above = points.iter().position(|point| point.reduced_pressure >= reduced_pressure)?;
-        // The published value may be the lowest target, met within the tolerance of the preparation.
+        // The published value may be the lowest target, within the tolerance of the preparation.
         let below = match above {
             0 if points[0].reduced_pressure <= 1.02 * reduced_pressure => 0,
             0 => return None,

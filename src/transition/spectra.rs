@@ -1,15 +1,17 @@
 //! [`CellSpectrum`]: slope and crossover of the mean spectrum of a cell, and θ†(p̂).
 //!
-//! The slope is taken twice, of the same powers P̄ at f = 2 to 24:
+//! There are two slopes, from the same powers P̄ at f = 2 to 24:
 //!
 //! ```text
 //! least squares   Σ_f (ln P̄_f − ln E_f)²            likelihood   Σ_f (ln E_f + P̄_f/E_f)            E_f = A f^(−s)
 //! ```
 //!
-//! With δ = ln(P̄/E) a term of the second is 1 + ln P̄ + δ²/2 + δ³/6 + …: to second order both are the same, and weigh every f alike. They part where δ is
-//! not small. A power far above the line costs the likelihood e^δ, least squares δ²: a strong f = 2 or 3 makes the likelihood steeper. A power far
-//! below it, as removed leakage leaves at high f, costs least squares δ², the likelihood only |δ|: it makes least squares steeper. Bends that
-//! are smooth part them little. Where the two differ by more than their intervals, the mean spectrum has no one slope.
+//! With δ = ln(P̄/E), a term of the likelihood is 1 + ln P̄ + δ²/2 + δ³/6 + …: to second order both are equal and weigh
+//! all f equally. They differ if δ is not small. A power far above the line adds e^δ to the likelihood but δ² to least
+//! squares: a strong f = 2 or 3 makes the likelihood slope steeper. A power far below it, as after removal of leakage
+//! at high f, adds δ² to least squares but only |δ| to the likelihood: it makes the least-squares slope steeper. Smooth
+//! bends cause little difference. If the two slopes differ by more than their intervals, the mean spectrum is not a
+//! single power law.
 
 use serde::Serialize;
 
@@ -22,30 +24,30 @@ use crate::study::{CellSamples, MeanCurve};
 use crate::transition::evidence::{LEAST_CELLS, RESAMPLINGS};
 use crate::transition::series_point::SeriesPoint;
 
-/// f from which to which a slope is taken: f = 1 is a mode of its own at high pressure, and above a few tens leakage removed is noise.
+/// Range of f for a slope: f = 1 is a separate mode at high pressure, and above some tens removed leakage leaves noise.
 const SLOPE_WINDOW: [usize; 2] = [2, 24];
 
-/// The same of a crossover, which needs S(1).
+/// Range of f for a crossover, which needs S(1).
 const CROSSOVER_WINDOW: [usize; 2] = [1, 24];
 
-/// A white spectrum has an f† as good as this.
+/// Largest f†: a white spectrum has none.
 const LARGEST_CROSSOVER: f64 = 1e3;
 
 /// The mean spectrum of one cell.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CellSpectrum {
-    /// The cell.
+    /// Its cell.
     pub point: SeriesPoint,
     /// s of S ∝ f^(−s) by least squares in logarithms, f from 2 to 24.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slope: Option<BootstrapInterval>,
-    /// The same by maximum likelihood.
+    /// s by maximum likelihood.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub likelihood_slope: Option<BootstrapInterval>,
     /// f† of the Lorentzian with exponent 1.5, f from 1 to 24.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossover: Option<MeanCrossover>,
-    /// Its interval; 0 is a power law, infinity white.
+    /// Its interval; 0 means a power law, infinity a white spectrum.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossover_interval: Option<BootstrapInterval>,
 }
@@ -53,16 +55,16 @@ pub struct CellSpectrum {
 /// θ† against p̂.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AngleDivergence {
-    /// Cells with a crossover.
+    /// Number of cells with a crossover.
     pub point_count: usize,
-    /// Those of them below p̂_c by the slope of the spectrum.
+    /// Number of those cells below p̂_c by the slope of the spectrum.
     pub below_count: usize,
-    /// Samples of the cell with the fewest, of those below; 0 without one.
+    /// Smallest number of samples of a cell below p̂_c; 0 without such cells.
     pub sample_count: usize,
-    /// μ with p̂_c by the slope of the spectrum, by least squares; absent with fewer than 5 cells below it.
+    /// μ for p̂_c by the slope of the spectrum (least squares); absent for fewer than 5 cells below it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_transition: Option<DivergenceAt>,
-    /// μ and p̂_c together; absent with fewer than 5 cells.
+    /// Fit of both μ and p̂_c; absent for fewer than 5 cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub free: Option<DivergenceOutcome>,
 }
@@ -74,11 +76,11 @@ pub struct RingSlope {
     pub relative_radius: f64,
     /// s, by least squares.
     pub slope: f64,
-    /// From the scatter about the line.
+    /// Standard error from the scatter about the line.
     pub standard_error: f64,
 }
 
-/// The window as far as all samples have powers.
+/// The part of the window in which all samples have powers.
 fn window([lowest, highest]: [usize; 2], powers: &[Vec<f64>]) -> Option<[usize; 2]> {
     let common = powers.iter().map(Vec::len).min()?;
     let highest = highest.min(common);
@@ -96,12 +98,12 @@ pub(super) fn slope_of(powers: &[Vec<f64>], chosen: &[usize]) -> Option<f64> {
     both_slopes(powers, chosen)?.least_squares.exponent()
 }
 
-/// The same by maximum likelihood.
+/// Slope of the mean spectrum of some of the samples, by maximum likelihood.
 pub(super) fn likelihood_slope_of(powers: &[Vec<f64>], chosen: &[usize]) -> Option<f64> {
     both_slopes(powers, chosen)?.likelihood.exponent()
 }
 
-/// f† of the mean spectrum of some of the samples: 0 of a power law, at most [`LARGEST_CROSSOVER`].
+/// f† of the mean spectrum of some of the samples: 0 for a power law, at most [`LARGEST_CROSSOVER`].
 pub(super) fn crossover_of(powers: &[Vec<f64>], chosen: &[usize]) -> Option<f64> {
     let window = window(CROSSOVER_WINDOW, powers)?;
     let rows: Vec<&[f64]> = chosen.iter().map(|&i| &powers[i][..window[1]]).collect();
@@ -136,7 +138,7 @@ impl CellSpectrum {
         })
     }
 
-    /// θ† with its standard error, where there is a crossover \[rad\].
+    /// θ† with its standard error, if there is a crossover \[rad\].
     pub fn angle(&self) -> Option<(f64, f64)> {
         let Some(MeanCrossover::Fitted { outcome: CrossoverOutcome::Found { crossover, angle }, .. }) = self.crossover
         else {
@@ -160,7 +162,7 @@ impl AngleDivergence {
         AngleDivergence::through(&points, critical)
     }
 
-    /// Through points with the samples of their cells.
+    /// Fits through points with the numbers of samples of their cells.
     fn through(points: &[(MeasuredPoint, usize)], critical: Option<f64>) -> Self {
         let is_below = |point: &MeasuredPoint| critical.is_some_and(|critical| point.x < critical);
         let own: Vec<(MeasuredPoint, usize)> = points.iter().copied().filter(|(point, _)| is_below(point)).collect();
@@ -179,7 +181,7 @@ impl AngleDivergence {
 }
 
 impl RingSlope {
-    /// Of every ring whose spectrum a cell keeps, from the inside out.
+    /// The slopes of every ring with a spectrum, from the inside out.
     pub fn of(samples: &CellSamples) -> Vec<RingSlope> {
         let mut all: Vec<RingSlope> =
             samples.curves.iter().filter_map(|(name, curve)| Self::ring(name, curve)).collect();
@@ -189,7 +191,7 @@ impl RingSlope {
 
     fn ring(name: &str, curve: &MeanCurve) -> Option<RingSlope> {
         let relative_radius = name.strip_prefix("power_spectrum_at_")?.parse().ok()?;
-        // Only what all samples have.
+        // Only frequencies of all samples.
         let points = curve.points();
         let most = points.first()?.count;
         let powers: Vec<f64> = points.iter().take_while(|point| point.count == most).map(|point| point.y).collect();
@@ -219,8 +221,8 @@ mod tests {
     fn smooth_bends_flatten_both_slopes_alike() {
         let [line, likely] = slopes(|f| libm::pow(f, -1.5));
         assert!((line - 1.5).abs() < 1e-12 && (likely - 1.5).abs() < 1e-6);
-        // A Lorentzian of f† = 2, and a white floor of a fifth of the power law at f = 24 or of ten times that: least squares are lower, by 0.004,
-        // 0.0001 and 0.006.
+        // A Lorentzian of f† = 2, and white floors of a fifth and of twice the power law at f = 24: least squares are
+        // lower, by 0.004, 0.0001 and 0.006.
         let [line, likely] = slopes(|f| 1.0 / (1.0 + libm::pow(f / 2.0, 1.5)));
         assert!((line - 1.2875).abs() < 1e-3 && (likely - line - 0.0037).abs() < 5e-4, "{line} {likely}");
         for (floor, expected, gap) in [(0.0017, 1.427, 1e-3), (0.017, 1.041, 1e-2)] {
@@ -234,7 +236,7 @@ mod tests {
         // Four times the power at f = 2: 1.72 by least squares, 1.81 by likelihood.
         let [line, likely] = slopes(|f| libm::pow(f, -1.5) * if f == 2.0 { 4.0 } else { 1.0 });
         assert!((line - 1.7246).abs() < 1e-3 && (likely - 1.8109).abs() < 1e-3, "{line} {likely}");
-        // A tenth of it at f = 24: 1.68 and 1.57.
+        // A tenth of the power at f = 24: 1.68 and 1.57.
         let [line, likely] = slopes(|f| libm::pow(f, -1.5) * if f == 24.0 { 0.1 } else { 1.0 });
         assert!((line - 1.6758).abs() < 1e-3 && (likely - 1.5746).abs() < 1e-3, "{line} {likely}");
     }
@@ -252,7 +254,7 @@ mod tests {
         assert!(four.at_transition.is_none() && four.free.is_none());
         let five = through(5);
         assert!((five.at_transition.expect("five cells").exponent.value - 0.9).abs() < 1e-12 && five.free.is_some());
-        // Five cells, four of them below.
+        // Five cells, four of them below p̂_c.
         let one_above = AngleDivergence::through(&(0..5).map(point).collect::<Vec<_>>(), Some(3.5));
         assert_eq!((one_above.point_count, one_above.below_count), (5, 4));
         assert!(one_above.at_transition.is_none() && one_above.free.is_some());

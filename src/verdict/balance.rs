@@ -8,8 +8,8 @@ use crate::packing::Packing;
 use crate::relax::UNJAMMED_FORCE;
 use crate::vector::{larger, norm};
 
-/// Overlap over the smallest radius up to which contacts of a packing without backbone count as none \[1\]. Relaxers elsewhere leave
-/// 10⁻⁸ at a force limit of 10⁻⁷; no observable resolves 10⁻⁶ of a diameter.
+/// Overlap over the smallest radius up to which the contacts of a packing without a backbone count as zero \[1\]. Other
+/// relaxers leave 10⁻⁸ at a force limit of 10⁻⁷; no observable resolves 10⁻⁶ of a diameter.
 const LOOSE_OVERLAP: f64 = 1e-6;
 
 /// Net forces of the mobile disks of a state. Only [`Balance::of`] makes one, from the forces themselves.
@@ -19,12 +19,13 @@ pub struct Balance {
     off_backbone: f64,
     mean_contact_force: f64,
     rigid: bool,
-    /// A force that counts as none.
+    /// A force that counts as zero.
     no_force: f64,
 }
 
 impl Balance {
-    /// Of a packing whose contacts under `law` are `network`. Without a backbone every disk counts as one of it.
+    /// The balance of a packing with the contacts of `network` under `law`. Without a backbone, every disk counts as
+    /// part of it.
     pub fn of<const D: usize, L: PairLaw>(packing: &Packing<D>, network: &ContactNetwork<D>, law: &L) -> Self {
         let rigid = network.backbone_count() > 0;
         let mut largest = [0.0; 2];
@@ -47,19 +48,19 @@ impl Balance {
         Balance { on_backbone: largest[0], off_backbone: largest[1], mean_contact_force, rigid, no_force }
     }
 
-    /// Largest net force on a mobile disk of the backbone over the mean contact force; 0 where both count as none in the sense of
-    /// [`UNJAMMED_FORCE`]. Without a backbone nothing balances a force, and one counts as none up to an overlap of 10⁻⁶ of a
-    /// radius \[1\].
+    /// Largest net force on a mobile disk of the backbone over the mean contact force \[1\]. It is 0 if both count as
+    /// zero in the sense of [`UNJAMMED_FORCE`]. Without a backbone nothing balances a force. A force then counts as
+    /// zero up to an overlap of 10⁻⁶ of a radius.
     pub fn relative_residual(&self) -> f64 {
         self.over_mean(self.on_backbone)
     }
 
-    /// The same of the mobile disks off the backbone \[1\].
+    /// The same ratio for the mobile disks off the backbone \[1\].
     pub fn relative_residual_off_backbone(&self) -> f64 {
         self.over_mean(self.off_backbone)
     }
 
-    /// Whether the first is at most `limit` and the second at most its root. A residual that is not a number never is.
+    /// Whether the first ratio is at most `limit` and the second at most its square root. False for a NaN.
     pub fn is_at_rest(&self, limit: f64) -> bool {
         self.relative_residual() <= limit && self.relative_residual_off_backbone() <= limit.sqrt()
     }
@@ -70,10 +71,10 @@ impl Balance {
     }
 }
 
-/// How far a state is from rest.
+/// The residuals of a state.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StateBalance {
-    /// Which state.
+    /// Name of the state.
     pub state: &'static str,
     /// [`Balance::relative_residual`] \[1\].
     pub relative_residual: f64,
@@ -93,9 +94,9 @@ impl StateBalance {
         }
     }
 
-    /// The residual that is above its limit, in words.
+    /// A sentence on the residual above its limit.
     pub(super) fn sentence(&self, limit: f64) -> String {
-        // Not `>`: a residual that is not a number is above every limit.
+        // Not `>`: NaN counts as above every limit.
         if !self.at_rest && self.relative_residual <= limit {
             let (value, root) = (self.relative_residual_off_backbone, limit.sqrt());
             return format!("{value:.2e} {} on a disk off the backbone, whose limit is {root:.1e}", self.state);

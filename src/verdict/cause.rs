@@ -1,4 +1,4 @@
-//! [`Cause`]: what may have kept states from being at rest, in numbers and in a sentence.
+//! [`Cause`]: a possible reason why states are not at rest, in numbers and in a sentence.
 
 use std::fmt;
 
@@ -10,22 +10,23 @@ use crate::verdict::digits::Digits;
 /// The residual under another law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct OtherLaw {
-    /// The law, with the stiffness of the model: forces of all contacts scale with it, their ratios do not.
+    /// The law, with the stiffness of the model. All contact forces scale with the stiffness, so residuals do not
+    /// depend on it.
     pub law: LawChoice,
-    /// The largest relative residual of the states \[1\].
+    /// Largest relative residual of the states \[1\].
     pub relative_residual: f64,
 }
 
-/// What may have kept states from being at rest.
+/// A possible reason why states are not at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Cause {
-    /// Another law leaves next to no residual.
+    /// Another law leaves almost no residual.
     Law {
         /// That law.
         law: LawChoice,
-        /// The largest residual under it \[1\].
+        /// Largest residual under it \[1\].
         relative_residual: f64,
     },
     /// No disk lies beyond R.
@@ -39,46 +40,46 @@ pub enum Cause {
     Boundary {
         /// R \[length\].
         outer_radius: f64,
-        /// How many are unbalanced.
+        /// Number of unbalanced disks.
         unbalanced_count: usize,
-        /// How many of them are pushed outwards.
+        /// Number of them with an outward net force.
         outward_count: usize,
-        /// Disks held within a contact of R.
+        /// Number of held disks within a contact range of R.
         held_count: usize,
-        /// As many as the density of the mobile disks says.
+        /// Number expected from the density of the mobile disks.
         expected_count: usize,
     },
-    /// Other disks than the inflated one changed their radius.
+    /// Disks other than the inflated one changed their radius.
     OtherRadii {
-        /// How many.
+        /// Number of these disks.
         count: usize,
-        /// Label of the first.
+        /// Label of the first of them.
         label: u64,
     },
     /// The unbalanced disks are neighbours of the inflated one.
     Centre {
         /// Label of the inflated disk.
         label: u64,
-        /// How many are unbalanced.
+        /// Number of unbalanced disks.
         unbalanced_count: usize,
     },
     /// Coordinates with few digits.
     FewDigits {
-        /// How few.
+        /// The number of digits.
         digits: Digits,
-        /// What that alone makes of the residual, at most \[1\].
+        /// Upper bound of the residual caused by the rounding \[1\].
         residual_bound: f64,
     },
-    /// The packing has sites, whose pushes this law does not know.
+    /// The packing has sites, whose forces this law does not include.
     Sites,
-    /// A few disks carry it all.
+    /// A few disks cause the whole residual.
     FewDisks {
-        /// How many are unbalanced.
+        /// Number of unbalanced disks.
         unbalanced_count: usize,
         /// Label of the disk with the largest net force.
         label: u64,
     },
-    /// None of the others.
+    /// None of the other causes.
     Unfinished,
 }
 
@@ -133,7 +134,7 @@ impl fmt::Display for Cause {
     }
 }
 
-/// A law as the command line takes it.
+/// A law as an argument of the command line.
 fn argument(law: &LawChoice) -> String {
     match law {
         LawChoice::Hertzian(_) => "hertzian".into(),

@@ -1,8 +1,8 @@
 //! [`Digits`]: whether the coordinates of a packing were written with few decimal digits.
 //!
-//! The shortest decimal that gives a number back is the text it was read from, if that had at most 15 digits. A number that was
-//! computed needs 15 to 17, so coordinates that were cut are told from full ones without a chance of error. Scaled coordinates are
-//! told by their share of the box.
+//! The shortest decimal that reproduces a number equals the text it was read from, if that had at most 15 digits. A
+//! computed number needs 15 to 17 digits. So rounded coordinates are distinguished reliably from full ones. Scaled
+//! coordinates are recognised by their fraction of the box.
 
 use serde::Serialize;
 
@@ -11,22 +11,22 @@ use crate::network::ContactNetwork;
 use crate::packing::{Domain, Packing};
 use crate::vector::{larger, norm};
 
-/// Coordinates with more digits are not cut: `%.8f`, which ASE writes, has 12 in a box of 9999.
+/// Coordinates with more digits do not count as rounded: `%.8f`, the format of ASE, has 12 digits in a box of 9999.
 const MOST: usize = 12;
 
-/// Digits of numbers that are full.
+/// Digits of a number in full precision.
 const FULL: usize = 17;
 
-/// In how many digits coordinates were written.
+/// The number of digits with which coordinates were written.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Digits {
-    /// Significant digits of most of them.
+    /// Significant digits of most coordinates.
     pub significant: usize,
-    /// Spacing of the coarsest of them \[length\].
+    /// Largest spacing of the last digit \[length\].
     pub spacing: f64,
 }
 
-/// Significant digits of one coordinate, and the place of the last \[length\].
+/// Significant digits of one coordinate, and the place value of the last \[length\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Decimal {
     digits: usize,
@@ -34,7 +34,7 @@ struct Decimal {
 }
 
 impl Digits {
-    /// Those of a packing; none if its coordinates are full, or there are none.
+    /// The digits of a packing; none if its coordinates have full precision, or if there are no coordinates.
     pub fn of<const D: usize>(packing: &Packing<D>) -> Option<Self> {
         let mut all: Vec<Decimal> = Vec::new();
         for disk in 0..packing.len() {
@@ -53,19 +53,20 @@ impl Digits {
         }
         all.sort_unstable_by_key(|it| it.digits);
         let significant = all[middle].digits;
-        // Trailing zeros are not written: shorter numbers have a coarser place than they are known to. Longer ones, which a shift
-        // by a side of the box makes, have a finer one.
+        // Trailing zeros are not written, so shorter numbers are known more precisely than their last digit suggests.
+        // Longer numbers, after a shift by a side of the box, have a finer spacing.
         let spacing = all.iter().filter(|it| it.digits >= significant).fold(0.0, |most, it| larger(it.place, most));
         (significant <= MOST).then_some(Digits { significant, spacing })
     }
 
-    /// What cutting the coordinates of a state at rest makes of its relative residual, at most \[1\].
+    /// Upper bound of the relative residual of a state at rest whose coordinates are rounded to these digits \[1\].
     ///
     /// ```text
-    /// max_i Σ_j [F(δ_ij + e) − F(δ_ij)] / ⟨F⟩        e = √D times the spacing, what a distance changes by at most
+    /// max_i Σ_j [F(δ_ij + e) − F(δ_ij)] / ⟨F⟩        e = √D times the spacing, the largest change of a distance
     /// ```
     ///
-    /// Forces grow faster than overlaps, so no change by e makes more of a force. None where the disks cannot be grown by e.
+    /// Forces grow faster than overlaps, so no change by at most e changes a force by more. None if the disks cannot
+    /// grow by e.
     pub fn residual_bound<const D: usize, L: PairLaw>(
         &self,
         packing: &Packing<D>,
@@ -93,7 +94,7 @@ impl Digits {
     }
 }
 
-/// A coordinate, or its share of the box where that is shorter and gives the coordinate back to the bit.
+/// The decimal of a coordinate, or of its fraction of the box if that is shorter and reproduces the coordinate exactly.
 fn decimal<const D: usize>(domain: &Domain<D>, value: f64, axis: usize) -> Decimal {
     let plain = shortest(value);
     let Domain::Periodic { corner, lengths } = domain else { return plain };
@@ -106,7 +107,7 @@ fn decimal<const D: usize>(domain: &Domain<D>, value: f64, axis: usize) -> Decim
     scaled.map_or(plain, |it| Decimal { place: it.place * side, ..it })
 }
 
-/// The shortest decimal that is read as `value`.
+/// The shortest decimal that reproduces `value`.
 fn shortest(value: f64) -> Decimal {
     let text = format!("{:e}", value.abs());
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
@@ -129,7 +130,7 @@ mod tests {
     fn the_digits_of_a_text_are_those_of_the_number() {
         let cut = Digits::of(&packing([3.84989, 18.3665, 20.9528, 1.36484, 5.5, 33.489])).expect("cut");
         assert_eq!(cut.significant, 6);
-        // 18.3665 is known to 10⁻⁴; 33.489 has lost its last zero. `pow` is right to the last bit or next to it.
+        // 18.3665 is known to 10⁻⁴; 33.489 has lost its last zero. `pow` is exact to one unit in the last place.
         assert!((cut.spacing / 1e-4 - 1.0).abs() < 1e-15, "{}", cut.spacing);
         let third = 1.0 / 3.0;
         assert_eq!(Digits::of(&packing([third, 10.0 * third, 20.0 * third, 7.1 * third, 3.1 * third, 5.5])), None);

@@ -1,4 +1,4 @@
-//! What is likely where states are not at rest: their forces under other laws, and where the unbalanced disks are.
+//! Likely causes if states are not at rest: the forces under other laws, and the positions of the unbalanced disks.
 
 use crate::law::choice::LawChoice;
 use crate::law::pair_law::PairLaw;
@@ -8,16 +8,16 @@ use crate::packing::{Packing, ball_volume};
 use crate::vector::{Vector, dot, larger, norm};
 use crate::verdict::{Balance, Cause, Digits, OtherLaw, Place, RestVerdict};
 
-/// A law under which the residual is this share of what it is explains it, even if six digits are left over.
+/// A law explains the residual if it reduces it to this share. Coordinates with six digits may leave that much.
 const LAW_SHARE: f64 = 0.01;
 
-/// Share of the unbalanced disks that has to be in one place.
+/// Share of the unbalanced disks that must be in one region.
 const MOST: f64 = 0.9;
 
-/// So many unbalanced disks are few: a disk and its neighbours, twice.
+/// Up to this number, unbalanced disks count as few: twice a disk and its neighbours.
 const FEW: usize = 14;
 
-/// The largest residual of the states under every law but the one they were weighed with.
+/// The largest residual of the states under every law except `choice`.
 pub(super) fn other_laws<const D: usize>(
     states: &[(&'static str, &State<'_, D>)],
     choice: &LawChoice,
@@ -42,7 +42,7 @@ fn residual_under<const D: usize>(packing: &Packing<D>, law: &LawChoice) -> Opti
     Some(larger(balance.relative_residual(), balance.relative_residual_off_backbone().powi(2)))
 }
 
-/// Causes that fit, the likeliest first; at least one.
+/// Causes that fit, the most likely first; at least one.
 pub(super) fn causes<const D: usize, L: PairLaw>(
     states: &[(&'static str, &State<'_, D>)],
     law: &L,
@@ -54,7 +54,7 @@ pub(super) fn causes<const D: usize, L: PairLaw>(
         let state = &verdict.states()[index];
         larger(state.relative_residual, state.relative_residual_off_backbone.powi(2))
     };
-    // The state farthest from rest; a residual that is not a number is the farthest.
+    // The state farthest from rest. NaN counts as the largest residual.
     let worst = (0..states.len()).max_by(|&a, &b| size(a).total_cmp(&size(b)));
     let Some(worst) = worst.filter(|&index| !verdict.states()[index].at_rest) else { return vec![Cause::Unfinished] };
     let (state, found) = (states[worst].1, &verdict.states()[worst]);
@@ -93,7 +93,7 @@ pub(super) fn causes<const D: usize, L: PairLaw>(
     causes
 }
 
-/// A mobile disk whose net force is above what it may be at rest.
+/// A mobile disk whose net force is above the limit of a state at rest.
 struct Unbalanced<const D: usize> {
     disk: usize,
     force: Vector<D>,
@@ -113,13 +113,13 @@ fn unbalanced<const D: usize>(state: &State<'_, D>, limit: f64) -> Vec<Unbalance
         .collect()
 }
 
-/// Whether most of the unbalanced disks are such.
+/// Whether most of the unbalanced disks satisfy `such`.
 fn most<const D: usize>(unbalanced: &[Unbalanced<D>], such: impl Fn(&Unbalanced<D>) -> bool) -> bool {
     let count = unbalanced.iter().filter(|it| such(it)).count();
     count > 0 && count as f64 >= MOST * unbalanced.len() as f64
 }
 
-/// Nothing beyond R, or unbalanced disks within a contact of it.
+/// No held disk beyond R, or unbalanced disks within a contact range of R.
 fn boundary<const D: usize>(state: &State<'_, D>, place: Place, unbalanced: &[Unbalanced<D>]) -> Option<Cause> {
     let (packing, outer_radius) = (state.packing, place.outer_radius?);
     let distance = |disk: usize| norm(packing.separation(disk, place.centre));
@@ -145,7 +145,7 @@ fn boundary<const D: usize>(state: &State<'_, D>, place: Place, unbalanced: &[Un
     })
 }
 
-/// Disks besides the inflated one whose radius is not the same in all states.
+/// Disks, other than the inflated one, whose radius differs between states.
 fn other_radii<const D: usize>(states: &[(&'static str, &State<'_, D>)], place: Place) -> Option<Cause> {
     let (_, first) = states.first()?;
     let changed = |disk: &usize| {
@@ -157,7 +157,7 @@ fn other_radii<const D: usize>(states: &[(&'static str, &State<'_, D>)], place: 
     Some(Cause::OtherRadii { count: 1 + all.count(), label })
 }
 
-/// Unbalanced disks that touch the inflated one, or nearly.
+/// Unbalanced disks that touch, or nearly touch, the inflated one.
 fn centre<const D: usize>(state: &State<'_, D>, place: Place, unbalanced: &[Unbalanced<D>]) -> Option<Cause> {
     let packing = state.packing;
     let touches = |it: &Unbalanced<D>| {

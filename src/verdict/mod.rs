@@ -1,12 +1,13 @@
-//! [`RestVerdict`]: whether states are at rest, hence whether a phase and fits may be given, and if not, what is likely.
+//! [`RestVerdict`]: whether states are at rest, so that a phase and fits are meaningful; otherwise the likely causes.
 //!
 //! ```text
 //! at rest   max |f_i| ≤ ε ⟨F⟩  on the backbone,   max |f_i| ≤ √ε ⟨F⟩  off it        ε = 10⁻³, a setting
 //! ```
 //!
-//! Everything can be measured on a state far from equilibrium, but it answers no question about the response: its disks move because
-//! forces were left, not because a disk grew. A phase and every fit of a [`Response`](crate::response::Response) take a
-//! [`VerdictPermit`], and only a verdict gives one. The relaxers have the same rule for disks off the backbone.
+//! Observables can be computed for a state far from equilibrium, but they do not describe the response: disks then move
+//! because of unbalanced forces, not because a disk grew. A phase and every fit of a
+//! [`Response`](crate::response::Response) take a [`VerdictPermit`], and only a verdict gives one. The relaxers have
+//! the same rule for disks off the backbone.
 
 mod balance;
 mod cause;
@@ -23,64 +24,65 @@ use crate::law::choice::LawChoice;
 use crate::law::pair_law::PairLaw;
 use crate::observe::state::State;
 
-/// A residual above this counts as rest nowhere: neither by a limit of a relaxer nor by that of a verdict \[1\].
+/// No limit of a relaxer or of a verdict may be above this residual \[1\].
 pub const LARGEST_RESIDUAL: f64 = 1e-2;
 
-/// When a phase and fits are given.
+/// When a phase and fits are reported.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct VerdictSettings {
     /// ε, the largest net force on the backbone over the mean contact force at rest, at most [`LARGEST_RESIDUAL`] \[1\].
     pub residual_limit: f64,
-    /// What happens above it.
+    /// What to do with states above the limit.
     pub above_limit: AboveLimit,
 }
 
 impl Default for VerdictSettings {
-    /// 10⁻³: relaxers end five decades below, coordinates with six digits a decade or more above.
+    /// 10⁻³: relaxers reach residuals five decades below; coordinates with six digits leave residuals a decade or more
+    /// above.
     fn default() -> Self {
         VerdictSettings { residual_limit: 1e-3, above_limit: AboveLimit::default() }
     }
 }
 
-/// What happens to states above the limit.
+/// What to do with states above the limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AboveLimit {
-    /// They are given no phase and no fit.
+    /// No phase and no fit.
     #[default]
     Refused,
-    /// They are given both, and the report says that they are not at rest.
+    /// Both are reported, with a note that the states are not at rest.
     Given,
 }
 
-/// Leave to give a phase and fits: the states are at rest, or whoever asked wants both all the same. Only
+/// Permission to report a phase and fits: the states are at rest, or the settings require both in any case. Only
 /// [`RestVerdict::permit`] makes one.
 #[derive(Debug, Clone, Copy)]
 pub struct VerdictPermit(());
 
-/// Where an experiment takes place.
+/// The geometry of an experiment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
     /// Index of the inflated disk.
     pub centre: usize,
-    /// R, beyond which disks are held; absent where nothing is held \[length\].
+    /// R, beyond which disks are held; absent if nothing is held \[length\].
     pub outer_radius: Option<f64>,
 }
 
-/// What was decided.
+/// The decision of a verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Decision {
     /// All states are at rest.
     AtRest,
-    /// A state is not, and there is no phase and no fit.
+    /// A state is not at rest; no phase and no fit are reported.
     NotAtRest,
-    /// A state is not, and the settings want a phase and fits all the same.
+    /// A state is not at rest, but the settings require a phase and fits.
     NotAtRestButGiven,
 }
 
-/// Whether states are at rest, by their residuals; if not, what is likely.
+/// Whether states are at rest, by their residuals; otherwise the likely causes.
 ///
 /// # Example
 /// ```
@@ -110,10 +112,12 @@ pub struct RestVerdict {
 }
 
 impl RestVerdict {
-    /// Weighs states whose contacts are those of `law`, which `choice` names. States are named as a reader knows them.
+    /// Judges states whose contacts are those of `law`, which `choice` names. The names of the states appear in
+    /// reports.
     ///
     /// # Cost
-    /// A pass over the contacts; where a state is not at rest, a contact network a state for each of some four other laws.
+    /// One pass over the contacts. If a state is not at rest: a contact network per state for each of about four other
+    /// laws.
     pub fn of<const D: usize, L: PairLaw>(
         states: &[(&'static str, &State<'_, D>)],
         law: &L,
@@ -145,10 +149,10 @@ impl RestVerdict {
         verdict
     }
 
-    /// The same with what was decided before of the states these come from.
+    /// This verdict combined with an earlier one on the states from which these come.
     #[must_use]
     pub fn after(self, earlier: &RestVerdict) -> Self {
-        // Of two decisions the one that says least stands.
+        // The more restrictive of two decisions is kept.
         let weight = |decision| match decision {
             Decision::AtRest => 0,
             Decision::NotAtRestButGiven => 1,
@@ -164,12 +168,12 @@ impl RestVerdict {
         }
     }
 
-    /// Leave to give a phase and fits.
+    /// Permission to report a phase and fits, if they may be reported.
     pub fn permit(&self) -> Option<VerdictPermit> {
         (self.decision != Decision::NotAtRest).then_some(VerdictPermit(()))
     }
 
-    /// What was decided.
+    /// The decision.
     pub fn decision(&self) -> Decision {
         self.decision
     }
@@ -184,22 +188,22 @@ impl RestVerdict {
         &self.states
     }
 
-    /// What is likely, the likeliest first; something, if a state is not at rest.
+    /// Likely causes, the most likely first; at least one if a state is not at rest.
     pub fn likely(&self) -> &[Cause] {
         &self.likely
     }
 
-    /// The largest residual of the states under other laws; none, if they are at rest.
+    /// Largest residual of the states under other laws; empty if they are at rest.
     pub fn other_laws(&self) -> &[OtherLaw] {
         &self.other_laws
     }
 
-    /// Why there is no fit, in a sentence; none where there may be one.
+    /// A sentence on why there is no fit; none if a fit may be reported.
     pub fn refusal(&self) -> Option<String> {
         (self.decision == Decision::NotAtRest).then(|| self.residuals())
     }
 
-    /// What a reader has to know first, a paragraph each; nothing if all states are at rest.
+    /// Warnings for the reader of a report, one per paragraph; empty if all states are at rest.
     pub fn paragraphs(&self) -> Vec<String> {
         let consequence = match self.decision {
             Decision::AtRest => return Vec::new(),

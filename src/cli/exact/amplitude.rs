@@ -1,4 +1,4 @@
-//! `jamscope exact amplitude`: how strongly a screened medium answers, as a function of its wavenumber.
+//! `jamscope exact amplitude`: the amplitude of the response of a screened medium, as a function of its wavenumber.
 
 use clap::Args;
 use jamscope::reference::amplitude::Amplitude;
@@ -44,7 +44,7 @@ impl AmplitudeArguments {
             None => vec![("from", self.from), ("to", to)],
         };
         for (argument, wavenumber) in given {
-            // A pole is a row of its own.
+            // A pole has its own row.
             match amplitude.at(wavenumber) {
                 Ok(_) | Err(ReferenceError::AtPole { .. }) => {}
                 Err(error) => return Err(refused(argument, wavenumber, error)),
@@ -62,7 +62,7 @@ impl AmplitudeArguments {
     }
 }
 
-/// `pole` is the number of the pole the wavenumber is, to rounding, where there is no amplitude; 0 elsewhere.
+/// `pole` is the index of the pole at this wavenumber, to rounding, where there is no amplitude; otherwise 0.
 fn row<const D: usize>(amplitude: &Amplitude<D>, wavenumber: f64) -> Vec<Cell> {
     let (pole, value) = match amplitude.at(wavenumber) {
         Ok(value) => (0, value),

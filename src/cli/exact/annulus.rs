@@ -22,7 +22,7 @@ impl AnnulusArguments {
     }
 }
 
-/// Both radii, where the dimension is not a matter of choice.
+/// Both radii, for solutions with a fixed dimension.
 #[derive(Args)]
 pub struct CirclesArguments {
     /// Radius a of the inflated disk [length].
@@ -39,7 +39,7 @@ impl CirclesArguments {
     }
 }
 
-/// The error with the argument it comes from.
+/// The error with the argument that caused it.
 pub fn named(error: ReferenceError) -> Failure {
     let (argument, value) = match error {
         ReferenceError::InnerRadiusNotPositive { inner_radius } => ("inner", inner_radius),
@@ -52,7 +52,7 @@ pub fn named(error: ReferenceError) -> Failure {
     refused(argument, value, error)
 }
 
-/// An argument, the value it was given, and what is wrong with it.
+/// An argument, its value, and the error.
 pub fn refused(argument: &str, value: impl Display, error: impl Display) -> Failure {
     format!("--{argument} {value}: {error}").into()
 }

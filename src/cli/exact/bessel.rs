@@ -1,4 +1,4 @@
-//! `jamscope exact bessel`: the functions the profiles are made of.
+//! `jamscope exact bessel`: the Bessel functions of the profiles.
 
 use clap::{Args, ValueEnum};
 use jamscope::reference::bessel::{cylinder, modified, spherical};

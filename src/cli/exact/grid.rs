@@ -1,8 +1,8 @@
-//! Where a solution is evaluated: a list, or so many evenly spaced places.
+//! The points at which a solution is evaluated: a list, or evenly spaced points.
 
 use crate::Failure;
 
-/// The list if there is one, otherwise `count` places from `from` to `to`, both included and exact.
+/// The list if there is one, otherwise `count` points from `from` to `to`, both included exactly.
 pub fn places<'a>(
     list: Option<&'a [f64]>,
     count: u64,
@@ -16,7 +16,7 @@ pub fn places<'a>(
         return Err(format!("--count {count}: at least two, the first and the last").into());
     }
     let last = count - 1;
-    // The far end is a number of its own, and rounding takes no place beyond it, where there is no solution.
+    // The last point is exact, and rounding must not exceed it: there is no solution beyond.
     let place = move |n: u64| (from + (to - from) * (n as f64 / last as f64)).min(to);
     Ok(Box::new((0..count).map(move |n| if n == last { to } else { place(n) })))
 }

@@ -31,7 +31,7 @@ pub struct LorentzianArguments {
     thresholds: Option<Vec<f64>>,
 }
 
-/// What the table is of.
+/// The spectrum of a table.
 enum Medium {
     Discrete(Lorentzian),
     Continuum(ContinuumLorentzian),
@@ -48,7 +48,7 @@ impl Medium {
         })
     }
 
-    /// Name and unit of the angle, and where a curve ends.
+    /// Name and unit of the angle, and the end of its range.
     fn angle(&self) -> ((&'static str, &'static str), f64) {
         match self {
             Medium::Discrete(_) => (("angle", "rad"), PI),
@@ -118,7 +118,7 @@ fn spectrum<'a>(medium: Medium, count: u64) -> Result<Table<'a>, Failure> {
     })
 }
 
-/// One row a threshold: `crosses` is 1 if G falls to it, 0 if never (then the angle is no number).
+/// One row per threshold: `crosses` is 1 if G falls to it, otherwise 0 (the angle is then NaN).
 fn crossings<'a>(medium: &Medium, thresholds: &[f64]) -> Result<Table<'a>, Failure> {
     let rows = thresholds
         .iter()
@@ -136,7 +136,7 @@ fn crossings<'a>(medium: &Medium, thresholds: &[f64]) -> Result<Table<'a>, Failu
     })
 }
 
-/// The error with the argument it comes from.
+/// The error with the argument that caused it.
 fn named(error: LorentzianError) -> Failure {
     let (argument, value) = match error {
         LorentzianError::CrossoverNotPositive { crossover } => ("frequency", crossover),

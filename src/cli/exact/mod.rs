@@ -1,6 +1,7 @@
 //! `jamscope exact`: any exact solution as a table, 17 significant digits.
 //!
-//! A kind of solution is a file here with its arguments and `table`, and a line in [`Solution`] and in [`Solution::table`].
+//! Each kind of solution has a file here with its arguments and `table`, and an entry in [`Solution`] and in
+//! [`Solution::table`].
 
 mod amplitude;
 mod annulus;
@@ -55,12 +56,12 @@ impl Solution {
     }
 }
 
-/// Prints the table row by row; nothing is printed if an argument makes no sense.
+/// Prints the table row by row; nothing is printed if an argument is invalid.
 pub fn print(arguments: &ExactArguments) -> Result<(), Failure> {
     let table = arguments.solution.table()?;
     let mut output = std::io::BufWriter::new(std::io::stdout().lock());
     match if arguments.json { table.write_json(&mut output) } else { table.write_csv(&mut output) } {
-        // A reader that has gone away (`| head`) is no failure.
+        // A closed pipe (`| head`) is not an error.
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(()),
     }

@@ -58,7 +58,7 @@ impl ModeArguments {
         }
     }
 
-    /// None if no argument speaks of any.
+    /// None if no argument sets a screening.
     fn screening(&self) -> Result<Option<Screening>, Failure> {
         if let Some(wavenumber) = self.wavenumber {
             if !(wavenumber >= 0.0 && wavenumber.is_finite()) {
@@ -102,7 +102,7 @@ impl ModeArguments {
         })
     }
 
-    /// The error with the argument it comes from.
+    /// The error with the argument that caused it.
     fn named(&self, error: AngularModeError) -> Failure {
         match error {
             AngularModeError::PoissonRatioOutside { poisson_ratio } => refused("poisson", poisson_ratio, error),
@@ -121,7 +121,7 @@ impl ModeArguments {
         }
     }
 
-    /// The argument to blame for a screening: the one that is no number, or the larger.
+    /// The argument that caused the error of a screening: the one that is not finite, or the larger one.
     fn strongest_screening(&self, even: f64, odd: f64) -> (&'static str, f64) {
         match self.wavenumber {
             Some(wavenumber) => ("wavenumber", wavenumber),

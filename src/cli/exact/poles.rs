@@ -1,4 +1,4 @@
-//! `jamscope exact poles`: the wavenumbers at which the screened solution has no finite value, and its residues there.
+//! `jamscope exact poles`: the wavenumbers at which the screened solution diverges, and its residues there.
 
 use clap::Args;
 use jamscope::reference::Annulus;

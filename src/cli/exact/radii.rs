@@ -1,4 +1,4 @@
-//! At which radii a solution between an inflated disk and a rim is evaluated.
+//! The radii at which a solution between an inflated disk and a rim is evaluated.
 
 use clap::Args;
 use jamscope::reference::Annulus;
@@ -18,7 +18,7 @@ pub struct RadiiArguments {
 }
 
 impl RadiiArguments {
-    /// All of them inside the annulus, its edges included.
+    /// Checks that all radii are inside the annulus, including its edges.
     pub fn within(&self, annulus: Annulus) -> Result<Box<dyn Iterator<Item = f64> + '_>, Failure> {
         let (inner, outer) = (annulus.inner_radius(), annulus.outer_radius());
         if let Some(radius) = self.radii.iter().flatten().find(|&&radius| !annulus.contains(radius)) {

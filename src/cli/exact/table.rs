@@ -1,23 +1,23 @@
-//! `Table`: columns with units and rows that are computed as they are written.
+//! `Table`: columns with units, and rows computed while they are written.
 
 use std::io::{self, Write};
 
 /// One number of a table.
 #[derive(Clone, Copy)]
 pub enum Cell {
-    /// A count: written without a point.
+    /// An integer, written without a decimal point.
     Count(u64),
-    /// Written with 17 significant digits; what is not a number as `NaN`, in JSON as null.
+    /// A number with 17 significant digits; NaN is written as `NaN`, in JSON as null.
     Number(f64),
 }
 
 /// Named columns with units, and the rows under them.
 pub struct Table<'a> {
-    /// Which solution, for JSON.
+    /// Name of the solution, for JSON.
     pub solution: &'static str,
     /// Name and unit of every column.
     pub columns: Vec<(&'static str, &'static str)>,
-    /// As many cells a row as there are columns.
+    /// Rows with one cell per column.
     pub rows: Box<dyn Iterator<Item = Vec<Cell>> + 'a>,
 }
 
@@ -33,7 +33,7 @@ impl Table<'_> {
         output.flush()
     }
 
-    /// `{"solution": …, "columns": [{"name": …, "unit": …}, …], "rows": [[…], …]}`, a row a line.
+    /// `{"solution": …, "columns": [{"name": …, "unit": …}, …], "rows": [[…], …]}`, one row per line.
     pub fn write_json(self, output: &mut impl Write) -> io::Result<()> {
         let column = |(name, unit): &(&str, &str)| serde_json::json!({ "name": name, "unit": unit });
         let columns: Vec<serde_json::Value> = self.columns.iter().map(column).collect();

@@ -1,4 +1,4 @@
-//! [`fit_crossover`]: f† of the generalised Lorentzian, or that there is none.
+//! [`fit_crossover`]: f† of the generalised Lorentzian, or the result that there is none.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,18 +9,18 @@ use crate::fit::angular::window::SpectrumWindowSettings;
 use crate::fit::search::{golden, minimum};
 use crate::observe::angular::RingSample;
 
-/// f† searched: from 1/16 to 16 times the highest f, in steps of 2^(1/4).
+/// Range of f†: from 1/16 to 16 times the highest f, in steps of 2^(1/4).
 const OCTAVES_BEYOND: f64 = 4.0;
 const STEPS_PER_OCTAVE: f64 = 4.0;
 
-/// Exponents a free one is looked for in.
+/// Search range of a free exponent.
 const EXPONENTS: [f64; 2] = [0.5, 6.0];
 
-/// How a crossover is fitted.
+/// Settings of the fit of a crossover.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CrossoverSettings {
-    /// Which powers.
+    /// The powers used.
     pub window: SpectrumWindowSettings,
     /// s.
     pub exponent: ExponentChoice,
@@ -29,8 +29,8 @@ pub struct CrossoverSettings {
 }
 
 impl Default for CrossoverSettings {
-    /// s = 1.5; k = 1.681334, which makes θ† the angle of G = 0.1 at large f† (the study has 0.45, which is another
-    /// threshold's).
+    /// s = 1.5; k = 1.681334, for which θ† is the angle of G = 0.1 at large f† (the study has 0.45, the value for
+    /// another threshold).
     fn default() -> Self {
         CrossoverSettings {
             window: SpectrumWindowSettings::default(),
@@ -41,7 +41,7 @@ impl Default for CrossoverSettings {
 }
 
 impl CrossoverSettings {
-    /// Whether every number makes sense, whatever the rings.
+    /// Checks the settings, independently of the rings.
     pub(crate) fn check(&self) -> Result<(), SpectrumFitError> {
         self.window.check()?;
         let factor = self.angle_factor;
@@ -61,36 +61,36 @@ impl CrossoverSettings {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ExponentChoice {
-    /// This one \[1\].
+    /// This exponent \[1\].
     Fixed(f64),
-    /// The best from 0.5 to 6.
+    /// The best exponent from 0.5 to 6.
     Free,
 }
 
 /// A Lorentzian fitted to the spectra of rings.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CrossoverFit {
-    /// What the spectrum is found to be.
+    /// The result for the spectrum.
     pub outcome: CrossoverOutcome,
-    /// s, as fixed or as found \[1\].
+    /// s, fixed or fitted \[1\].
     pub exponent: f64,
     /// Lowest and highest f fitted.
     pub window: [usize; 2],
     /// Number of powers fitted.
     pub power_count: usize,
-    /// How much −2 ln L of f^(−s), f† = 0, is above the best: beyond [`rise`](Self::rise) it is refused.
+    /// Rise of −2 ln L of f^(−s), f† = 0, above the best. Above [`rise`](Self::rise) this limit is rejected.
     pub scale_free_rise: f64,
-    /// How much −2 ln L of a flat spectrum is above the best.
+    /// Rise of −2 ln L of a flat spectrum above the best.
     pub white_rise: f64,
-    /// The rise of −2 ln L within the interval.
+    /// The rise of −2 ln L that defines the interval.
     pub rise: f64,
     /// ρ of the first ring over its variance \[1\]; 0 if it was not fitted.
     pub noise: f64,
-    /// Σ (P/E − 1)² per degree of freedom: 1 if the model is what there is, more if not \[1\].
+    /// Σ (P/E − 1)² per degree of freedom: 1 if the model is correct, otherwise larger \[1\].
     pub dispersion: f64,
 }
 
-/// What a spectrum says of f†.
+/// The result for f†.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CrossoverOutcome {
@@ -101,26 +101,26 @@ pub enum CrossoverOutcome {
         /// θ† = k/f† \[rad\].
         angle: Interval,
     },
-    /// A power law fits as well: f† may be 0 and θ† without bound.
+    /// A power law fits as well: f† may be 0, and θ† is unbounded.
     ScaleFree {
         /// Upper end of the interval of f† \[1\].
         largest: f64,
-        /// k over it \[rad\].
+        /// k over that end \[rad\].
         smallest_angle: f64,
     },
-    /// A flat spectrum fits as well: f† may be any number beyond.
+    /// A flat spectrum fits as well: f† is unbounded.
     White {
         /// Lower end of the interval of f† \[1\].
         smallest: f64,
-        /// k over it \[rad\].
+        /// k over that end \[rad\].
         largest_angle: f64,
     },
-    /// Both fit as well.
+    /// Both a power law and a flat spectrum fit as well.
     Undetermined,
 }
 
 impl CrossoverOutcome {
-    /// Whether a crossover is within what was found; 0 is scale-free, infinity white.
+    /// Whether a crossover is consistent with the result; 0 means scale-free, infinity white.
     pub fn holds(&self, crossover: f64) -> bool {
         match self {
             CrossoverOutcome::Found { crossover: found, .. } => found.holds(crossover),
@@ -131,10 +131,10 @@ impl CrossoverOutcome {
     }
 }
 
-/// Fits S = A/(1 + (f/f†)^s) to the rings, f† one for all, and s if it is free.
+/// Fits S = A/(1 + (f/f†)^s) to the rings with a common f†, and a common s if it is free.
 ///
 /// # Errors
-/// As [`fit_slope`](crate::fit::angular::fit_slope); a fixed exponent or k that is not positive and finite.
+/// See [`fit_slope`](crate::fit::angular::fit_slope); a fixed exponent or k that is not positive and finite.
 ///
 /// # Example
 /// ```
@@ -152,7 +152,7 @@ pub fn fit_crossover(rings: &[RingSample], settings: &CrossoverSettings) -> Resu
     let powers = Powers::of(rings, &settings.window)?;
     let [_, highest] = powers.window();
     let deviance = |shape: Shape| powers.best(|logarithm| shape.at(logarithm)).deviance;
-    // The best exponent beside a crossover, and −2 ln L there.
+    // The best exponent at a given crossover, and −2 ln L there.
     let profile = |crossover: Crossover| match settings.exponent {
         ExponentChoice::Fixed(exponent) => (exponent, deviance(Shape { crossover, exponent })),
         ExponentChoice::Free => {
@@ -179,7 +179,7 @@ pub fn fit_crossover(rings: &[RingSample], settings: &CrossoverSettings) -> Resu
     })
 }
 
-/// f† of the least −2 ln L, and what its rises say.
+/// f† at the minimum of −2 ln L, and the interval.
 pub(in crate::fit) struct Located {
     pub outcome: CrossoverOutcome,
     pub crossover: Crossover,
@@ -187,7 +187,8 @@ pub(in crate::fit) struct Located {
     pub white_rise: f64,
 }
 
-/// Where −2 ln L is least from f† = 0 to infinity, and within which f† it rises by no more than `rise`; θ† = `factor`/f†.
+/// Finds the minimum of −2 ln L for f† from 0 to infinity, and the f† within which it rises by at most `rise`; θ† =
+/// `factor`/f†.
 pub(in crate::fit) fn locate(highest: usize, rise: f64, factor: f64, deviance: impl Fn(Crossover) -> f64) -> Located {
     let octaves = libm::log2(highest as f64) + 2.0 * OCTAVES_BEYOND;
     let steps = (octaves * STEPS_PER_OCTAVE).ceil() as usize;
@@ -196,14 +197,14 @@ pub(in crate::fit) fn locate(highest: usize, rise: f64, factor: f64, deviance: i
     let (scale_free, white) = (deviance(Crossover::Zero), deviance(Crossover::Infinite));
     let lowest = inside.value.min(scale_free).min(white);
     let (scale_free_rise, white_rise) = (scale_free - lowest, white - lowest);
-    // The interval anew, if one of the limits fits better than any crossover between.
+    // The interval is recomputed if one of the limits fits better than any crossover between.
     let interval = if lowest < inside.value {
         minimum(&grid, rise + lowest - inside.value, |octave| deviance(Crossover::Octave(octave)))
     } else {
         inside
     };
     let ends = [interval.lower, interval.upper].map(|end| end.map(libm::exp2));
-    // A sixteenth of f = 1 is as good as 0, sixteen times the highest f as infinity.
+    // A sixteenth of f = 1 is equivalent to 0, sixteen times the highest f to infinity.
     let down_to_zero = scale_free_rise <= rise || ends[0].is_none();
     let up_to_infinity = white_rise <= rise || ends[1].is_none();
     let outcome = match (down_to_zero, up_to_infinity, ends) {
@@ -226,16 +227,16 @@ pub(in crate::fit) fn locate(highest: usize, rise: f64, factor: f64, deviance: i
     Located { outcome, crossover, scale_free_rise, white_rise }
 }
 
-/// f†, limits included.
+/// f†, including its limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::fit) enum Crossover {
     Zero,
-    /// Of this logarithm to base 2.
+    /// Its logarithm to base 2.
     Octave(f64),
     Infinite,
 }
 
-/// A spectrum of any amplitude.
+/// A spectrum up to its amplitude.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::fit) struct Shape {
     pub crossover: Crossover,
@@ -243,7 +244,7 @@ pub(in crate::fit) struct Shape {
 }
 
 impl Shape {
-    /// S at a frequency whose logarithm this is.
+    /// S at a frequency, given by its logarithm.
     pub fn at(self, logarithm: f64) -> f64 {
         match self.crossover {
             Crossover::Zero => libm::exp(-self.exponent * logarithm),

@@ -1,11 +1,11 @@
-//! [`SpectrumFitError`]: why there is nothing to fit.
+//! [`SpectrumFitError`]: why a spectrum could not be fitted.
 
 use crate::observe::angular::AngularError;
 
-/// Powers a fit needs.
+/// Minimum number of powers for a fit.
 pub const LEAST_POWER_COUNT: usize = 3;
 
-/// Why there is nothing to fit. That a spectrum is white or scale-free is an outcome, not an error.
+/// Why a spectrum could not be fitted. A white or scale-free spectrum is an outcome, not an error.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpectrumFitError {
@@ -36,13 +36,13 @@ pub enum SpectrumFitError {
         /// Disks of the ring.
         disk_count: usize,
     },
-    /// Every value of a ring is the same.
+    /// All values of a ring are equal.
     #[error("ring {ring} has no power")]
     NoPower {
         /// Index of the ring.
         ring: usize,
     },
-    /// A setting out of its range.
+    /// A setting is out of range.
     #[error("{setting} = {value} is out of range")]
     SettingOutOfRange {
         /// The setting.
@@ -50,7 +50,7 @@ pub enum SpectrumFitError {
         /// Its value.
         value: f64,
     },
-    /// The spectrum could not be taken.
+    /// The spectrum could not be computed.
     #[error("the spectrum: {0}")]
     Spectrum(#[from] AngularError),
 }

@@ -1,4 +1,4 @@
-//! Whittle's likelihood of the powers of rings, amplitudes and noise at their best.
+//! Whittle's likelihood of the powers of rings, maximised over amplitudes and noise.
 
 use crate::fit::angular::error::{LEAST_POWER_COUNT, SpectrumFitError};
 use crate::fit::angular::window::{HighestFrequency, SingleDiskNoise, SpectrumWindowSettings};
@@ -10,10 +10,10 @@ use crate::observe::angular::{
 use crate::reference::lorentzian::USUAL_EXPONENT;
 use crate::vector::larger;
 
-/// Sources of the window over the number of disks; beyond it leakage is white within the scatter of a window.
+/// Number of source frequencies of the window per disk. Leakage from beyond is white within the scatter of a window.
 const SOURCES_PER_DISK: usize = 2;
 
-/// Rise of −2 ln L over two standard errors.
+/// Rise of −2 ln L at two standard errors.
 const RISE: f64 = 4.0;
 
 /// Bartlett's correction times the number of independent powers. Source: Lawley (1956), Biometrika 43, 295, for exponential
@@ -21,10 +21,11 @@ const RISE: f64 = 4.0;
 /// (`likelihood::tests::the_correction_of_few_powers_is_that_of_lawley`).
 const SMALL_COUNT: f64 = 0.4;
 
-/// From here on powers of a ring count as independent in the correction, which is 1.3 % of the rise and less.
+/// Above this number, the powers of a ring count as independent in the correction, which is then at most 1.3 % of the
+/// rise.
 const DEPENDENCE_UP_TO: usize = 32;
 
-/// Largest ρ N_f over Σ K S, in decades either way.
+/// Range of ρ N_f over Σ K S, in decades above and below 1.
 const NOISE_DECADES: f64 = 8.0;
 
 /// The powers of several rings.
@@ -37,7 +38,7 @@ pub(super) struct Powers {
 struct Ring {
     lowest: usize,
     power: Vec<f64>,
-    /// m over the number of powers that scatter as much independently, for S ∝ f^(−1.5).
+    /// m over the number of independent powers with the same scatter, for S ∝ f^(−1.5).
     dependence: f64,
     window: SpectralWindow,
     sources: Vec<Source>,
@@ -78,14 +79,14 @@ impl Powers {
         [self.rings.iter().map(|ring| ring.lowest).min().unwrap_or(1), self.highest]
     }
 
-    /// Rise of −2 ln L at the ends of an interval.
+    /// Rise of −2 ln L at the ends of an interval, with the correction for few powers.
     pub(super) fn rise(&self) -> f64 {
         let count = self.count() as f64;
         let scatter: f64 = self.rings.iter().map(|ring| ring.power.len() as f64 * ring.dependence).sum();
         RISE * (1.0 + SMALL_COUNT * scatter / (count * count))
     }
 
-    /// The best amplitudes (and noise) for a shape of the spectrum, a function of ln f.
+    /// The best amplitudes (and noise) for a spectrum of given shape, a function of ln f.
     pub(super) fn best(&self, shape: impl Fn(f64) -> f64) -> Best {
         let mut total = Best { deviance: 0.0, amplitude: f64::NAN, noise: f64::NAN, scatter: 0.0 };
         for (index, ring) in self.rings.iter().enumerate() {
@@ -99,7 +100,7 @@ impl Powers {
         total
     }
 
-    /// Σ (P/E − 1)² per degree of freedom: 1 where the model holds.
+    /// Σ (P/E − 1)² per degree of freedom: 1 if the model is correct.
     pub(super) fn dispersion(&self, best: Best, parameter_count: usize) -> f64 {
         let noises = if self.noise == SingleDiskNoise::Fitted { self.rings.len() } else { 0 };
         let freedom = self.count() as f64 - (self.rings.len() + parameter_count + noises) as f64;
@@ -125,7 +126,7 @@ impl Ring {
         let estimator = SpectrumEstimator::Direct { weights: Weights::Gaps, leakage: Leakage::Kept };
         let spectrum = SpectrumSettings { estimator, frequency_limit: FrequencyLimit::Fixed(highest) };
         let spectrum = PowerSpectrum::of(ring, &spectrum)?;
-        // Powers of rounding alone are none.
+        // Powers at the level of rounding count as zero.
         let rounding = f64::EPSILON * f64::EPSILON * (spectrum.power[0] + spectrum.variance);
         let power: Vec<f64> = spectrum.power[lowest..].iter().map(|p| p / spectrum.variance).collect();
         if spectrum.variance <= rounding || power.iter().sum::<f64>() <= 0.0 || power.iter().any(|p| p.is_nan()) {
@@ -152,7 +153,7 @@ impl Ring {
         if noise == SingleDiskNoise::None {
             return without;
         }
-        // The scale at which the noise is as strong as the weakest power expected, and that of the strongest.
+        // Noise as strong as the weakest expected power, and as the strongest.
         let ratios = || expected.iter().zip(white).map(|(e, w)| e / w);
         let low = libm::log(-ratios().map(|ratio| -ratio).fold(f64::NEG_INFINITY, larger)) - NOISE_DECADES;
         let high = libm::log(ratios().fold(0.0, larger)) + NOISE_DECADES;
@@ -160,7 +161,7 @@ impl Ring {
         if found.deviance < without.deviance { found } else { without }
     }
 
-    /// E = A (e + ratio N), A at its best.
+    /// E = A (e + ratio N), with the best A.
     fn at(&self, expected: &[f64], white: &[f64], ratio: f64) -> Best {
         let count = self.power.len() as f64;
         let terms = || expected.iter().zip(white).zip(&self.power).map(|((e, w), p)| (e + ratio * w, *p));
@@ -192,7 +193,7 @@ mod tests {
             let logarithms: Vec<f64> = (1..=count).map(|f| f64::from(f).ln()).collect();
             let mean = logarithms.iter().sum::<f64>() / f64::from(count);
             let width: f64 = logarithms.iter().map(|x| (x - mean).powi(2)).sum();
-            // The amplitude alone, then amplitude and slope.
+            // First the amplitude alone, then amplitude and slope.
             let constant = vec![vec![1.0 / f64::from(count); count as usize]; count as usize];
             let line = |x: &f64| {
                 let entry = |y: &f64| 1.0 / f64::from(count) + (x - mean) * (y - mean) / width;

@@ -5,20 +5,21 @@
 //! Lorentzian    S(f) = A/(1 + (f/f†)^s),  s = 1.5 or free        θ† = k/f†
 //! ```
 //!
-//! A power P_f of a random field is exponentially distributed about its mean, log P_f with a standard deviation of π/√6, whatever
-//! the number of disks: hence Whittle's likelihood, and no least squares. The mean is not S(f) but what the very angles of
-//! the ring make of it ([`SpectralWindow`](crate::observe::angular::SpectralWindow)), so that irregular angles bias nothing:
+//! A power P_f of a random field is exponentially distributed about its mean; log P_f has a standard deviation of π/√6
+//! for any number of disks. The fit therefore uses Whittle's likelihood instead of least squares. The mean is not S(f)
+//! itself but its expected value at the angles of the ring
+//! ([`SpectralWindow`](crate::observe::angular::SpectralWindow)), so irregular angles cause no bias:
 //!
 //! ```text
 //! −2 ln L = 2 Σ_f (ln E_f + P_f/E_f)          E_f = Σ_g K_fg S(g) + ρ N_f          gaps as weights
 //! ```
 //!
-//! A, of each ring its own, has its best value in closed form, P/E in the mean 1. Several rings, those of samples, are fitted
-//! together. The interval of a parameter holds where −2 ln L, all other parameters at their best, rises by no more than
-//! 4 (1 + 0.4 D/m): two standard errors, with the correction of a small number of powers m (Bartlett's; 0.4 is that of independent
-//! exponential variates, by Lawley's expansion). m/D is how many independent powers would scatter as much: at few irregular angles
-//! what low frequencies leak is common to all ([`dependence`](crate::observe::angular::dependence)). The standard error is a fourth
-//! of the interval.
+//! The best A, one for each ring, has a closed form, for which the mean of P/E is 1. Several rings, one per sample, are
+//! fitted together. The interval of a parameter is where −2 ln L, minimised over all other parameters, rises by at most
+//! 4 (1 + 0.4 D/m). This is two standard errors with Bartlett's correction for a small number m of powers; 0.4 is the
+//! value for independent exponential variates, by Lawley's expansion. m/D is the number of independent powers with the
+//! same scatter: at few irregular angles the leakage of low frequencies is common to all
+//! ([`dependence`](crate::observe::angular::dependence)). The standard error is a fourth of the interval.
 //!
 //! Source: Whittle (1953), Ark. Mat. 2, 423; Sykulski et al. (2019), Biometrika 106, 251; Lawley (1956), Biometrika 43, 295.
 

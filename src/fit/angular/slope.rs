@@ -9,7 +9,7 @@ use crate::fit::angular::window::SpectrumWindowSettings;
 use crate::fit::search::minimum;
 use crate::observe::angular::RingSample;
 
-/// Exponents searched: −2 to 6 in steps of 1/4.
+/// Search range of the exponent: −2 to 6 in steps of 1/4.
 const FIRST: f64 = -2.0;
 const STEP: f64 = 0.25;
 const STEPS: u32 = 32;
@@ -17,7 +17,7 @@ const STEPS: u32 = 32;
 /// A power law fitted to the spectra of rings.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SlopeFit {
-    /// What the spectrum is found to be.
+    /// The result for the spectrum.
     pub outcome: SlopeOutcome,
     /// s of S ∝ f^(−s) \[1\].
     pub exponent: Interval,
@@ -29,23 +29,23 @@ pub struct SlopeFit {
     pub amplitude: f64,
     /// ρ of the first ring over its variance \[1\]; 0 if it was not fitted.
     pub noise: f64,
-    /// Σ (P/E − 1)² per degree of freedom: 1 if a power law is what there is, more if not \[1\].
+    /// Σ (P/E − 1)² per degree of freedom: 1 if the spectrum is a power law, otherwise larger \[1\].
     pub dispersion: f64,
 }
 
-/// What a slope says.
+/// The result for a slope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SlopeOutcome {
-    /// The interval is closed and does not hold zero.
+    /// The interval is closed and does not contain zero.
     Sloped,
-    /// The interval holds zero: white.
+    /// The interval contains zero: the spectrum may be white.
     Flat,
-    /// The interval is open: the powers do not tell a slope between −2 and 6.
+    /// The interval is open: the powers determine no slope between −2 and 6.
     Undetermined,
 }
 
-/// Fits S = A f^(−s) to the rings, s one for all.
+/// Fits S = A f^(−s) to the rings with a common s.
 ///
 /// # Errors
 /// No ring, a window with fewer than three powers or beyond n/2, values without variance.

@@ -1,10 +1,10 @@
-//! [`SpectrumWindowSettings`]: which powers are fitted, and what may be in them.
+//! [`SpectrumWindowSettings`]: the powers used in a fit, and the model of their noise.
 
 use serde::{Deserialize, Serialize};
 
 use crate::fit::angular::error::SpectrumFitError;
 
-/// Which powers are fitted, and what may be in them.
+/// The powers used in a fit, and the model of their noise.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SpectrumWindowSettings {
@@ -12,14 +12,14 @@ pub struct SpectrumWindowSettings {
     pub lowest: usize,
     /// Highest f, f_2.
     pub highest: HighestFrequency,
-    /// Values of single disks.
+    /// Noise of single disks.
     pub noise: SingleDiskNoise,
-    /// Highest frequency of the field itself over the number of disks \[1\]: the model ends there.
+    /// Highest frequency of the field over the number of disks \[1\]; the model ends there.
     pub frequencies_per_disk: f64,
 }
 
 impl Default for SpectrumWindowSettings {
-    /// From f = 1; no noise of single disks; a field up to 16 frequencies a disk.
+    /// From f = 1; no noise of single disks; a field with up to 16 frequencies per disk.
     fn default() -> Self {
         SpectrumWindowSettings {
             lowest: 1,
@@ -31,7 +31,7 @@ impl Default for SpectrumWindowSettings {
 }
 
 impl SpectrumWindowSettings {
-    /// Whether every number makes sense, whatever the rings.
+    /// Checks the settings, independently of the rings.
     pub(crate) fn check(&self) -> Result<(), SpectrumFitError> {
         let value = self.frequencies_per_disk;
         if (1.0..=1e3).contains(&value) {
@@ -46,21 +46,21 @@ impl SpectrumWindowSettings {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum HighestFrequency {
-    /// n/16, but n/4 or 15, whichever is less, where that is more. Above n/16 leakage makes powers depend on each other, and
-    /// the errors come out too small (`fits::powers_above_a_sixteenth_claim_too_much`).
+    /// n/16, or, if that is larger, the smaller of n/4 and 15. Above n/16 leakage correlates the powers, and the errors
+    /// would be too small (`fits::powers_above_a_sixteenth_claim_too_much`).
     #[default]
     Resolved,
-    /// This one, at most n/2.
+    /// This frequency, at most n/2.
     Fixed(usize),
 }
 
-/// Values of single disks on top of the field: white noise of variance ρ.
+/// Independent values of single disks added to the field: white noise of variance ρ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SingleDiskNoise {
-    /// There is none.
+    /// No noise.
     #[default]
     None,
-    /// ρ of every ring is fitted with the rest.
+    /// ρ of every ring is fitted.
     Fitted,
 }

@@ -1,7 +1,7 @@
-//! [`bootstrap`]: standard error and interval of whatever is computed from samples, by drawing them anew.
+//! [`bootstrap`]: standard error and interval of any number computed from samples, by resampling.
 //!
-//! Every group of samples (a cell of a study) is drawn with replacement within itself, as many as it has: which parameters were
-//! measured, and how often, stays as it is. Percentile method.
+//! Every group of samples (a cell of a study) is resampled with replacement within itself. The measured parameters and
+//! their numbers of samples stay the same. Percentile method.
 //!
 //! Source: Efron (1979), Ann. Stat. 7, 1; Davison, Hinkley (1997), Bootstrap Methods and their Application, §3.2 (strata), §5.3.
 
@@ -11,26 +11,26 @@ use serde::{Deserialize, Serialize};
 
 use crate::observe::angular::quantile;
 
-/// Where more than one in so many resamplings give no number, those that do are no fair sample of all.
+/// If more than one in this many resamplings gives no number, the others are a biased selection.
 const FAILURES_ONE_IN: usize = 10;
 
-/// A number, and how it scatters over resamplings.
+/// A number and its scatter over resamplings.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BootstrapInterval {
-    /// The number of the data as they are.
+    /// The number for the original data.
     pub best: f64,
-    /// Standard deviation over the resamplings; none where more than a tenth of them, or all but one, have no number.
+    /// Standard deviation over the resamplings; none if more than a tenth of them, or all but one, give no number.
     pub standard_error: Option<f64>,
-    /// From 2.5 to 97.5 % of the resamplings; none where `standard_error` is none.
+    /// From 2.5 % to 97.5 % of the resamplings; none if `standard_error` is none.
     pub interval: Option<[f64; 2]>,
-    /// Resamplings made.
+    /// Number of resamplings.
     pub resampling_count: usize,
-    /// Resamplings without the number.
+    /// Number of resamplings without the number.
     pub failed_count: usize,
 }
 
 impl BootstrapInterval {
-    /// Whether there is an interval and a number lies in it.
+    /// Whether there is an interval that contains a number.
     pub fn holds(&self, value: f64) -> bool {
         self.interval.is_some_and(|[low, high]| low <= value && value <= high)
     }
@@ -50,17 +50,18 @@ impl BootstrapInterval {
     }
 }
 
-/// A number over resamplings. None where the data as they are do not give it.
+/// Resamples a number. None if the original data do not give it.
 ///
-/// `estimate` is handed the indices of the samples of every group, first each once, in order, then those drawn. What is not
-/// finite counts as none. The draws are a function of the sizes alone: same data, same bits.
+/// `estimate` takes the indices of the samples of every group: first each once, in order, then those resampled. Values
+/// that are not finite count as missing. The resampling depends only on the sizes, so it is reproducible.
 ///
 /// # Accuracy
-/// In groups of n the standard error of a mean is too small by a factor √((n − 1)/n); a group of one sample does not scatter
-/// at all. Of normal numbers the ends themselves scatter by √(0.025·0.975/1000)/0.058 = 0.085 standard errors at 1000 resamplings.
+/// In groups of n the standard error of a mean is too small by a factor √((n − 1)/n); a group of one sample has no
+/// scatter at all. For normal numbers the ends themselves scatter by √(0.025·0.975/1000)/0.058 = 0.085 standard errors
+/// at 1000 resamplings.
 ///
 /// # Cost
-/// `estimate` is called once and once a resampling.
+/// One call of `estimate`, plus one per resampling.
 ///
 /// # Example
 /// ```
@@ -71,7 +72,7 @@ impl BootstrapInterval {
 /// };
 /// let found = bootstrap(&[6], 1000, mean).expect("six lengths have a mean");
 /// assert_eq!((found.best, found.failed_count), (4.0, 0));
-/// // The mean of six drawn has a variance of Σ (x − 4)²/6² = 2.5/36.
+/// // The mean of a resampling has the variance Σ (x − 4)²/6² = 2.5/36.
 /// let error = found.standard_error.expect("none failed");
 /// assert!((error / (2.5f64 / 36.0).sqrt() - 1.0).abs() < 0.1);
 /// ```
@@ -83,13 +84,14 @@ pub fn bootstrap(
     bootstrap_all(group_sizes, resamplings, |groups| estimate(groups).map(|value| vec![value]))?.pop()
 }
 
-/// Several numbers over the same resamplings.
+/// Resamples several numbers together.
 ///
-/// A single number that is not finite counts as failed of that number alone; none, or another number of numbers than the data as
-/// they are give, as failed of all. None where the data as they are have none, or one that is not finite.
+/// If a single number is not finite, only that number has failed. If `estimate` returns none or a different number of
+/// values than for the original data, all have failed. None if the original data give none, or a value that is not
+/// finite.
 ///
 /// # Cost
-/// As [`bootstrap`]; all numbers of all resamplings are held.
+/// See [`bootstrap`]; all numbers of all resamplings are in memory.
 pub fn bootstrap_all(
     group_sizes: &[usize],
     resamplings: usize,
@@ -112,7 +114,7 @@ pub fn bootstrap_all(
     Some(best.into_iter().zip(found).map(|(best, found)| BootstrapInterval::of(best, found, resamplings)).collect())
 }
 
-/// A seed of the sizes and their order: the hash FNV-1a of Fowler, Noll and Vo, with sizes for its bytes.
+/// A seed from the sizes and their order: the hash FNV-1a of Fowler, Noll and Vo, with sizes in place of bytes.
 fn seed(group_sizes: &[usize]) -> u64 {
     group_sizes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &size| (hash ^ size as u64).wrapping_mul(0x0100_0000_01b3))
 }

@@ -1,27 +1,27 @@
-//! [`collapse`]: the exponents with which curves of several sizes lie on one.
+//! [`collapse`]: the exponents for which curves of several sizes collapse.
 
 use crate::fit::ensemble::error::EnsembleFitError;
 use crate::fit::ensemble::quality::{CollapseQuality, Curve, Curves};
 use crate::fit::search::minimum;
 
-/// The search ends at this share of a range.
+/// Final step of the search, as a share of a range.
 const STEP_LIMIT: f64 = 1e-7;
 
-/// The rise of S of the rough interval.
+/// The rise of S that defines the rough interval.
 const RISE: f64 = 1.0;
 
-/// Points of the grid on which the ends of that interval are looked for.
+/// Number of points of the grid in which the ends of that interval are located.
 const INTERVAL_POINTS: u32 = 100;
 
-/// How exponents are searched.
+/// Settings of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CollapseSettings<const K: usize> {
     /// Lowest and highest value of every exponent \[1\].
     pub ranges: [[f64; 2]; K],
-    /// Points of the grid along every range, at least 3. Changes results only where S has several minima.
+    /// Number of points of the grid along every range, at least 3. Changes results only if S has several minima.
     pub grid_points: usize,
-    /// Exponents at which fewer than this share of all points have others to be held against, or curves fall into groups that do
-    /// not touch, are left out: where curves are torn apart, S is small for want of points \[1\].
+    /// Minimum share of points that can be compared with other curves \[1\]. Exponents with a smaller share, or with
+    /// disconnected groups of curves, are excluded: there S is small because few points contribute.
     pub least_share: f64,
 }
 
@@ -37,24 +37,24 @@ impl<const K: usize> Default for CollapseSettings<K> {
 pub struct Collapse<const K: usize> {
     /// The exponents \[1\].
     pub exponents: [f64; K],
-    /// S there, and of how many points.
+    /// S at these exponents, and the number of points.
     pub quality: CollapseQuality,
-    /// Where S has risen by 1 along every exponent, the others as they are: the usual rough bound, no confidence interval, and too
-    /// narrow where exponents may make up for each other \[1\].
+    /// Where S has risen by 1 along each exponent, with the others fixed \[1\]. This is a common rough bound, not a
+    /// confidence interval; it is too narrow if exponents are correlated.
     pub rough: [[Option<f64>; 2]; K],
 }
 
-/// What curves say of the exponents.
+/// The result for the exponents.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CollapseOutcome<const K: usize> {
-    /// S has its least value inside the ranges.
+    /// The minimum of S is inside the ranges.
     Found(Collapse<K>),
-    /// Nowhere in the ranges do enough points have others to be held against.
+    /// At no exponents in the ranges can enough points be compared with other curves.
     NoOverlap {
-        /// The largest share that have, on the grid.
+        /// The largest such share on the grid.
         largest_share: f64,
     },
-    /// S is least at the end of a range.
+    /// The minimum of S is at the end of a range.
     AtEdge {
         /// Index of that exponent.
         exponent: usize,
@@ -75,23 +75,24 @@ impl<const K: usize> CollapseOutcome<K> {
     }
 }
 
-/// The exponents of the least S, [`collapse_quality`](crate::fit::ensemble::collapse_quality).
+/// The exponents at the minimum of S, [`collapse_quality`](crate::fit::ensemble::collapse_quality).
 ///
-/// S on a grid, then a pattern search from its lowest point: to the best of the 3^K − 1 neighbours, or half the step. S jumps where
-/// a point gains or loses its neighbours; a search by values bears that.
+/// S is computed on a grid. A pattern search then starts from its lowest point: it moves to the best of the 3^K − 1
+/// neighbours, or halves the step. S is discontinuous where a point gains or loses its neighbours; a search by values
+/// tolerates this.
 ///
-/// Errors of the exponents: [`bootstrap_all`](crate::fit::ensemble::bootstrap_all) over samples, with an estimate that makes the
-/// curves anew and calls this.
+/// For errors of the exponents use [`bootstrap_all`](crate::fit::ensemble::bootstrap_all) over samples, with an
+/// estimate that recomputes the curves and calls this function.
 ///
 /// # Errors
-/// As [`collapse_quality`](crate::fit::ensemble::collapse_quality); a range that is empty or not finite, fewer than 3 points of the
-/// grid or more than 10⁶ in all, a share not in (0, 1], K = 0.
+/// See [`collapse_quality`](crate::fit::ensemble::collapse_quality); a range that is empty or not finite, fewer than 3
+/// points of the grid or more than 10⁶ in total, a share not in (0, 1], K = 0.
 ///
 /// # Cost
-/// So many S: the grid, 3^K − 1 a round of the search, and a one-dimensional search a rough bound.
+/// Evaluations of S: the grid, 3^K − 1 per step of the search, and a one-dimensional search per rough bound.
 ///
 /// # Source
-/// The pattern search: Hooke, Jeeves (1961), J. ACM 8, 212, without its moves along a pattern.
+/// Pattern search: Hooke, Jeeves (1961), J. ACM 8, 212, without the pattern moves.
 ///
 /// # Example
 /// ```
@@ -153,7 +154,7 @@ pub fn collapse<const K: usize>(
         let along = |at: f64| {
             let mut moved = exponents;
             moved[k] = at;
-            // Beyond all S, but a number: where too few points are left the interval ends.
+            // Larger than any S, but finite: the interval ends where too few points are left.
             value(moved).min(1e300)
         };
         let [low, high] = settings.ranges[k];
@@ -194,7 +195,7 @@ impl<const K: usize> CollapseSettings<K> {
         })
     }
 
-    /// One of the 3^K points about another at a share of the ranges, held within them.
+    /// One of the 3^K neighbours of a point at a distance of `share` of the ranges, kept within them.
     fn neighbour(&self, exponents: [f64; K], share: f64, mut index: usize) -> [f64; K] {
         std::array::from_fn(|k| {
             let step = (index % 3) as f64 - 1.0;

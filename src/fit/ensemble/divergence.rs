@@ -1,6 +1,6 @@
 //! [`fit_divergence`]: y = A (x_c − x)^(−μ), x_c given or fitted.
 //!
-//! What diverges where x comes down to x_c is fitted with −x for x.
+//! For a divergence as x decreases to x_c, fit with −x in place of x.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,13 +11,13 @@ use crate::fit::ensemble::measured_point::MeasuredPoint;
 use crate::fit::ensemble::power_law::{Line, different, fit_power_law};
 use crate::fit::search::minimum;
 
-/// ln((x_c − x_max)/(x_max − x_min)) is searched from −16 to 12 in steps of 1/4. Beyond 12, at μ = 1, the law differs from an
-/// exponential by less than e⁻¹² in ln y.
+/// Search range of ln((c − m)/(m − l)), with c = x_c, m the largest and l the smallest x: −16 to 12 in steps of 1/4.
+/// Beyond 12, at μ = 1, the law differs from an exponential by less than e⁻¹² in ln y.
 const FIRST: f64 = -16.0;
 const STEP: f64 = 0.25;
 const STEPS: u32 = 112;
 
-/// Rise of χ² within two standard errors of one parameter.
+/// Rise of χ² at two standard errors of one parameter.
 const RISE: f64 = 4.0;
 
 /// The divergence at a given x_c.
@@ -31,51 +31,52 @@ pub struct DivergenceAt {
     pub exponent: Estimate,
     /// Σ ((ln y − model) y/dy)².
     pub chi_squared: f64,
-    /// Points less two.
+    /// Number of points minus two.
     pub freedom: usize,
 }
 
 /// The divergence with x_c fitted.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Divergence {
-    /// x_c and where χ², A and μ at their best, has risen by 4; no upper end where an exponential is within it \[x\].
+    /// x_c, with the interval where χ², minimised over A and μ, has risen by 4; no upper end if it includes an
+    /// exponential \[x\].
     pub critical: Interval,
-    /// μ, its error with that of x_c in it \[1\].
+    /// μ; its error includes that of x_c \[1\].
     pub exponent: Estimate,
-    /// A, y at x_c − x = 1, likewise \[y\].
+    /// A, y at x_c − x = 1; its error includes that of x_c \[y\].
     pub amplitude: Estimate,
-    /// χ² at its least.
+    /// χ² at its minimum.
     pub chi_squared: f64,
-    /// Points less three.
+    /// Number of points minus three.
     pub freedom: usize,
-    /// How much χ² of y ∝ e^(x/ℓ), the limit of large x_c, is above that.
+    /// Rise of χ² of y ∝ e^(x/ℓ), the limit of large x_c, above the minimum.
     pub exponential_rise: f64,
 }
 
-/// What points say of a divergence.
+/// The result for a divergence.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DivergenceOutcome {
-    /// χ² has its least value at a finite x_c.
+    /// χ² has its minimum at a finite x_c.
     Found(Divergence),
-    /// χ² keeps falling as x_c grows: there is no sign of a divergence.
+    /// χ² decreases up to infinite x_c: there is no sign of a divergence.
     Unbounded {
-        /// The lower end of the interval of x_c; none where any x_c is within it \[x\].
+        /// The lower end of the interval of x_c; none if it includes any x_c \[x\].
         smallest: Option<f64>,
         /// χ² of y ∝ e^(x/ℓ).
         chi_squared: f64,
     },
-    /// χ² keeps falling as x_c comes down to the last point, which then alone rules it.
+    /// χ² decreases as x_c approaches the last point, which then alone determines the fit.
     AtLastPoint {
-        /// The upper end of the interval of x_c; none where any x_c is within it \[x\].
+        /// The upper end of the interval of x_c; none if it includes any x_c \[x\].
         largest: Option<f64>,
     },
 }
 
-/// A and μ at a given x_c, by weighted least squares in ln y, as [`fit_power_law`] in x_c − x.
+/// A and μ at a given x_c, by weighted least squares in ln y, like [`fit_power_law`] in x_c − x.
 ///
 /// # Errors
-/// As [`fit_power_law`]; a point that is not below x_c.
+/// See [`fit_power_law`]; a point that is not below x_c.
 pub fn fit_divergence_at(points: &[MeasuredPoint], critical: f64) -> Result<DivergenceAt, EnsembleFitError> {
     for (point, &MeasuredPoint { x, .. }) in points.iter().enumerate() {
         if !(x < critical && critical.is_finite()) {
@@ -90,7 +91,7 @@ pub fn fit_divergence_at(points: &[MeasuredPoint], critical: f64) -> Result<Dive
     Ok(DivergenceAt { critical, amplitude, exponent, chi_squared, freedom })
 }
 
-/// A, μ and x_c, by the least χ² over all x_c above the largest x.
+/// A, μ and x_c at the minimum of χ² over all x_c above the largest x.
 ///
 /// # Errors
 /// Fewer than four different x; an x that is not finite, a y or error that is not positive and finite.
@@ -121,7 +122,7 @@ pub fn fit_divergence(points: &[MeasuredPoint]) -> Result<DivergenceOutcome, Ens
     different(points, 4)?;
     let (low, high) =
         points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p.x), high.max(p.x)));
-    // Distances from the last point in units of the range: no digits are lost where x_c is close to it.
+    // Distances from the last point in units of the range: exact even if x_c is close to it.
     let range = high - low;
     let line = |logarithm: f64| {
         let gap = libm::exp(logarithm);
@@ -133,7 +134,7 @@ pub fn fit_divergence(points: &[MeasuredPoint]) -> Result<DivergenceOutcome, Ens
     let critical = |logarithm: f64| high + range * libm::exp(logarithm);
     let exponential = Line::of(points, |x| (x - high) / range).chi_squared;
     if exponential <= found.value || found.at >= grid[grid.len() - 1] {
-        // The interval anew, about the limit.
+        // The interval is recomputed about the limit.
         let about_limit = minimum(&grid, (RISE + exponential - found.value).max(0.0), chi_squared);
         let smallest = about_limit.lower.map(critical);
         return Ok(DivergenceOutcome::Unbounded { smallest, chi_squared: exponential });
@@ -155,8 +156,8 @@ pub fn fit_divergence(points: &[MeasuredPoint]) -> Result<DivergenceOutcome, Ens
     }))
 }
 
-/// μ and A with errors that have that of x_c in them: the inverse of the 3 × 3 information, by adding what x_c, its own part
-/// independent of A and μ, brings.
+/// μ and A with errors that include that of x_c: the inverse of the 3 × 3 information matrix, by adding the part of x_c
+/// that is independent of A and μ.
 fn errors(points: &[MeasuredPoint], critical: f64, line: &Line, range: f64) -> (Estimate, Estimate) {
     let exponent = -line.slope;
     let rows: Vec<[f64; 3]> = points

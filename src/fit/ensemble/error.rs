@@ -1,29 +1,29 @@
-//! [`EnsembleFitError`]: why there is nothing to fit.
+//! [`EnsembleFitError`]: why data could not be fitted.
 
 use thiserror::Error;
 
-/// Why there is nothing to fit. That the data do not say what was asked is an outcome, not an error.
+/// Why data could not be fitted. Data without a clear result are an outcome, not an error.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum EnsembleFitError {
-    /// No sample at all.
+    /// There is no sample.
     #[error("no sample")]
     NoSample,
     /// Too few points, or too few different x.
     #[error("{point_count} different points: at least {needed} are needed")]
     TooFewPoints {
-        /// Points with different x.
+        /// Number of points with different x.
         point_count: usize,
-        /// Points needed.
+        /// Number of points required.
         needed: usize,
     },
-    /// Fewer than two curves with points, or none with two.
+    /// Fewer than two curves with points, or none with two points.
     #[error("{curve_count} curves with points: two are needed, one of them with two points")]
     TooFewCurves {
-        /// Curves with points.
+        /// Number of curves with points.
         curve_count: usize,
     },
-    /// A point that cannot be used: not finite, its error not positive, or of the wrong sign where a logarithm is taken.
+    /// An invalid point: not finite, an error that is not positive, or a value without a logarithm.
     #[error("point {point}: x = {x}, y = {y}, error {error}")]
     PointUnusable {
         /// Index of the point, from 0.
@@ -35,29 +35,29 @@ pub enum EnsembleFitError {
         /// Its error.
         error: f64,
     },
-    /// A group whose x or counts cannot be used.
+    /// A group with invalid x or counts.
     #[error("group {group}: {hits} hits of {count} at x = {x}")]
     GroupUnusable {
         /// Index of the group, from 0.
         group: usize,
         /// Its x.
         x: f64,
-        /// Its hits.
+        /// Its number of hits.
         hits: f64,
-        /// Its samples.
+        /// Its number of samples.
         count: f64,
     },
-    /// A sample with another number of powers than the first.
+    /// The number of powers of a sample differs from that of the first.
     #[error("sample {sample} has {power_count} powers, the first {expected}")]
     SamplesDiffer {
         /// Index of the sample, from 0.
         sample: usize,
-        /// Its powers.
+        /// Its number of powers.
         power_count: usize,
-        /// Powers of the first sample.
+        /// Number of powers of the first sample.
         expected: usize,
     },
-    /// A power that is not finite.
+    /// A power is not finite.
     #[error("sample {sample}: the power at f = {frequency} is not finite")]
     PowerNotFinite {
         /// Index of the sample, from 0.
@@ -65,17 +65,17 @@ pub enum EnsembleFitError {
         /// f.
         frequency: usize,
     },
-    /// A window beyond the powers, or of fewer than three.
+    /// A window beyond the powers, or with fewer than three of them.
     #[error("powers from f = {lowest} to {highest} of f = 1 to {power_count}: at least 3 are needed")]
     WindowOutOfRange {
         /// Lowest f.
         lowest: usize,
         /// Highest f.
         highest: usize,
-        /// Highest f there is.
+        /// Highest f available.
         power_count: usize,
     },
-    /// A point that is not below the x of the divergence.
+    /// A point is not below the x of the divergence.
     #[error("point {point} at x = {x} is not below x_c = {critical}")]
     NotBelowCritical {
         /// Index of the point, from 0.
@@ -85,7 +85,7 @@ pub enum EnsembleFitError {
         /// x_c.
         critical: f64,
     },
-    /// A scale factor whose logarithm is not finite.
+    /// The logarithm of a scale factor is not finite.
     #[error("curve {curve}: the logarithm of a scale factor is {logarithm}")]
     ScaleUnusable {
         /// Index of the curve, from 0.
@@ -93,7 +93,7 @@ pub enum EnsembleFitError {
         /// The logarithm.
         logarithm: f64,
     },
-    /// A setting out of its range.
+    /// A setting is out of range.
     #[error("{setting} = {value} is out of range")]
     SettingOutOfRange {
         /// The setting.

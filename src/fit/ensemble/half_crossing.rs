@@ -1,4 +1,4 @@
-//! [`half_crossing`]: where the probability of an event passes one half, by logistic regression.
+//! [`half_crossing`]: where the probability of an event is one half, by logistic regression.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,24 +7,25 @@ use crate::fit::ensemble::bootstrap;
 use crate::fit::ensemble::bootstrap::BootstrapInterval;
 use crate::fit::ensemble::error::EnsembleFitError;
 
-/// ln L is concave, and a few Newton steps are enough: more than these are a defect.
+/// Limit of Newton steps. ln L is concave, and a few steps are enough.
 const STEP_LIMIT: usize = 100;
 
-/// A Newton step that gains less than this share of ln L is the last, and the next would gain nothing: ln L is quadratic there.
+/// Gain over |ln L| below which a Newton step is the last: ln L is quadratic there, and the next step would gain
+/// nothing.
 const GAIN_LIMIT: f64 = 1e-15;
 
-/// Rise of −2 ln L within two standard errors of one parameter.
+/// Rise of −2 ln L at two standard errors of one parameter.
 const RISE: f64 = 4.0;
 
-/// How often an event was seen at one x.
+/// Frequency of an event at one x.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HitCount {
-    /// The parameter, say ln p̂.
+    /// The parameter, for example ln p̂.
     pub x: f64,
-    /// Samples with the event; expected numbers need not be whole.
+    /// Number of samples with the event; expected numbers need not be integers.
     pub hits: f64,
-    /// All samples.
+    /// Number of samples.
     pub count: f64,
 }
 
@@ -38,57 +39,57 @@ pub enum Trend {
     Rising,
 }
 
-/// What counts say of x_c.
+/// The result for x_c.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum HalfCrossing {
     /// There is a crossing.
     Found {
-        /// x_c, its error by the Fisher information \[x\].
+        /// x_c, with its error from the Fisher information \[x\].
         crossing: Estimate,
         /// w, positive: P goes from 0.73 to 0.27 within 2w \[x\].
         width: f64,
-        /// How much −2 ln L of a P that does not depend on x is above the best.
+        /// Rise of −2 ln L above the best for a P that does not depend on x.
         flat_rise: f64,
         /// Whether x_c lies outside all x.
         extrapolated: bool,
     },
-    /// All hits on one side, all others on the other: any small w fits.
+    /// All hits are on one side, all others on the other side: any small w fits.
     Separated {
-        /// The last x before and the first after; equal where one x alone has both \[x\].
+        /// The last x before and the first x after the crossing; equal if one x has both \[x\].
         between: [f64; 2],
-        /// Their middle, for want of better \[x\].
+        /// Their midpoint, an arbitrary choice \[x\].
         middle: f64,
     },
     /// Every sample is a hit.
     AllHit,
     /// No sample is a hit.
     NoneHit,
-    /// P that does not depend on x is within the error, a rise of −2 ln L of at most 4.
+    /// A P that does not depend on x is within the error, a rise of −2 ln L of at most 4.
     Flat {
         /// That rise.
         flat_rise: f64,
     },
     /// The trend is the opposite one.
     WrongSign {
-        /// How much −2 ln L of a P that does not depend on x is above the best; infinite where the sides are separated.
+        /// Rise of −2 ln L above the best for a P that does not depend on x; infinite if the sides are separated.
         flat_rise: f64,
     },
-    /// So many Newton steps were not enough.
+    /// The Newton steps did not converge.
     NotConverged {
-        /// The steps.
+        /// Number of steps.
         step_count: usize,
     },
 }
 
-/// Maximum likelihood of x_c and w.
+/// Maximum likelihood estimate of x_c and w.
 ///
 /// ```text
 /// ln L = Σ_g h_g ln P(x_g) + (n_g − h_g) ln(1 − P(x_g))
 /// ```
 ///
-/// ln L is concave: Newton's steps, halved while they do not climb, reach its one maximum, which exists unless the sides are
-/// separated. Groups without samples say nothing.
+/// ln L is concave. Newton steps, halved until they increase it, reach its only maximum, which exists unless the sides
+/// are separated. Groups without samples have no effect.
 ///
 /// # Errors
 /// No sample; an x that is not finite, hits that are negative or more than the count.
@@ -104,7 +105,7 @@ pub enum HalfCrossing {
 /// use jamscope::fit::ensemble::{HalfCrossing, HitCount, Trend, half_crossing};
 /// let groups = [(1.0, 18.0), (2.0, 10.0), (3.0, 2.0)].map(|(x, hits)| HitCount { x, hits, count: 20.0 });
 /// let HalfCrossing::Found { crossing, width, .. } = half_crossing(&groups, Trend::Falling)? else { panic!() };
-/// // 18 : 2 and 2 : 18 are ln 9 to either side.
+/// // 18 : 2 and 2 : 18 are ln 9 on either side.
 /// assert!((crossing.value - 2.0).abs() < 1e-9 && (width * 9f64.ln() - 1.0).abs() < 1e-9);
 /// # Ok::<(), jamscope::fit::ensemble::EnsembleFitError>(())
 /// ```
@@ -146,7 +147,7 @@ pub fn half_crossing(groups: &[HitCount], trend: Trend) -> Result<HalfCrossing, 
     Ok(maximum(&seen, all, trend))
 }
 
-/// The maximum of ln L in α and β of ln P/(1 − P) = α + β z, z = (x − middle)/(half the range).
+/// The maximum of ln L over α and β, with ln P/(1 − P) = α + β z, z = (x − middle)/(half the range).
 fn maximum(groups: &[HitCount], [low, high]: [f64; 2], trend: Trend) -> HalfCrossing {
     let (middle, scale) = (low + 0.5 * (high - low), 0.5 * (high - low));
     let at = |group: &HitCount| (group.x - middle) / scale;
@@ -178,7 +179,7 @@ fn maximum(groups: &[HitCount], [low, high]: [f64; 2], trend: Trend) -> HalfCros
             (info[2] * gradient[0] - info[1] * gradient[1]) / determinant,
             (info[0] * gradient[1] - info[1] * gradient[0]) / determinant,
         ];
-        // What the step gains of a quadratic ln L.
+        // The gain of the step for a quadratic ln L.
         let gain = 0.5 * (step[0] * gradient[0] + step[1] * gradient[1]);
         if gain.is_nan() {
             break;
@@ -208,7 +209,7 @@ fn maximum(groups: &[HitCount], [low, high]: [f64; 2], trend: Trend) -> HalfCros
         let mut share = 1.0;
         let climbed = loop {
             let next = log_likelihood(alpha + share * step[0], beta + share * step[1]);
-            // Rounding of ln L itself is not a fall.
+            // The rounding of ln L itself does not count as a decrease.
             if next >= best - GAIN_LIMIT * best.abs() {
                 break Some(next);
             }
@@ -223,16 +224,17 @@ fn maximum(groups: &[HitCount], [low, high]: [f64; 2], trend: Trend) -> HalfCros
     HalfCrossing::NotConverged { step_count: STEP_LIMIT }
 }
 
-/// x_c over resamplings of the samples within their groups; none where the data as they are have neither a crossing nor two
+/// x_c over resamplings of the samples within their groups. None if the original data have neither a crossing nor two
 /// separated sides.
 ///
-/// A separated resampling counts with its middle; one that is flat, of the wrong sign or all alike counts as failed.
+/// A separated resampling counts with its midpoint. One that is flat, has the wrong sign or has only one outcome counts
+/// as failed.
 ///
 /// # Errors
-/// As [`half_crossing`].
+/// See [`half_crossing`].
 ///
 /// # Cost
-/// A [`half_crossing`] a resampling.
+/// One [`half_crossing`] per resampling.
 pub fn half_crossing_interval(
     groups: &[(f64, Vec<bool>)],
     trend: Trend,

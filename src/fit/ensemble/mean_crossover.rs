@@ -8,10 +8,10 @@ use crate::fit::ensemble::bootstrap::BootstrapInterval;
 use crate::fit::ensemble::error::EnsembleFitError;
 use crate::fit::ensemble::mean_powers::MeanPowers;
 
-/// Rise of −2 ln L within two standard errors of one parameter.
+/// Rise of −2 ln L at two standard errors of one parameter.
 const RISE: f64 = 4.0;
 
-/// How the crossover of a mean is fitted.
+/// Settings of the fit of a mean crossover.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MeanCrossoverSettings {
@@ -22,7 +22,7 @@ pub struct MeanCrossoverSettings {
 }
 
 impl Default for MeanCrossoverSettings {
-    /// s = 1.5 and k as in [`CrossoverSettings`].
+    /// s = 1.5, and k of [`CrossoverSettings`].
     fn default() -> Self {
         MeanCrossoverSettings { exponent: 1.5, angle_factor: CrossoverSettings::default().angle_factor }
     }
@@ -43,25 +43,25 @@ impl MeanCrossoverSettings {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MeanCrossover {
-    /// It is.
+    /// The fit succeeded.
     Fitted {
-        /// What the spectrum is found to be, as for single rings; intervals are where −2 ln L has risen by 4.
+        /// The result for the spectrum, as for single rings; at the ends of intervals −2 ln L has risen by 4.
         outcome: CrossoverOutcome,
-        /// The best f†, whatever the outcome: 0 for a power law, infinite for a flat spectrum \[1\].
+        /// The best f† for any outcome: 0 for a power law, infinite for a flat spectrum \[1\].
         crossover: f64,
         /// A \[power\].
         amplitude: f64,
-        /// How much −2 ln L of f^(−s), f† = 0, is above the best.
+        /// Rise of −2 ln L of f^(−s), f† = 0, above the best.
         scale_free_rise: f64,
-        /// How much −2 ln L of a flat spectrum is above the best.
+        /// Rise of −2 ln L of a flat spectrum above the best.
         white_rise: f64,
     },
-    /// Negative means have more than a tenth of Σ |P̄/E| in one of the limits.
+    /// In one of the limits, negative means contribute more than a tenth of Σ |P̄/E|.
     NegativePowers,
 }
 
 impl MeanCrossover {
-    /// The best f† if it is found.
+    /// The best f†, if a crossover was found.
     pub fn found(&self) -> Option<f64> {
         match self {
             MeanCrossover::Fitted { outcome: CrossoverOutcome::Found { crossover, .. }, .. } => Some(crossover.best),
@@ -70,17 +70,17 @@ impl MeanCrossover {
     }
 }
 
-/// Fits P̄_f = A/(1 + (f/f†)^s) in the window f_1 ≤ f ≤ f_2 to the mean of the samples, whose powers are those at f = 1, 2, …
+/// Fits P̄_f = A/(1 + (f/f†)^s) in the window f_1 ≤ f ≤ f_2 to the mean of the samples, whose powers are at f = 1, 2, …
 ///
 /// ```text
 /// −2 ln L = 2 n Σ_f (ln E_f + P̄_f/E_f)        E_f = A/(1 + (f/f†)^s),  A in closed form        θ† = k/f†
 /// ```
 ///
-/// The amplitude of a power law, f† = 0, is that of f^(−s). f† is searched from 1/16 to 16 times the highest f. As to intervals
-/// and to powers over variances see [`slope_of_mean`](crate::fit::ensemble::slope_of_mean).
+/// The amplitude of a power law, f† = 0, is that of f^(−s). The range of f† is 1/16 to 16 times the highest f. For
+/// intervals and for powers over variances see [`slope_of_mean`](crate::fit::ensemble::slope_of_mean).
 ///
 /// # Errors
-/// As [`slope_of_mean`](crate::fit::ensemble::slope_of_mean); s or k not in (0, 100].
+/// See [`slope_of_mean`](crate::fit::ensemble::slope_of_mean); s or k not in (0, 100].
 ///
 /// # Cost
 /// Samples × powers, then powers × evaluations of a one-dimensional search.
@@ -106,7 +106,7 @@ pub fn crossover_of_mean(
         let shape = Shape { crossover, exponent };
         powers.best(|logarithm| libm::log(shape.at(logarithm)))
     };
-    // 1/E is a sum of those of the limits: what negative powers leave both, they leave all between.
+    // 1/E is a sum of those of the limits, so if negative powers are acceptable in both limits, they are between.
     if best(Crossover::Zero).is_none() || best(Crossover::Infinite).is_none() {
         return Ok(MeanCrossover::NegativePowers);
     }
@@ -122,16 +122,16 @@ pub fn crossover_of_mean(
     Ok(MeanCrossover::Fitted { outcome, crossover, amplitude, scale_free_rise, white_rise })
 }
 
-/// f† over resamplings of the samples; none where the best f† of the samples as they are is infinite or there is none.
+/// f† over resamplings of the samples. None if the best f† of the original samples is infinite or does not exist.
 ///
-/// A resampling counts with its best f†, 0 where that is a power law, and as failed where it is flat: the interval of a spectrum
-/// close to a power law reaches down to 0. θ† is k over it, ends exchanged.
+/// A resampling counts with its best f†, 0 for a power law, and as failed if it is flat. So the interval of a spectrum
+/// close to a power law extends to 0. For θ† divide k by it and exchange the ends.
 ///
 /// # Errors
-/// As [`crossover_of_mean`].
+/// See [`crossover_of_mean`].
 ///
 /// # Cost
-/// A [`crossover_of_mean`] a resampling.
+/// One [`crossover_of_mean`] per resampling.
 pub fn crossover_interval(
     samples: &[&[f64]],
     window: [usize; 2],

@@ -2,31 +2,32 @@
 //!
 //! ```text
 //! P̄_f ~ gamma of mean E_f and shape n        −2 ln L = 2 n Σ_f (ln E_f + P̄_f/E_f)        E_f = A e_f
-//! A = (1/F) Σ_f P̄_f/e_f        at its best
+//! A = (1/F) Σ_f P̄_f/e_f        the best A
 //! ```
 //!
-//! A power with leakage removed may be negative, and so may a mean of few. Where such means weigh, no E describes them, and ln A
-//! falls without bound: a shape is refused where they have more than a tenth of Σ |P̄/e|.
+//! A power with leakage removed may be negative, and so may a mean of few powers. If such means have a large weight, no
+//! E describes them, and ln A is unbounded below. A shape is therefore refused if they contribute more than a tenth of
+//! Σ |P̄/e|.
 
 use crate::fit::ensemble::error::EnsembleFitError;
 
-/// Powers a window needs.
+/// Minimum number of powers in a window.
 const LEAST_POWER_COUNT: usize = 3;
 
-/// The largest share of Σ |P̄/e| that is negative.
+/// Largest negative share of Σ |P̄/e|.
 const NEGATIVE_SHARE: f64 = 0.1;
 
 /// Mean powers in a window.
 pub(super) struct MeanPowers {
     pub sample_count: usize,
-    /// Of its lowest f.
+    /// Its lowest f.
     lowest: usize,
     pub powers: Vec<f64>,
     /// ln f.
     pub logarithms: Vec<f64>,
 }
 
-/// The amplitude that suits a shape best.
+/// The best amplitude for a shape.
 pub(super) struct Best {
     pub amplitude: f64,
     /// −2 ln L.
@@ -34,7 +35,7 @@ pub(super) struct Best {
 }
 
 impl MeanPowers {
-    /// Of samples whose powers are those at f = 1, 2, …
+    /// The mean powers of samples whose powers are at f = 1, 2, …
     pub fn of(samples: &[&[f64]], window: [usize; 2]) -> Result<Self, EnsembleFitError> {
         let expected = samples.first().ok_or(EnsembleFitError::NoSample)?.len();
         let [lowest, highest] = window;
@@ -63,7 +64,8 @@ impl MeanPowers {
         self.powers.iter().position(|power| power.is_nan() || *power <= 0.0).map(|i| self.lowest + i)
     }
 
-    /// A and −2 ln L of a shape, the logarithm of e_f at ln f; none where negative means weigh too much, or there is no power.
+    /// A and −2 ln L for a shape, given as the logarithm of e_f at ln f. None if negative means have too much weight,
+    /// or all powers vanish.
     pub fn best(&self, shape: impl Fn(f64) -> f64) -> Option<Best> {
         let (mut positive, mut negative, mut logarithm) = (0.0, 0.0, 0.0);
         for (power, &at) in self.powers.iter().zip(&self.logarithms) {

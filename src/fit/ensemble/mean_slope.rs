@@ -9,22 +9,22 @@ use crate::fit::ensemble::error::EnsembleFitError;
 use crate::fit::ensemble::mean_powers::MeanPowers;
 use crate::fit::search::minimum;
 
-/// Exponents searched: −2 to 6 in steps of 1/4.
+/// Search range of the exponent: −2 to 6 in steps of 1/4.
 const FIRST: f64 = -2.0;
 const STEP: f64 = 0.25;
 const STEPS: u32 = 32;
 
-/// Rise of −2 ln L within two standard errors of one parameter.
+/// Rise of −2 ln L at two standard errors of one parameter.
 const RISE: f64 = 4.0;
 
-/// The slope of a mean spectrum, both ways.
+/// Both slopes of a mean spectrum.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MeanSlope {
-    /// Least squares of ln P̄ on ln f, every f with the same weight.
+    /// Least squares of ln P̄ against ln f, with equal weights.
     pub least_squares: LeastSquaresSlope,
     /// Maximum likelihood of gamma-distributed means.
     pub likelihood: LikelihoodSlope,
-    /// Samples.
+    /// Number of samples.
     pub sample_count: usize,
     /// Lowest and highest f fitted.
     pub window: [usize; 2],
@@ -34,16 +34,16 @@ pub struct MeanSlope {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LeastSquaresSlope {
-    /// There is one.
+    /// The slope exists.
     Found {
-        /// s of P̄ ∝ f^(−s); its error is that of the scatter about the line \[1\].
+        /// s of P̄ ∝ f^(−s), with the error from the scatter about the line \[1\].
         exponent: Estimate,
         /// A, the line at f = 1 \[power\].
         amplitude: f64,
     },
-    /// A mean power without a logarithm.
+    /// A mean power is not positive and has no logarithm.
     NonPositivePower {
-        /// The first f that has one.
+        /// The first such f.
         frequency: usize,
     },
 }
@@ -58,20 +58,20 @@ impl LeastSquaresSlope {
     }
 }
 
-/// A power law of maximum likelihood.
+/// A maximum-likelihood power law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LikelihoodSlope {
-    /// There is one.
+    /// The maximum exists.
     Found {
-        /// s and where −2 ln L has risen by 4 \[1\].
+        /// s, with the interval where −2 ln L has risen by 4 \[1\].
         exponent: Interval,
         /// A \[power\].
         amplitude: f64,
     },
-    /// −2 ln L falls up to the end of the search, −2 to 6.
+    /// −2 ln L decreases up to the end of the search range, −2 to 6.
     Undetermined,
-    /// Negative means have more than a tenth of Σ |P̄/E| where −2 ln L is least.
+    /// At the minimum of −2 ln L, negative means contribute more than a tenth of Σ |P̄/E|.
     NegativePowers,
 }
 
@@ -85,21 +85,22 @@ impl LikelihoodSlope {
     }
 }
 
-/// Fits P̄_f = A f^(−s) in the window f_1 ≤ f ≤ f_2 to the mean of the samples, whose powers are those at f = 1, 2, …
+/// Fits P̄_f = A f^(−s) in the window f_1 ≤ f ≤ f_2 to the mean of the samples, whose powers are at f = 1, 2, …
 ///
 /// ```text
 /// least squares   Σ_f (ln P̄_f − ln A + s ln f)²
 /// likelihood      −2 ln L = 2 n Σ_f (ln E_f + P̄_f/E_f)        E_f = A f^(−s),  A in closed form
 /// ```
 ///
-/// The interval of the likelihood takes powers of different f as independent and exponentially distributed in each sample;
-/// where leakage was removed they scatter more, and the interval by resampling, [`slope_interval`], is the honest one.
+/// The likelihood interval assumes that powers at different f are independent and exponentially distributed in each
+/// sample. After removal of leakage they scatter more, and the interval by resampling, [`slope_interval`], is reliable
+/// instead.
 ///
 /// # Accuracy
-/// The mean is of what is handed in. Powers over the variance of their sample have a mean that is too flat where few f carry the
-/// variance: s = 1.42 for 1.5, f = 1 to 15. Spectra whose leakage was removed up to the end of the window alone are too steep,
-/// because what lies above is taken as white: 1.58 for 1.5 with window and spectrum up to n/8 of 240 disks, 1.51 with the spectrum up
-/// to 0.42 n and the window to n/16 (`cargo test ensemble_fits::rings -- --nocapture`).
+/// The mean of powers over the variance of their sample is too flat if few f carry the variance: s = 1.42 instead of
+/// 1.5 for f = 1 to 15. Spectra with leakage removed only up to the end of the window are too steep, because higher
+/// frequencies count as white. For 240 disks s = 1.58 instead of 1.5 with window and spectrum up to n/8, but 1.51 with
+/// the spectrum up to 0.42 n and the window to n/16 (`cargo test ensemble_fits::rings -- --nocapture`).
 ///
 /// # Errors
 /// No sample, samples of different lengths, a power that is not finite, a window of fewer than three powers or beyond them.
@@ -146,7 +147,7 @@ fn likelihood(powers: &MeanPowers) -> LikelihoodSlope {
     let grid: Vec<f64> = (0..=STEPS).map(|step| FIRST + STEP * f64::from(step)).collect();
     let values: Vec<f64> = grid.iter().map(|&exponent| deviance(exponent)).collect();
     let lowest = (0..grid.len()).fold(0, |best, i| if values[i] < values[best] { i } else { best });
-    // The exponents about the lowest which negative powers leave.
+    // The exponents around the minimum that negative powers allow.
     let first = (0..=lowest).rev().take_while(|&i| values[i].is_finite()).last();
     let last = (lowest..grid.len()).take_while(|&i| values[i].is_finite()).last();
     let (Some(first), Some(last)) = (first, last) else { return LikelihoodSlope::NegativePowers };
@@ -162,13 +163,13 @@ fn likelihood(powers: &MeanPowers) -> LikelihoodSlope {
     LikelihoodSlope::Found { exponent, amplitude }
 }
 
-/// s over resamplings of the samples: by least squares and by likelihood; none where the samples as they are have no s.
+/// s over resamplings of the samples, by least squares and by likelihood; none if the original samples have no s.
 ///
 /// # Errors
-/// As [`slope_of_mean`].
+/// See [`slope_of_mean`].
 ///
 /// # Cost
-/// A [`slope_of_mean`] a resampling.
+/// One [`slope_of_mean`] per resampling.
 pub fn slope_interval(
     samples: &[&[f64]],
     window: [usize; 2],
@@ -180,7 +181,7 @@ pub fn slope_interval(
     let found = bootstrap_all(&[samples.len()], resamplings, |groups| {
         let chosen: Vec<&[f64]> = groups[0].iter().map(|&i| samples[i]).collect();
         let both = exponents(slope_of_mean(&chosen, window).ok()?);
-        // What the data as they are do not have is left out below.
+        // Numbers that the original data do not have are left out below.
         Some(both.iter().zip(there).map(|(s, there)| if there { s.unwrap_or(f64::NAN) } else { 0.0 }).collect())
     });
     let found = found.unwrap_or_default();

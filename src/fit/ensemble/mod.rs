@@ -1,7 +1,8 @@
-//! Fits over ensembles: where a quantity crosses, diverges or collapses, from many samples, with errors by resampling.
+//! Fits over ensembles: crossings, divergences and collapses of quantities from many samples, with errors by
+//! resampling.
 //!
-//! Pure numbers: nothing here knows of packings or studies. Start from [`half_crossing`], [`slope_of_mean`] and
-//! [`crossover_of_mean`], [`fit_power_law`] and [`fit_divergence`], or [`collapse`]; their errors are those of [`bootstrap`].
+//! Numbers only: no packings or studies. Start from [`half_crossing`], [`slope_of_mean`] and [`crossover_of_mean`],
+//! [`fit_power_law`] and [`fit_divergence`], or [`collapse`]; for errors see [`bootstrap`].
 //!
 //! ```text
 //! P(hit) = 1/(1 + exp(±(x − x_c)/w))                 half crossing
@@ -10,7 +11,7 @@
 //! y = F(x N^a d_0^(−b))                              collapse, F unknown
 //! ```
 //!
-//! Samples are taken as independent of each other, and x as known without error.
+//! Samples are assumed to be independent, and x to be exact.
 
 mod bootstrap;
 mod collapse;

@@ -15,18 +15,18 @@ pub struct PowerLaw {
     pub exponent: Estimate,
     /// Σ ((ln y − ln A − b ln x) y/dy)².
     pub chi_squared: f64,
-    /// Points less two.
+    /// Number of points minus two.
     pub freedom: usize,
 }
 
-/// Weighted least squares of ln y on ln x.
+/// Weighted least squares of ln y against ln x.
 ///
 /// ```text
 /// χ² = Σ (ln y − ln A − b ln x)²/(dy/y)²
 /// ```
 ///
-/// The errors of A and b are those of the dy as given, whatever χ² is; χ² far above the freedom says that they or the law are wrong.
-/// ln y has the error dy/y to first order in it.
+/// The errors of A and b are from the given dy, whatever χ² is. A χ² far above the degrees of freedom shows that the
+/// errors or the law are wrong. ln y has the error dy/y to first order.
 ///
 /// # Errors
 /// Fewer than two different x; an x, y or error that is not positive and finite.
@@ -58,7 +58,7 @@ pub fn fit_power_law(points: &[MeasuredPoint]) -> Result<PowerLaw, EnsembleFitEr
     })
 }
 
-/// So many different x there must be.
+/// Checks the number of different x.
 pub(super) fn different(points: &[MeasuredPoint], needed: usize) -> Result<(), EnsembleFitError> {
     let mut all: Vec<f64> = points.iter().map(|point| point.x).collect();
     all.sort_unstable_by(f64::total_cmp);
@@ -66,7 +66,7 @@ pub(super) fn different(points: &[MeasuredPoint], needed: usize) -> Result<(), E
     if all.len() >= needed { Ok(()) } else { Err(EnsembleFitError::TooFewPoints { point_count: all.len(), needed }) }
 }
 
-/// ln y = value + slope (t(x) − at), with weights (y/dy)².
+/// The line ln y = value + slope (t(x) − at), with weights (y/dy)².
 pub(super) struct Line {
     pub at: f64,
     pub value: f64,
@@ -79,7 +79,7 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// Through points that were checked, against t(x).
+    /// The line through checked points, against t(x).
     pub fn of(points: &[MeasuredPoint], abscissa: impl Fn(f64) -> f64) -> Line {
         let rows: Vec<[f64; 3]> = points
             .iter()

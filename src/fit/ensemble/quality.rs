@@ -1,4 +1,4 @@
-//! [`collapse_quality`]: how far scaled curves are from lying on one, in units of their errors.
+//! [`collapse_quality`]: the distance of scaled curves from a common one, in units of their errors.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,52 +8,54 @@ use crate::fit::ensemble::measured_point::MeasuredPoint;
 /// A curve y(x) measured at one set of K scale factors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve<const K: usize> {
-    /// Logarithms of what x is multiplied by to the exponents e: ln x + Σ e_k L_k. For x N^a d_0^(−b): \[ln N, −ln d_0\].
+    /// Logarithms L_k of the scale factors of x, which have the exponents e_k: ln x + Σ e_k L_k. For x N^a d_0^(−b):
+    /// \[ln N, −ln d_0\].
     pub scales: [f64; K],
     /// Its points, in any order; x positive, y of any sign.
     pub points: Vec<MeasuredPoint>,
 }
 
-/// How well curves collapse.
+/// Quality of a collapse.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CollapseQuality {
-    /// S: about 1 where curves agree within their errors, much more where not \[1\].
+    /// S: about 1 if curves agree within their errors, otherwise much larger \[1\].
     pub quality: f64,
-    /// Points that had other curves to be held against.
+    /// Number of points compared with other curves.
     pub point_count: usize,
-    /// All points.
+    /// Number of all points.
     pub of_count: usize,
-    /// Whether every curve hangs together with every other by curves that overlap: groups that do not touch say nothing of the
-    /// exponents between them.
+    /// Whether all curves are connected through overlaps. Disconnected groups do not determine the exponents between
+    /// them.
     pub connected: bool,
 }
 
 impl CollapseQuality {
-    /// Points held against others, of all.
+    /// Share of points compared with other curves.
     pub fn share(&self) -> f64 {
         self.point_count as f64 / self.of_count as f64
     }
 }
 
-/// The quality S of the collapse with given exponents; none where no point lies between two of another curve.
+/// The quality S of the collapse for given exponents; none if no point lies between two points of another curve.
 ///
 /// ```text
 /// S = (1/𝒩) Σ (y − Y)²/(dy² + dY²)
 /// Y(u), dY(u)    straight line in u = ln x + Σ e_k L_k, weights 1/dy²,
-///                through the two points next to u of every other curve that has them on either side
+///                through the two points around u of every other curve with points on both sides
 /// ```
 ///
-/// The sum is over the 𝒩 points of all curves where Y is. A straight line between two points errs by h² Y''/8, h their distance
-/// in u: curves with errors below that are called different where they are not.
+/// The sum is over the 𝒩 points of all curves at which Y exists. A straight line between two points has the error h²
+/// Y''/8, where h is their distance in u. Curves with smaller errors therefore appear different even if they are not.
 ///
 /// # Errors
 /// Fewer than two curves with points, or none with two; an x or error that is not positive, a number that is not finite.
 ///
 /// # Source
-/// Houdayer, Hartmann (2004), Phys. Rev. B 70, 014418, appendix; the idea: Kawashima, Ito (1993), J. Phys. Soc. Jpn. 62, 435.
+/// Houdayer, Hartmann (2004), Phys. Rev. B 70, 014418, appendix; based on Kawashima, Ito (1993), J. Phys. Soc. Jpn. 62,
+/// 435.
 ///
 /// # Cost
-/// Points × curves binary searches.
+/// One binary search per point and curve.
 pub fn collapse_quality<const K: usize>(
     curves: &[Curve<K>],
     exponents: [f64; K],
@@ -69,7 +71,7 @@ struct Row {
     weight: f64,
 }
 
-/// Curves, checked, their points in ascending order.
+/// Checked curves with their points in ascending order.
 pub(super) struct Curves<const K: usize> {
     curves: Vec<([f64; K], Vec<Row>)>,
     point_count: usize,
@@ -105,7 +107,7 @@ impl<const K: usize> Curves<K> {
         let shifts: Vec<f64> =
             self.curves.iter().map(|(s, _)| s.iter().zip(exponents).map(|(s, e)| s * e).sum()).collect();
         let (mut sum, mut point_count) = (0.0, 0usize);
-        // The group of every curve, by its lowest index.
+        // The group of every curve, labelled by its lowest index.
         let mut groups: Vec<usize> = (0..self.curves.len()).collect();
         for (own, (_, rows)) in self.curves.iter().enumerate() {
             for row in rows {
@@ -127,13 +129,13 @@ impl<const K: usize> Curves<K> {
         })
     }
 
-    /// Y and dY² at u from all curves but one, which joins the group of each.
+    /// Y and dY² at u from all curves but one, whose group it merges with theirs.
     fn master(&self, own: usize, u: f64, shifts: &[f64], groups: &mut [usize]) -> Option<(f64, f64)> {
-        // About u, so that Y is the value of the line at 0: K, K_x, K_xx, K_y, K_xy of the source.
+        // Relative to u, so that Y is the value of the line at 0: K, K_x, K_xx, K_y, K_xy of the source.
         let mut k = [0.0; 5];
         for (other, (_, rows)) in self.curves.iter().enumerate() {
             let above = rows.partition_point(|row| row.at + shifts[other] <= u);
-            // A point just at u belongs to the pair above it, the last of a curve to the pair below.
+            // A point exactly at u belongs to the pair above it; the last point of a curve belongs to the pair below.
             let above = if above == rows.len() && above > 0 && rows[above - 1].at + shifts[other] == u {
                 above - 1
             } else {
@@ -152,7 +154,7 @@ impl<const K: usize> Curves<K> {
             }
         }
         let determinant = k[0] * k[2] - k[1] * k[1];
-        // Without a pair, or with pairs of one x only.
+        // No pair, or only pairs with equal x.
         if determinant.is_nan() || determinant <= 0.0 {
             return None;
         }

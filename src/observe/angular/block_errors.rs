@@ -4,10 +4,10 @@
 //! σ²(θ) = (B − 1)/B Σ_b (G_(−b)(θ) − Ḡ(θ))²        G_(−b): all pairs but those with a disk in block b
 //! ```
 //!
-//! The jackknife over B blocks of neighbouring disks. It tells how much G scatters from one part of the ring to another, hence the
-//! error where correlations are much shorter than a block, 2π/B. It cannot tell what one ring has only one of: the amplitudes of
-//! f = 1, 2, …, and with them G at angles near π and G*. Their errors come from samples
-//! ([`correlation_statistics`](crate::observe::angular::correlation_statistics)).
+//! The jackknife over B blocks of neighbouring disks. It measures the scatter of G between parts of the ring. This is
+//! the error if correlations are much shorter than a block, 2π/B. It does not include the scatter of the amplitudes of
+//! f = 1, 2, …, of which one ring has a single value each, and so not that of G near π and of G*. These errors come
+//! from samples ([`correlation_statistics`](crate::observe::angular::correlation_statistics)).
 //! Source: Künsch (1989), Ann. Stat. 17, 1217 (the jackknife of blocks).
 
 use serde::Serialize;
@@ -16,10 +16,10 @@ use crate::observe::angular::error::AngularError;
 use crate::observe::angular::pairs::PairSums;
 use crate::observe::angular::ring::{RingSample, Weights};
 
-/// Fewer blocks have no scatter to speak of.
+/// Minimum number of blocks for an estimate of their scatter.
 const LEAST_BLOCK_COUNT: usize = 4;
 
-/// G from pairs with the scatter between blocks.
+/// G from pairs, with standard errors from the scatter between blocks.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BlockErrors {
     /// Number of blocks.
@@ -32,10 +32,11 @@ pub struct BlockErrors {
     pub standard_errors: Vec<f64>,
 }
 
-/// G of pairs in `bin_count` bins of \[0, π\], and its scatter between `block_count` blocks of as many disks.
+/// G of pairs in `bin_count` bins of \[0, π\], and its scatter between `block_count` blocks with equal numbers of
+/// disks.
 ///
 /// # Errors
-/// Fewer than 4 blocks, or more than a fourth as many as disks; no bins.
+/// Fewer than 4 blocks, or more than a fourth of the number of disks; no bins.
 pub fn block_errors(ring: &RingSample, bin_count: usize, block_count: usize) -> Result<BlockErrors, AngularError> {
     let disk_count = ring.disk_count();
     if block_count < LEAST_BLOCK_COUNT || block_count > disk_count / 4 {

@@ -6,13 +6,13 @@
 //! G(θ) = Σ_(f=1)^(f_max) P_f cos fθ / (Σ P_f + ρ)   (θ > 0)        G(0) = 1
 //! ```
 //!
-//! ρ, what the spectrum has above f_max and of single disks, is a peak at θ = 0. With ρ = 0 both are a Fourier pair
-//! (Wiener, Khinchin): P_f/Σ P = (2/π) ∫_0^π G cos fθ dθ; with ρ the peak counts too. Pairs in bins are not: their number varies with
-//! the angle, and a bin is wide.
+//! ρ, the variance above f_max and of independent values of single disks, is a peak at θ = 0. With ρ = 0 both are a
+//! Fourier pair (Wiener, Khinchin): P_f/Σ P = (2/π) ∫_0^π G cos fθ dθ; otherwise the peak is included. The estimate
+//! from pairs is not: the number of pairs varies with the angle, and a bin is wide.
 //!
-//! No correlation lies outside \[−1, 1\]. An estimate may: of powers of which some came out negative, or of a bin with few pairs. It is
-//! then no correlation, [`CorrelationOutcome::OutOfRange`]. A slightly negative ρ, down to −0.05 Σ P, is noise of its estimate and
-//! counts as 0: G would begin above 1 next to θ = 0.
+//! Every correlation lies in \[−1, 1\]. An estimate may not, if some powers are negative or a bin has few pairs. The
+//! outcome is then [`CorrelationOutcome::OutOfRange`]. A slightly negative ρ, down to −0.05 Σ P, is an estimation error
+//! and counts as 0: otherwise G would exceed 1 near θ = 0.
 
 use std::f64::consts::PI;
 
@@ -31,35 +31,34 @@ use crate::observe::angular::ring::{RingSample, Weights};
 pub enum CorrelationEstimator {
     /// The cosine sum of a spectrum.
     Spectral(SpectrumSettings),
-    /// All pairs of disks, in even bins of their angle.
+    /// All pairs of disks, in equal bins of their angle.
     Pairs {
-        /// Bins of \[0, π\].
+        /// Number of bins of \[0, π\].
         bin_count: usize,
     },
 }
 
 impl Default for CorrelationEstimator {
-    /// The spectrum's own defaults: nearest to the true G at 60, 1000 and 4000 disks, with noise and without
-    /// (`benches/measurements/angular_estimators.rs`).
+    /// The defaults of the spectrum.
     fn default() -> Self {
         CorrelationEstimator::Spectral(SpectrumSettings::default())
     }
 }
 
-/// How a correlation function is taken.
+/// How a correlation function is computed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CorrelationSettings {
     /// The estimator. Changes results.
     pub estimator: CorrelationEstimator,
-    /// Even steps of [0, π] in the table of a spectral estimate; a crossing narrower than one is missed.
+    /// Equal steps of [0, π] in the table of a spectral estimate; a crossing narrower than one step is missed.
     pub step_count: usize,
     /// Thresholds of G, each below 1 \[1\].
     pub thresholds: Vec<f64>,
 }
 
 impl Default for CorrelationSettings {
-    /// Half a degree; the thresholds of the study, its usual one first.
+    /// Steps of half a degree; the thresholds of the study, its usual one first.
     fn default() -> Self {
         CorrelationSettings {
             estimator: CorrelationEstimator::default(),
@@ -73,21 +72,21 @@ impl Default for CorrelationSettings {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CorrelationOutcome {
-    /// There is.
+    /// There is a correlation function.
     #[default]
     Found,
     /// The values have no variance.
     NoVariance,
-    /// The estimate leaves \[−1, 1\], so it is none.
+    /// The estimate leaves \[−1, 1\], so it is not a correlation function.
     OutOfRange {
-        /// Where it is farthest out \[rad\].
+        /// Angle of the largest violation \[rad\].
         angle: f64,
         /// Its value there \[1\].
         value: f64,
     },
 }
 
-/// G(θ), normalised to G(0) = 1; NaN throughout where `outcome` says that there is none.
+/// G(θ), normalised to G(0) = 1; NaN everywhere if `outcome` states that there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AngularCorrelation {
     /// How it was estimated.
@@ -97,13 +96,13 @@ pub struct AngularCorrelation {
     /// Whether there is a correlation function.
     #[serde(default)]
     pub outcome: CorrelationOutcome,
-    /// θ \[rad\], ascending from 0; bins stand at their middles.
+    /// θ \[rad\], ascending from 0; for bins their midpoints.
     pub angles: Vec<f64>,
     /// G(θ) \[1\].
     pub values: Vec<f64>,
-    /// G* = −G(π) \[1\]; of bins the last one.
+    /// G* = −G(π) \[1\]; for bins, from the last one.
     pub anticorrelation: f64,
-    /// θ* of every threshold.
+    /// θ* at every threshold.
     pub crossings: Vec<ThresholdCrossing>,
 }
 
@@ -111,10 +110,10 @@ impl AngularCorrelation {
     /// The correlation function of a ring.
     ///
     /// # Errors
-    /// Settings out of range, a threshold that is not below 1; as [`PowerSpectrum::of`].
+    /// Settings out of range, a threshold that is not below 1; see [`PowerSpectrum::of`].
     ///
     /// # Cost
-    /// Spectral: the spectrum, and f_max multiplications a step. Pairs: n²/2.
+    /// Spectral: the spectrum, and f_max multiplications per step. Pairs: n²/2.
     pub fn of(ring: &RingSample, settings: &CorrelationSettings) -> Result<Self, AngularError> {
         settings.check()?;
         match settings.estimator {
@@ -125,7 +124,7 @@ impl AngularCorrelation {
         }
     }
 
-    /// The correlation function that goes with a spectrum; the estimator of the settings is not looked at.
+    /// The correlation function of a spectrum; the estimator of the settings is ignored.
     ///
     /// # Errors
     /// No steps, a threshold that is not below 1.
@@ -162,7 +161,7 @@ impl AngularCorrelation {
         AngularCorrelation { estimator, disk_count, outcome, angles, values, anticorrelation, crossings }.judged()
     }
 
-    /// With its outcome, and without values where there is no correlation function.
+    /// Sets the outcome, and removes the values if there is no correlation function.
     fn judged(mut self) -> Self {
         if self.values[0].is_nan() {
             return AngularCorrelation { outcome: CorrelationOutcome::NoVariance, ..self };
@@ -183,24 +182,24 @@ impl AngularCorrelation {
         self
     }
 
-    /// θ* of a threshold \[rad\], if it was asked for and met.
+    /// θ* at a threshold \[rad\], if the settings contain it and G reaches it.
     pub fn crossing(&self, threshold: f64) -> Option<f64> {
         self.crossings.iter().find(|crossing| crossing.threshold == threshold)?.outcome.angle()
     }
 }
 
-/// What rounding may bring G beyond 1: sums of up to 10⁴ powers, 10⁴ · 2⁻⁵³ with a margin of a thousand \[1\].
+/// Rounding may raise G above 1 by this: sums of up to 10⁴ powers, 10⁴ · 2⁻⁵³ with a margin of a thousand \[1\].
 const ROUNDING: f64 = 1e-9;
 
-/// A negative ρ up to this share of Σ P counts as 0 \[1\]. Larger ones leave an estimate that is far out of range.
+/// A negative ρ up to this share of Σ P counts as 0 \[1\]. Larger ones give an estimate far out of range.
 const NOISE: f64 = 0.05;
 /// Memory of a step or bin: its angle, its value, and both as text \[bytes\].
 const STEP_BYTES: f64 = 64.0;
 
-/// Frequencies between two settings of the rotation.
+/// Frequencies between two exact evaluations of the rotation.
 const RESTART: usize = 64;
 
-/// Σ P_f cos fθ/(Σ P_f + ρ), a ρ of noise being 0, by one rotation a frequency.
+/// Σ P_f cos fθ/(Σ P_f + ρ), with a slightly negative ρ set to 0, by one rotation per frequency.
 fn spectrum_correlation(spectrum: &PowerSpectrum, angle: f64) -> f64 {
     let resolved: f64 = spectrum.power[1..].iter().sum();
     let noise = spectrum.unresolved < 0.0 && -spectrum.unresolved <= NOISE * resolved;
@@ -221,7 +220,7 @@ fn spectrum_correlation(spectrum: &PowerSpectrum, angle: f64) -> f64 {
 }
 
 impl CorrelationSettings {
-    /// Whether every number makes sense, whatever the ring.
+    /// Checks the settings, independently of a ring.
     pub(crate) fn check(&self) -> Result<(), AngularError> {
         let bin_count = match self.estimator {
             CorrelationEstimator::Pairs { bin_count } => bin_count,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct ThresholdCrossing {
     /// G_th \[1\].
     pub threshold: f64,
-    /// θ*, or that there is none.
+    /// θ*, or why there is none.
     pub outcome: CrossingOutcome,
 }
 
@@ -20,7 +20,7 @@ pub enum CrossingOutcome {
         /// θ* \[rad\].
         angle: f64,
     },
-    /// Nowhere up to π.
+    /// G stays above the threshold up to π.
     Never {
         /// The lowest value of G \[1\].
         lowest: f64,
@@ -29,7 +29,7 @@ pub enum CrossingOutcome {
     NoCorrelation,
     /// There is no G: its estimate leaves \[−1, 1\].
     OutOfRange {
-        /// The value farthest out \[1\].
+        /// The value farthest from the range \[1\].
         farthest: f64,
     },
 }
@@ -43,7 +43,7 @@ impl CrossingOutcome {
         }
     }
 
-    /// The first crossing of a table, ascending from θ = 0, linear between its points.
+    /// The first crossing in a table, ascending from θ = 0, with linear interpolation.
     pub(super) fn in_table(angles: &[f64], values: &[f64], threshold: f64) -> Self {
         Self::refined(angles, values, threshold, |low, high| {
             let share = (values[low] - threshold) / (values[low] - values[high]);
@@ -51,7 +51,8 @@ impl CrossingOutcome {
         })
     }
 
-    /// The first crossing of a curve between the points of a table of it, by bisection down to neighbouring numbers.
+    /// The first crossing of a curve: bracketed by its table, then by bisection down to adjacent floating-point
+    /// numbers.
     pub(super) fn of_curve(angles: &[f64], values: &[f64], threshold: f64, curve: impl Fn(f64) -> f64) -> Self {
         Self::refined(angles, values, threshold, |low, high| {
             let (mut low, mut high) = (angles[low], angles[high]);

@@ -1,7 +1,7 @@
-//! [`dependence`]: how much the powers of one ring depend on each other.
+//! [`dependence`]: correlations between the powers of one ring.
 //!
 //! ```text
-//! D = (1/m) Σ_(f,f' ≤ m) cov(P_f, P_f')/(⟨P_f⟩⟨P_f'⟩)        m/D: how many independent powers would scatter as much
+//! D = (1/m) Σ_(f,f' ≤ m) cov(P_f, P_f')/(⟨P_f⟩⟨P_f'⟩)        m/D: number of independent powers with the same scatter
 //! ```
 //!
 //! The sums F_f = Σ_k v_fk x_k, v_fk = w_k (e^(−ifθ_k) − W̄(f)), of a Gaussian field are Gaussian, and P_f = 2|F_f|², so
@@ -11,8 +11,9 @@
 //! A_fg = W(g−f) − W̄(f) W(g)             B_fg = W̄(g+f) − W̄(f) W̄(g)                                  C = ½ Σ_g S_g (A_fg B_f'g + B_fg A_f'g)
 //! ```
 //!
-//! W as in [`SpectralWindow`](crate::observe::angular::SpectralWindow). At even angles D = 1; at angles anywhere what low
-//! frequencies leak is common to all powers: D = 2.2 for the 15 powers of 60 disks and S ∝ f^(−1.5).
+//! W as in [`SpectralWindow`](crate::observe::angular::SpectralWindow). For evenly spaced angles D = 1. For irregular
+//! angles the leakage of low frequencies is common to all powers: D = 2.2 for the 15 powers of 60 disks and S ∝
+//! f^(−1.5).
 //! Source: Isserlis (1918), Biometrika 12, 134 (fourth moments).
 
 use num_complex::Complex64;
@@ -20,9 +21,9 @@ use num_complex::Complex64;
 use crate::observe::angular::fourier::fourier_sums;
 use crate::observe::angular::ring::{RingSample, Weights};
 
-/// D of the powers f = 1, …, `frequency_limit` of a ring, for a spectrum that goes on to `highest`; NaN if it has no power.
+/// D of the powers f = 1, …, `frequency_limit` of a ring, for a spectrum up to `highest`; NaN if it has no power.
 ///
-/// Frequencies above 2n, n the number of disks, count as values of single disks.
+/// Frequencies above 2n, n the number of disks, count as independent values of single disks.
 ///
 /// # Cost
 /// `frequency_limit`² · n complex products.
@@ -55,7 +56,7 @@ pub fn dependence(
     let pair = |f: usize, other: usize| {
         let (a, b) = (&rows[f - 1], &rows[other - 1]);
         let plain: Complex64 = a.iter().zip(b).map(|(x, y)| x * y.conj()).sum();
-        // A of one with B of the other.
+        // A of one frequency with B of the other.
         let turned = b[source_limit..].iter().chain(&b[..source_limit]);
         let crossed: Complex64 = a.iter().zip(turned).map(|(x, y)| x * y).sum();
         let (f, other) = (f as i64, other as i64);

@@ -1,17 +1,17 @@
-//! [`AngularError`]: why a ring, its spectrum or its correlation function could not be had.
+//! [`AngularError`]: why a ring, its spectrum or its correlation function could not be computed.
 
 use thiserror::Error;
 
 use crate::memory::TooLarge;
 
-/// Disks a ring needs: with fewer there is no angle to speak of.
+/// Minimum number of disks in a ring.
 pub const LEAST_DISK_COUNT: usize = 4;
 
-/// Why a ring, its spectrum or its correlation function could not be had.
+/// Why a ring, its spectrum or its correlation function could not be computed.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum AngularError {
-    /// As many values as angles are needed.
+    /// The numbers of angles and of values differ.
     #[error("{angle_count} angles and {value_count} values")]
     LengthsDiffer {
         /// Number of angles.
@@ -25,7 +25,7 @@ pub enum AngularError {
         /// Disks in the ring.
         disk_count: usize,
     },
-    /// An angle or a value that is not finite, or a value beyond 10¹⁵⁰, whose square is none.
+    /// An angle or a value is not finite, or a value is above 10¹⁵⁰, whose square overflows.
     #[error("disk {disk}: angle {angle}, value {value}")]
     NotFinite {
         /// Index of the disk as given.
@@ -35,7 +35,7 @@ pub enum AngularError {
         /// Its value.
         value: f64,
     },
-    /// Where the ring lies, or its width, is not positive and finite.
+    /// The radius of the ring or its width is not positive and finite.
     #[error("a ring at r/R = {relative_radius} ± {half_width}: both must be positive and finite")]
     RingOutOfRange {
         /// The middle, r̂.
@@ -51,39 +51,39 @@ pub enum AngularError {
         /// Its value.
         value: f64,
     },
-    /// A number of steps, bins, points or frequencies beyond what memory allows.
+    /// A number of steps, bins, points or frequencies is beyond the memory limits.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
-    /// The highest frequency asked for is 0, or the estimator does not reach it.
+    /// The highest frequency requested is 0, or above the limit of the estimator.
     #[error("frequencies up to {frequency_limit}: from 1 to {highest} can be had")]
     FrequencyLimitOutOfRange {
-        /// The highest frequency asked for.
+        /// The highest frequency requested.
         frequency_limit: usize,
-        /// The highest there is.
+        /// The highest frequency available.
         highest: usize,
     },
-    /// A threshold that is not below 1, where G begins.
+    /// A threshold is not below 1, the value of G at θ = 0.
     #[error("a threshold of G must be below 1, it is {threshold}")]
     ThresholdNotBelowOne {
         /// The threshold.
         threshold: f64,
     },
-    /// Fewer blocks than can have a scatter, or more than disks to put into them.
+    /// Too few blocks to have a scatter, or too many for the disks.
     #[error("{block_count} blocks of {disk_count} disks: at least 4, and at most a fourth as many as disks")]
     BlockCountOutOfRange {
-        /// Blocks asked for.
+        /// Number of blocks requested.
         block_count: usize,
-        /// Disks.
+        /// Number of disks.
         disk_count: usize,
     },
-    /// No sample, or samples that are not alike in their angles, thresholds or frequencies.
+    /// No samples, or samples with different angles, thresholds or frequencies.
     #[error("sample {sample} of {sample_count} cannot be averaged: {reason}")]
     SamplesDiffer {
-        /// The first that differs from sample 0.
+        /// The first sample that differs from sample 0.
         sample: usize,
-        /// How many there are.
+        /// Number of samples.
         sample_count: usize,
-        /// In what.
+        /// The difference.
         reason: &'static str,
     },
 }

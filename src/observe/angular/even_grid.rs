@@ -1,12 +1,12 @@
 //! Values of a ring on evenly spaced angles: interpolated, or averaged in bins.
 //!
-//! The grid begins at the disk after the widest gap and turns with the ring.
+//! The grid begins at the disk after the widest gap and rotates with the ring.
 
 use std::f64::consts::PI;
 
 use crate::observe::angular::ring::{RingSample, gaps};
 
-/// Angles and values from the disk after the widest gap on, the angles from that disk.
+/// Angles and values in the order from the disk after the widest gap. The angles are relative to that disk.
 fn from_widest_gap(ring: &RingSample) -> (Vec<f64>, Vec<f64>) {
     let (angles, values) = (ring.angles(), ring.values());
     let gaps = gaps(angles);
@@ -30,14 +30,14 @@ pub(super) fn interpolated(ring: &RingSample, count: usize) -> Vec<f64> {
                 next += 1;
             }
             let (low, high) = (angles[next - 1], angles[next]);
-            // The interval is empty only where disks share the last angle of all.
+            // The interval is empty only if several disks share the last angle.
             let share = if high > low { ((at - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 };
             values[next - 1] + share * (values[next] - values[next - 1])
         })
         .collect()
 }
 
-/// Means in bins around 2πj/`count`; an empty bin takes the straight line between its neighbours that are not.
+/// Means in bins around 2πj/`count`; an empty bin is interpolated linearly between the nearest bins that are not empty.
 pub(super) fn binned(ring: &RingSample, count: usize) -> Vec<f64> {
     let (angles, values) = from_widest_gap(ring);
     let mut sums = vec![(0.0, 0usize); count];
@@ -46,7 +46,7 @@ pub(super) fn binned(ring: &RingSample, count: usize) -> Vec<f64> {
         sums[bin].0 += value;
         sums[bin].1 += 1;
     }
-    // Bin 0 holds the first disk.
+    // Bin 0 contains the first disk.
     let mut means: Vec<f64> = sums.iter().map(|&(sum, disks)| sum / disks as f64).collect();
     let mut last = 0;
     for bin in 1..=count {

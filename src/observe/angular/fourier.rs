@@ -1,6 +1,6 @@
-//! Σ a_k e^(−ifθ_k) at irregular angles: term by term, or by a fast Fourier transform of what is spread on a grid.
+//! Σ a_k e^(−ifθ_k) at irregular angles: term by term, or by a fast Fourier transform after spreading on a grid.
 //!
-//! **Direct.** e^(−ifθ) by one rotation a frequency, set anew every 64.
+//! **Direct.** e^(−ifθ) by one rotation per frequency, evaluated exactly every 64 frequencies.
 //!
 //! **Fast.** The strengths are spread as Gaussians on an even grid, transformed, and divided by the transform of the Gaussian
 //! (Dutt, Rokhlin (1993), SIAM J. Sci. Comput. 14, 1368; parameters of Greengard, Lee (2004), SIAM Rev. 46, 443).
@@ -10,32 +10,32 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 use rustfft::{FftPlanner, num_traits::Zero};
 
-/// Frequencies between two settings of the rotation.
+/// Frequencies between two exact evaluations of the rotation.
 const RESTART: usize = 64;
 
-/// Disks rotated side by side.
+/// Number of disks rotated in parallel lanes.
 const LANES: usize = 8;
 
-/// Grid points to either side that a disk is spread over: leaves out e^(−3π·15/4) = 5·10⁻¹⁶, times e^(15π/12) = 50.
+/// Grid points on either side of a disk over which it is spread. Truncation: e^(−3π·15/4) = 5·10⁻¹⁶, times e^(15π/12) =
+/// 50.
 const SPREAD: usize = 15;
 
-/// Frequencies and disks from which the fast route is the shorter: a disk costs it 36 rotations, whatever the frequencies
-/// (`cargo bench --bench angular`).
+/// Number of frequencies and of disks from which the fast method is faster: it takes 36 rotations per disk, independent
+/// of the number of frequencies (`cargo bench --bench angular`).
 const FAST_FROM_FREQUENCY: usize = 40;
 const FAST_FROM_DISKS: usize = 100;
 
-/// A way to the sums.
+/// A method to compute the sums.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Route {
     /// Term by term: n·f_max rotations.
     Direct,
-    /// Spread on a grid of at least 4 f_max points and transformed: 11 times faster at 4000 disks and f_max = 500
-    /// (`cargo bench --bench angular`, 3.4 and 0.30 ms on two shared cores).
+    /// Spread on a grid of at least 4 f_max points and transformed.
     Fast,
 }
 
 impl Route {
-    /// The shorter one, by size alone.
+    /// The faster method, by size alone.
     pub fn shorter(disk_count: usize, frequency_limit: usize) -> Self {
         if frequency_limit >= FAST_FROM_FREQUENCY && disk_count >= FAST_FROM_DISKS {
             Route::Fast
@@ -45,22 +45,22 @@ impl Route {
     }
 }
 
-/// Σ_k a_k e^(−ifθ_k) for f = 0, …, `frequency_limit`, by the shorter route.
+/// Σ_k a_k e^(−ifθ_k) for f = 0, …, `frequency_limit`, by the faster method.
 ///
 /// # Panics
-/// If there are not as many strengths as angles.
+/// If the numbers of strengths and angles differ.
 pub fn fourier_sums(angles: &[f64], strengths: &[f64], frequency_limit: usize) -> Vec<Complex64> {
     fourier_sums_by(Route::shorter(angles.len(), frequency_limit), angles, strengths, frequency_limit)
 }
 
-/// The same by the route named.
+/// Like [`fourier_sums`], by a given method.
 ///
 /// # Accuracy
-/// In units of Σ|a|: (2πf + 128)·2⁻⁵², fast 5·10⁻¹⁴ more (`fourier::both_routes_give_the_sums`); the angles themselves are
-/// rounded to as much.
+/// In units of Σ|a|: (2πf + 128)·2⁻⁵²; the fast method adds 5·10⁻¹⁴ (`fourier::both_routes_give_the_sums`). The
+/// rounding of the angles has the same size.
 ///
 /// # Panics
-/// If there are not as many strengths as angles.
+/// If the numbers of strengths and angles differ.
 pub fn fourier_sums_by(route: Route, angles: &[f64], strengths: &[f64], frequency_limit: usize) -> Vec<Complex64> {
     assert_eq!(angles.len(), strengths.len(), "a strength for every angle");
     match route {
@@ -139,8 +139,8 @@ pub(super) fn transform(values: &[f64]) -> Vec<Complex64> {
     buffer
 }
 
-/// The same of complex numbers.
+/// Like [`transform`], for complex numbers.
 pub(super) fn transform_in_place(buffer: &mut [Complex64]) {
-    // Without rustfft's features there is one code for all processors, hence the same bits on all.
+    // Without rustfft's features all processors run the same code, so the bits are the same.
     FftPlanner::new().plan_fft_forward(buffer.len()).process(buffer);
 }

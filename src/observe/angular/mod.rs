@@ -5,11 +5,12 @@
 //! G(θ) = Σ S(f) cos fθ / Σ S(f)                 G* = −G(π)                 G(θ*) = 0.1
 //! ```
 //!
-//! d_r is known only where disks are, at irregular angles: there are several estimators of both, and which is the nearest to
-//! the truth depends on the number of disks and on how much of d_r is of single disks. [`SpectralWindow`] gives the expected
-//! value of one of them at the very angles of a ring, [`synthetic`] rings of a known spectrum.
+//! d_r is known only at the disks, at irregular angles, so there are several estimators of both. Which is the most
+//! accurate depends on the number of disks and on the share of d_r that is independent between disks.
+//! [`SpectralWindow`] gives the expected value of one estimator at the angles of a ring; [`synthetic`] makes rings of a
+//! known spectrum.
 //!
-//! Two dimensions. Every number depends on the disks only, not on their order, and on rotation only by rounding.
+//! Two dimensions only. Results depend only on the disks, not on their order, and on rotation only by rounding.
 
 mod block_errors;
 mod correlation;

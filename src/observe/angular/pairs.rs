@@ -18,22 +18,22 @@ pub(super) struct PairSums {
 }
 
 impl PairSums {
-    /// None yet.
+    /// Sums without any pair.
     pub(super) fn none(bin_count: usize) -> Self {
         PairSums { products: vec![0.0; bin_count], counts: vec![0.0; bin_count] }
     }
 
-    /// One pair.
+    /// Adds one pair.
     fn add(&mut self, difference: f64, product: f64) {
         let folded = if difference > PI { 2.0 * PI - difference } else { difference };
         let count = self.counts.len();
-        // A difference of π is in the last bin.
+        // A difference of π belongs to the last bin.
         let bin = ((folded * (count as f64 / PI)) as usize).min(count - 1);
         self.products[bin] += product;
         self.counts[bin] += 1.0;
     }
 
-    /// All pairs of a ring whose values are given about their mean.
+    /// All pairs of a ring. `centred` contains its values minus their mean.
     pub(super) fn of(ring: &RingSample, centred: &[f64], bin_count: usize) -> Self {
         let mut sums = Self::none(bin_count);
         let angles = ring.angles();
@@ -45,7 +45,7 @@ impl PairSums {
         sums
     }
 
-    /// Pairs of disks of which at least one is in a block, for every block; `block[k]` is that of disk k.
+    /// Pairs with at least one disk in a block, for every block; `block[k]` is the block of disk k.
     pub(super) fn of_blocks(
         ring: &RingSample,
         centred: &[f64],
@@ -67,7 +67,7 @@ impl PairSums {
         sums
     }
 
-    /// Products over counts and the variance; a bin without pairs takes the one before it.
+    /// Products over counts and variance; a bin without pairs takes the value of the bin before it.
     pub(super) fn correlation(&self, variance: f64) -> Vec<f64> {
         let mut last = if variance > 0.0 { 1.0 } else { f64::NAN };
         let bins = self.products.iter().zip(&self.counts);

@@ -1,12 +1,12 @@
 //! [`PowerSpectrum`]: S(f) of the radial displacement in a ring.
 //!
 //! ```text
-//! P_f = 2 |Σ_k w_k (x_k − m) e^(−ifθ_k)|²        Σ_(f ≥ 1) P_f is the variance where the angles are even
+//! P_f = 2 |Σ_k w_k (x_k − m) e^(−ifθ_k)|²        Σ_(f ≥ 1) P_f is the variance if the angles are evenly spaced
 //! S(f) = P_f / P_1
 //! ```
 //!
-//! What the estimators err by is derived in the chapter "Power spectrum" of the book and measured by
-//! `cargo run --release --features measurements --example angular_estimators`.
+//! The errors of the estimators are derived in the chapter "Power spectrum" of the book and measured by `cargo run
+//! --release --features measurements --example angular_estimators`.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,41 +22,41 @@ use crate::observe::angular::window::SpectralWindow;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SpectrumEstimator {
-    /// Sums at the true angles.
+    /// Fourier sums at the actual angles.
     Direct {
-        /// What a disk counts.
+        /// Weight of a disk.
         weights: Weights,
-        /// What irregular angles leak from one frequency to another.
+        /// Treatment of the leakage between frequencies from irregular angles.
         leakage: Leakage,
     },
-    /// The piecewise linear interpolant on an even grid, transformed.
+    /// Piecewise linear interpolation on an even grid, then a transform.
     Interpolated {
-        /// Grid points over disks \[1\].
+        /// Number of grid points per disk \[1\].
         points_per_disk: f64,
     },
-    /// Means in even bins, transformed; empty bins interpolated.
+    /// Means in equal bins, then a transform; empty bins are interpolated.
     Binned {
-        /// Bins over disks \[1\].
+        /// Number of bins per disk \[1\].
         bins_per_disk: f64,
     },
 }
 
 impl Default for SpectrumEstimator {
-    /// Gaps as weights, leakage removed: least biased where disks have values of their own, and with the nearest G
+    /// Gaps as weights, leakage removed: the least bias if disks have independent parts, and the most accurate G
     /// (`benches/measurements/angular_estimators.rs`).
     fn default() -> Self {
         SpectrumEstimator::Direct { weights: Weights::Gaps, leakage: Leakage::Removed }
     }
 }
 
-/// What is done about leakage.
+/// Treatment of leakage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Leakage {
-    /// It stays in: powers are never negative.
+    /// Leakage is not removed; powers are never negative.
     Kept,
-    /// The expected power is solved for the spectrum and the variance above it: unbiased where that is white, single powers may be
-    /// negative.
+    /// The expected power is inverted for the spectrum and the variance above it. Unbiased if that variance is white;
+    /// single powers may be negative.
     Removed,
 }
 
@@ -64,7 +64,7 @@ pub enum Leakage {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FrequencyLimit {
-    /// So many a disk, rounded down, at least one.
+    /// This number per disk, rounded down, at least one.
     PerDisk(f64),
     /// This one.
     Fixed(usize),
@@ -84,18 +84,18 @@ impl FrequencyLimit {
     }
 }
 
-/// How a spectrum is taken.
+/// How a spectrum is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SpectrumSettings {
     /// The estimator. Changes results.
     pub estimator: SpectrumEstimator,
-    /// Highest f, at most n/2 of direct sums and half the points of a grid.
+    /// Highest f, at most n/2 for direct sums and half the number of points for a grid.
     pub frequency_limit: FrequencyLimit,
 }
 
 impl Default for SpectrumSettings {
-    /// An eighth as many frequencies as disks: eight disks to the shortest wavelength.
+    /// One frequency per eight disks: eight disks per shortest wavelength.
     fn default() -> Self {
         SpectrumSettings { estimator: SpectrumEstimator::default(), frequency_limit: FrequencyLimit::PerDisk(0.125) }
     }
@@ -112,14 +112,15 @@ pub struct PowerSpectrum {
     pub variance: f64,
     /// P_f at its index f \[value²\]; P_0 is the squared mean.
     pub power: Vec<f64>,
-    /// ρ, the variance at higher frequencies and of single disks, where leakage is removed; else 0 \[value²\].
+    /// ρ, the variance at higher frequencies and of independent values of single disks, if leakage is removed;
+    /// otherwise 0 \[value²\].
     pub unresolved: f64,
-    /// 2 σ² Σ w²: what a ring of values without correlation and this variance would have at every f \[value²\].
+    /// 2 σ² Σ w²: the expected power at every f of uncorrelated values with this variance \[value²\].
     pub white_floor: f64,
 }
 
 impl SpectrumSettings {
-    /// Whether every number makes sense, whatever the ring.
+    /// Checks the settings, independently of a ring.
     pub(crate) fn check(&self) -> Result<(), AngularError> {
         self.frequency_limit.of(1)?;
         match self.estimator {
@@ -134,10 +135,10 @@ impl PowerSpectrum {
     /// The spectrum of a ring.
     ///
     /// # Errors
-    /// Settings out of range; a highest frequency above n/2 or that of the grid.
+    /// Settings out of range; a highest frequency above n/2 or above that of the grid.
     ///
     /// # Cost
-    /// Direct: n·f_max rotations or a fast transform, and f_max³/3 multiplications where leakage is removed. On a grid:
+    /// Direct: n·f_max rotations or a fast transform, and f_max³/3 multiplications if leakage is removed. On a grid:
     /// one transform.
     ///
     /// # Example
@@ -209,7 +210,7 @@ impl PowerSpectrum {
             let sums = fourier_sums(ring.angles(), &counts, frequency_limit);
             let modes = sums[1..].iter().map(|sum| 1.0 - sum.norm_sqr()).collect();
             let shares = Shares { modes, white: 1.0 - square };
-            // Singular only where the angles do not tell frequencies apart: what was measured then stands.
+            // Singular only if the angles cannot separate the frequencies: the measured powers are then kept.
             if let Some((solved, unresolved)) = unmix(&window, &spectrum.power[1..], centred.variance, shares) {
                 spectrum.power[1..].copy_from_slice(&solved);
                 spectrum.unresolved = unresolved;
@@ -225,7 +226,7 @@ impl PowerSpectrum {
             Centred::of(mean, values, |values| values.iter().map(|value| value * value).sum::<f64>() / count);
         let sums = transform(&centred);
         let mut power: Vec<f64> = (0..=frequency_limit)
-            // The highest frequency of an even grid is its own mirror image.
+            // The highest frequency of an even grid is its own alias.
             .map(|f| if 2 * f == values.len() { 1.0 } else { 2.0 } * (sums[f] / count).norm_sqr())
             .collect();
         power[0] = mean * mean;
@@ -234,14 +235,14 @@ impl PowerSpectrum {
         PowerSpectrum { estimator, disk_count, variance, power, unresolved: 0.0, white_floor }
     }
 
-    /// S(f) = P_f/P_1 \[1\] at its index f; none where P_1 is not positive.
+    /// S(f) = P_f/P_1 \[1\] at its index f; none if P_1 is not positive.
     pub fn normalised(&self) -> Option<Vec<f64>> {
         let first = self.power[1];
         (first > 0.0).then(|| self.power.iter().map(|power| power / first).collect())
     }
 
-    /// (P_f + 2ρ/n)/(P_1 + 2ρ/n): the unresolved variance as the floor it is to n even angles; flat for values without
-    /// correlation. None where the divisor is not positive.
+    /// (P_f + 2ρ/n)/(P_1 + 2ρ/n): the unresolved variance is added as a white floor, as for n even angles. Flat for
+    /// uncorrelated values. None if the divisor is not positive.
     pub fn normalised_with_floor(&self) -> Option<Vec<f64>> {
         let floor = 2.0 * self.unresolved / self.disk_count as f64;
         let first = self.power[1] + floor;
@@ -254,7 +255,7 @@ impl PowerSpectrum {
     }
 }
 
-/// Memory of a point: its value, about the mean, and the transform \[bytes\].
+/// Memory per point: its value, the centred value and the transform \[bytes\].
 const GRID_POINT_BYTES: f64 = 48.0;
 
 /// An even number of points, at least four.
@@ -265,7 +266,7 @@ pub(super) fn grid_size(setting: &'static str, per_disk: f64, disk_count: usize)
     Ok(count)
 }
 
-/// A setting that is positive and finite, up to 1000 a disk.
+/// Checks that a setting is positive and finite, at most 1000 per disk.
 fn positive(setting: &'static str, value: f64) -> Result<f64, AngularError> {
     if value > 0.0 && value <= 1e3 { Ok(value) } else { Err(AngularError::NotPositive { setting, value }) }
 }

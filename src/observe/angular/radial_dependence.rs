@@ -9,13 +9,13 @@ use crate::observe::angular::power_spectrum::{PowerSpectrum, SpectrumSettings};
 use crate::observe::angular::ring::{RingSample, RingSettings};
 use crate::observe::angular_profile::RING_HALF_WIDTH;
 
-/// Which rings, and what is taken in them.
+/// The rings and their analysis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RadialDependenceSettings {
-    /// Middles of the rings, r̂ = r/R \[1\].
+    /// Midpoints of the rings, r̂ = r/R \[1\].
     pub relative_radii: Vec<f64>,
-    /// Half of their width over R \[1\].
+    /// Half width of a ring over R \[1\].
     pub half_width: f64,
     /// The spectrum.
     pub spectrum: SpectrumSettings,
@@ -40,11 +40,11 @@ impl Default for RadialDependenceSettings {
 pub struct RingAnalysis {
     /// r̂ \[1\].
     pub relative_radius: f64,
-    /// What was found.
+    /// The result.
     pub outcome: RingOutcome,
 }
 
-/// What is found in a ring.
+/// The result of a ring.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RingOutcome {
@@ -55,16 +55,16 @@ pub enum RingOutcome {
         /// G(θ), G*, θ*.
         correlation: AngularCorrelation,
     },
-    /// Near the inflated disk a ring may hold next to no disks.
+    /// Too few disks, as may happen near the inflated disk.
     TooFewDisks {
         /// Disks in the ring.
         disk_count: usize,
     },
-    /// A fixed highest frequency may be too high for the disks of a ring.
+    /// The fixed highest frequency is too high for the disks of this ring.
     FrequencyLimitOutOfRange {
-        /// The highest frequency asked for.
+        /// The highest frequency requested.
         frequency_limit: usize,
-        /// The highest there is.
+        /// The highest frequency available.
         highest: usize,
     },
 }
@@ -72,7 +72,7 @@ pub enum RingOutcome {
 /// Spectrum and correlation function of d_r in every ring of the settings.
 ///
 /// # Errors
-/// Settings out of range, values that are not finite. That a ring has too few disks is an outcome of that ring.
+/// Settings out of range; values that are not finite. Too few disks in a ring is an outcome of that ring, not an error.
 pub fn radial_dependence(
     field: &DisplacementField<2>,
     settings: &RadialDependenceSettings,

@@ -8,16 +8,16 @@ use crate::displacement::DisplacementField;
 use crate::observe::angular::error::{AngularError, LEAST_DISK_COUNT};
 use crate::observe::angular_profile::{AngularProfile, RING_HALF_WIDTH};
 
-/// Values beyond this have no square.
+/// The squares of larger values overflow.
 const LARGEST_VALUE: f64 = 1e150;
 
-/// Where the ring lies.
+/// Position and width of a ring.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RingSettings {
     /// Middle of the ring, r̂ = r/R \[1\].
     pub relative_radius: f64,
-    /// Half of its width over R, δr̂ \[1\].
+    /// Half width over R, δr̂ \[1\].
     pub half_width: f64,
 }
 
@@ -28,30 +28,30 @@ impl Default for RingSettings {
     }
 }
 
-/// Angles and values of the disks of a ring, ascending in the angle; disks at one angle ascending in the value.
+/// Angles and values of the disks of a ring, in ascending order of angles; at equal angles, of values.
 ///
-/// The order of the disks given makes no difference, to the bit.
+/// The result does not depend on the order of the disks given.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RingSample {
     angles: Vec<f64>,
     values: Vec<f64>,
 }
 
-/// How much a disk counts; the weights of a ring add up to 1.
+/// The weight of a disk; the weights of a ring add up to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Weights {
     /// 1/n.
     Equal,
-    /// Half of the gaps to both neighbours over 2π: the trapezoidal rule.
+    /// Half the sum of the gaps to both neighbours over 2π: the trapezoidal rule.
     Gaps,
 }
 
 impl RingSample {
-    /// Disks at these angles, any finite numbers, with these values.
+    /// A ring from angles, any finite numbers, and values.
     ///
     /// # Errors
-    /// Lengths that differ, too few disks, numbers that are not finite or values beyond 10¹⁵⁰.
+    /// Different lengths, too few disks, numbers that are not finite or values above 10¹⁵⁰.
     pub fn new(angles: &[f64], values: &[f64]) -> Result<Self, AngularError> {
         if angles.len() != values.len() {
             return Err(AngularError::LengthsDiffer { angle_count: angles.len(), value_count: values.len() });
@@ -65,7 +65,7 @@ impl RingSample {
             return Err(AngularError::NotFinite { disk, angle: angles[disk], value: values[disk] });
         }
         for disk in &mut disks {
-            // Zeros have one sign, so that total_cmp sees one number.
+            // Zeros get one sign, so that total_cmp treats them as equal.
             *disk = (folded(disk.0) + 0.0, disk.1 + 0.0);
         }
         disks.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
@@ -75,10 +75,10 @@ impl RingSample {
         })
     }
 
-    /// d_r of the disks of a field that count and lie in the ring.
+    /// d_r of the disks of a field that count and are in the ring.
     ///
     /// # Errors
-    /// Settings out of range; as [`new`](Self::new).
+    /// Settings out of range; see [`new`](Self::new).
     pub fn of_field(field: &DisplacementField<2>, settings: &RingSettings) -> Result<Self, AngularError> {
         let RingSettings { relative_radius, half_width } = *settings;
         let usable = |number: f64| number > 0.0 && number.is_finite();
@@ -91,7 +91,7 @@ impl RingSample {
     /// The disks of an angular profile.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// See [`new`](Self::new).
     pub fn of_profile(profile: &AngularProfile) -> Result<Self, AngularError> {
         Self::new(&profile.angles, &profile.radial)
     }
@@ -111,7 +111,7 @@ impl RingSample {
         &self.values
     }
 
-    /// What each disk counts.
+    /// The weight of each disk.
     pub fn weights(&self, weights: Weights) -> Vec<f64> {
         match weights {
             Weights::Equal => vec![1.0 / self.disk_count() as f64; self.disk_count()],
@@ -119,17 +119,17 @@ impl RingSample {
         }
     }
 
-    /// Values less their weighted mean, the mean, and the weighted variance.
+    /// Values minus their weighted mean, the mean, and the weighted variance.
     pub(super) fn centred(&self, weights: &[f64]) -> Centred {
         let mean: f64 = weights.iter().zip(&self.values).map(|(w, x)| w * x).sum();
         Centred::of(mean, &self.values, |values| weights.iter().zip(values).map(|(w, x)| w * x * x).sum())
     }
 }
 
-/// A standard deviation below this share of the mean is rounding: values without variance.
+/// A standard deviation below this share of the mean is rounding: the values have no variance.
 const LEAST_SPREAD: f64 = 8.0 * f64::EPSILON;
 
-/// Values about their mean.
+/// Values minus their mean.
 pub(super) struct Centred {
     pub mean: f64,
     pub values: Vec<f64>,
@@ -137,7 +137,7 @@ pub(super) struct Centred {
 }
 
 impl Centred {
-    /// Values about a mean; all zero if what is left is rounding.
+    /// Values minus a mean; all zero if the differences are rounding.
     pub(super) fn of(mean: f64, values: &[f64], variance: impl Fn(&[f64]) -> f64) -> Self {
         let mut values: Vec<f64> = values.iter().map(|x| x - mean).collect();
         let mut found = variance(&values);
@@ -149,14 +149,14 @@ impl Centred {
     }
 }
 
-/// Half of both gaps of every angle over 2π.
+/// Half the sum of both gaps of every angle, over 2π.
 fn gap_weights(angles: &[f64]) -> Vec<f64> {
     let gaps = gaps(angles);
     let before = |k: usize| gaps[(k + gaps.len() - 1) % gaps.len()];
     (0..angles.len()).map(|k| (before(k) + gaps[k]) / (4.0 * PI)).collect()
 }
 
-/// From every angle to the next.
+/// The gap from every angle to the next.
 pub(super) fn gaps(angles: &[f64]) -> Vec<f64> {
     let count = angles.len();
     let mut gaps: Vec<f64> = angles.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -164,7 +164,7 @@ pub(super) fn gaps(angles: &[f64]) -> Vec<f64> {
     gaps
 }
 
-/// The angle in [−π, π], the bits kept where it lies there.
+/// The angle in [−π, π]; unchanged if it already is.
 fn folded(angle: f64) -> f64 {
     if angle.abs() <= PI { angle } else { libm::remainder(angle, 2.0 * PI) }
 }

@@ -1,7 +1,8 @@
 //! Means and standard errors over samples: [`correlation_statistics`], [`spectrum_statistics`].
 //!
-//! G is averaged as it is, each sample normalised to G(0) = 1, samples without one left out. S is averaged over samples of one variance and then normalised to
-//! S(1) = 1: the mean of S(f)/S(1) itself does not exist, because 1/S(1) of a random field has no mean.
+//! G is averaged with each sample normalised to G(0) = 1; samples without G are left out. S is averaged over samples
+//! scaled to equal variance and then normalised to S(1) = 1. The mean of S(f)/S(1) itself does not exist, because
+//! 1/S(1) of a random field has no mean.
 
 use serde::Serialize;
 
@@ -15,7 +16,7 @@ use crate::observe::angular::power_spectrum::PowerSpectrum;
 pub struct Mean {
     /// The mean \[unit of the number\].
     pub value: f64,
-    /// Its standard error \[the same\]; none from one sample.
+    /// Its standard error \[unit of the number\]; none for one sample.
     pub standard_error: Option<f64>,
 }
 
@@ -34,7 +35,7 @@ impl Mean {
 pub struct CorrelationStatistics {
     /// Number of samples.
     pub sample_count: usize,
-    /// Samples left out, as they have no G.
+    /// Number of samples left out because they have no G.
     pub left_out_count: usize,
     /// θ \[rad\].
     pub angles: Vec<f64>,
@@ -42,22 +43,22 @@ pub struct CorrelationStatistics {
     pub values: Vec<Mean>,
     /// G* \[1\].
     pub anticorrelation: Mean,
-    /// θ* of every threshold.
+    /// θ* at every threshold.
     pub crossings: Vec<CrossingStatistics>,
 }
 
-/// θ* of one threshold over samples.
+/// θ* at one threshold over samples.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CrossingStatistics {
     /// G_th \[1\].
     pub threshold: f64,
-    /// θ* of the mean G, linear between its angles.
+    /// θ* of the mean G, by linear interpolation.
     pub of_mean: CrossingOutcome,
-    /// Mean θ* of the samples that have one \[rad\].
+    /// Mean θ* of the samples with a θ* \[rad\].
     pub angle: Option<Mean>,
     /// Their lower quartile, median and upper quartile \[rad\].
     pub quartiles: Option<[f64; 3]>,
-    /// Samples whose G never falls to the threshold.
+    /// Number of samples whose G never falls to the threshold.
     pub never_count: usize,
 }
 
@@ -66,14 +67,14 @@ pub struct CrossingStatistics {
 pub struct SpectrumStatistics {
     /// Number of samples.
     pub sample_count: usize,
-    /// S(f) at its index f, S(1) = 1; the errors are those of the mean power, S(1) taken as given \[1\].
+    /// S(f) at its index f, S(1) = 1. The errors are those of the mean power; S(1) is treated as exact \[1\].
     pub spectrum: Vec<Mean>,
 }
 
 /// Means over samples.
 ///
 /// # Errors
-/// No sample; samples with other angles or thresholds than the first.
+/// No sample; samples whose angles or thresholds differ from those of the first.
 pub fn correlation_statistics(samples: &[AngularCorrelation]) -> Result<CorrelationStatistics, AngularError> {
     let first = alike(samples, |a, b| {
         if a.angles != b.angles {
@@ -113,7 +114,8 @@ pub fn correlation_statistics(samples: &[AngularCorrelation]) -> Result<Correlat
 /// Means over samples, each divided by its variance.
 ///
 /// # Errors
-/// No sample; samples with other frequencies than the first, or without variance; a mean power at f = 1 that is not positive.
+/// No sample; samples with other frequencies than the first, or without variance; a mean power at f = 1 that is not
+/// positive.
 pub fn spectrum_statistics(samples: &[PowerSpectrum]) -> Result<SpectrumStatistics, AngularError> {
     let first = alike(samples, |a, b| {
         if a.power.len() != b.power.len() {
@@ -136,7 +138,7 @@ pub fn spectrum_statistics(samples: &[PowerSpectrum]) -> Result<SpectrumStatisti
     Ok(SpectrumStatistics { sample_count: samples.len(), spectrum })
 }
 
-/// The first sample, if there is one and no other differs from it.
+/// The first sample; an error if there is none or another one differs from it.
 fn alike<T>(samples: &[T], difference: impl Fn(&T, &T) -> Option<&'static str>) -> Result<&T, AngularError> {
     let sample_count = samples.len();
     let none = AngularError::SamplesDiffer { sample: 0, sample_count, reason: "there is none" };
@@ -149,7 +151,7 @@ fn alike<T>(samples: &[T], difference: impl Fn(&T, &T) -> Option<&'static str>) 
     Ok(first)
 }
 
-/// Linear between the order statistics, of which there is at least one.
+/// Quantile by linear interpolation between the order statistics; at least one value.
 pub(crate) fn quantile(ascending: &[f64], share: f64) -> f64 {
     let at = share * (ascending.len() - 1) as f64;
     let (below, rest) = (at.floor() as usize, at - at.floor());

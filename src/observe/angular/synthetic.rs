@@ -1,10 +1,10 @@
-//! [`gaussian_rings`]: rings whose spectrum is known.
+//! [`gaussian_rings`]: synthetic rings with a known spectrum.
 //!
 //! ```text
 //! d_r(θ) = Σ_(f=1)^H √S(f) (ξ_f cos fθ + η_f sin fθ) + noise       ξ, η normal, of variance 1
 //! ```
 //!
-//! The sum is one transform on a grid of the next power of two above 2H points; disks stand on points of the grid.
+//! The sum is one transform on a grid whose size is the next power of two above 2H points. Disks are at grid points.
 
 use std::f64::consts::PI;
 
@@ -16,53 +16,53 @@ use crate::observe::angular::error::AngularError;
 use crate::observe::angular::fourier::transform_in_place;
 use crate::observe::angular::ring::RingSample;
 
-/// Where the disks of a synthetic ring stand.
+/// The angles of the disks of a synthetic ring.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum AngleLayout {
-    /// Evenly.
+    /// Evenly spaced.
     Even,
-    /// Evenly but for a shift, uniform within ± half of this share of the even gap \[1\].
+    /// Evenly spaced plus a uniform random shift within ± half of this share of the even gap \[1\].
     Jittered(f64),
-    /// Anywhere, independently.
+    /// Independent and uniform.
     Random,
 }
 
-/// What a synthetic ring is made of.
+/// Settings of a synthetic ring.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SyntheticSettings {
     /// Number of disks.
     pub disk_count: usize,
-    /// Where they stand.
+    /// The angles.
     pub layout: AngleLayout,
     /// Highest frequency over the number of disks \[1\].
     pub frequencies_per_disk: usize,
-    /// Standard deviation of what is added to every disk by itself \[value\].
+    /// Standard deviation of the independent noise of every disk \[value\].
     pub noise: f64,
     /// Seed of all random numbers.
     pub seed: u64,
 }
 
 impl Default for SyntheticSettings {
-    /// 1000 disks anywhere, frequencies up to 16 a disk, no noise.
+    /// 1000 disks at random angles, up to 16 frequencies per disk, no noise.
     fn default() -> Self {
         let layout = AngleLayout::Random;
         SyntheticSettings { disk_count: 1000, layout, frequencies_per_disk: 16, noise: 0.0, seed: 1 }
     }
 }
 
-/// A ring and what it was made from.
+/// A ring and the field from which it was made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SyntheticRing {
     /// Angles and values.
     pub ring: RingSample,
-    /// Power of the very field at f = 0, 1, …, H, `S(f) (ξ² + η²)/2` \[value²\], without the noise.
+    /// Power of this realisation of the field at f = 0, 1, …, H, `S(f) (ξ² + η²)/2` \[value²\], without the noise.
     pub power: Vec<f64>,
 }
 
-/// `count` rings of independent fields and angles, whose spectrum is `spectrum(f)`, the variance at f.
+/// `count` rings of independent fields and angles. `spectrum(f)` is the variance at f.
 ///
 /// # Errors
-/// Fewer disks than a ring needs; a spectrum that is negative or not finite gives values that are not finite.
+/// Fewer disks than a ring needs; values that are not finite, from a negative or infinite spectrum.
 pub fn gaussian_rings(
     settings: &SyntheticSettings,
     count: usize,
@@ -74,7 +74,7 @@ pub fn gaussian_rings(
     let mut random = Pcg64::seed_from_u64(settings.seed);
     let mut rings = Vec::with_capacity(count + 1);
     while rings.len() < count {
-        // Two fields a transform: the real and the imaginary part.
+        // Two fields per transform: the real and the imaginary part.
         let mut buffer = vec![Complex64::ZERO; size];
         for (f, amplitude) in (1..).zip(&amplitudes) {
             buffer[f] = amplitude * normal_pair(&mut random);
@@ -101,7 +101,7 @@ pub fn gaussian_rings(
     Ok(rings)
 }
 
-/// Points of the grid that hold a disk.
+/// Grid points with a disk.
 fn places(settings: &SyntheticSettings, size: usize, random: &mut Pcg64) -> Vec<usize> {
     let gap = size as f64 / settings.disk_count as f64;
     (0..settings.disk_count)

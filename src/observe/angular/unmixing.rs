@@ -1,7 +1,8 @@
-//! Leakage taken out of a power spectrum: ⟨P⟩ = K S + ρ N, solved for S and ρ.
+//! Removal of leakage from a power spectrum: ⟨P⟩ = K S + ρ N, solved for S and ρ.
 //!
-//! The variance V = Σ w (x − m)² closes the equations, ⟨V⟩ = Σ_g S_g (1 − |W(g)|²) + ρ (1 − Σ w²). ρ is what lies above the
-//! highest frequency and what is of single disks. S is unbiased if that is white; single ones may come out negative.
+//! The variance V = Σ w (x − m)² closes the equations, ⟨V⟩ = Σ_g S_g (1 − |W(g)|²) + ρ (1 − Σ w²). ρ is the variance
+//! above the highest frequency and that of independent values of single disks. S is unbiased if ρ is white; single
+//! values may be negative.
 //! Source: Hivon et al. (2002), Astrophys. J. 567, 2.
 
 use crate::observe::angular::window::SpectralWindow;
@@ -24,7 +25,7 @@ pub(super) fn unmix(window: &SpectralWindow, power: &[f64], variance: f64, share
     Some((solution, unresolved))
 }
 
-/// What modes and values of single disks of unit variance give to V.
+/// Contributions to V of modes and of independent values of single disks, for unit variance.
 pub(super) struct Shares {
     /// 1 − |W(g)|², g = 1, …
     pub modes: Vec<f64>,
@@ -32,7 +33,7 @@ pub(super) struct Shares {
     pub white: f64,
 }
 
-/// Gaussian elimination with row exchanges; each row ends with its right-hand side.
+/// Gaussian elimination with partial pivoting; each row ends with its right-hand side.
 fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     let size = rows.len();
     for column in 0..size {

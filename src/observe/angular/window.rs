@@ -1,7 +1,7 @@
-//! [`SpectralWindow`]: what power a spectrum leaves, in the mean, in sums over irregular angles.
+//! [`SpectralWindow`]: the expected power of sums over irregular angles, for a given spectrum.
 //!
-//! For d_r = Σ_g a_g cos(gθ + φ_g) with random phases, S_g = ⟨a_g²⟩/2, and values of single disks of variance ρ on top,
-//! the power P_f = 2|Σ w_k (x_k − m) e^(−ifθ_k)|², m = Σ w_k x_k, Σ w_k = 1, is in the mean
+//! Let d_r = Σ_g a_g cos(gθ + φ_g) with random phases, S_g = ⟨a_g²⟩/2, plus independent values of single disks with
+//! variance ρ. The expected power P_f = 2|Σ w_k (x_k − m) e^(−ifθ_k)|², m = Σ w_k x_k, Σ w_k = 1, is
 //!
 //! ```text
 //! ⟨P_f⟩ = Σ_g K_fg S_g + ρ N_f                         W(h) = Σ w_k e^(ihθ_k),  W₂(h) = Σ w_k² e^(ihθ_k)
@@ -9,7 +9,7 @@
 //! N_f  = 2 [Σ w² (1 + |W(f)|²) − 2 Re W(f) W̄₂(f)]
 //! ```
 //!
-//! At evenly spaced angles K is the identity below n/2. What K − 1 and N hold is leakage. Nothing is assumed of the angles.
+//! At evenly spaced angles K is the identity below n/2. K − 1 and N describe the leakage. The angles are arbitrary.
 //! Source: for even spacing with gaps, Sykulski, Olhede, Guillaumin, Lilly, Early (2019), Biometrika 106, 251 (the debiased
 //! Whittle likelihood); for the sphere, Hivon et al. (2002), Astrophys. J. 567, 2 (K is their coupling matrix).
 
@@ -18,7 +18,7 @@ use num_complex::Complex64;
 use crate::observe::angular::fourier::fourier_sums;
 use crate::observe::angular::ring::{RingSample, Weights};
 
-/// Relative width of the bands that sources above the frequencies looked at are taken in: S changes by 3 % over one.
+/// Relative width of the bands of source frequencies above the highest f: S changes by 3 % within a band.
 const BAND_WIDTH: f64 = 0.02;
 
 /// The coupling of spectrum and power at the angles of a ring.
@@ -26,7 +26,7 @@ const BAND_WIDTH: f64 = 0.02;
 pub struct SpectralWindow {
     /// Highest f.
     frequency_limit: usize,
-    /// Sources: one frequency each up to a little above the highest f, then bands.
+    /// Sources: single frequencies up to a little above the highest f, then bands.
     bands: Vec<Band>,
     /// K_fg summed over each band; row f − 1.
     coupling: Vec<f64>,
@@ -34,16 +34,16 @@ pub struct SpectralWindow {
     white: Vec<f64>,
 }
 
-/// A frequency, or one that stands for several beside it.
+/// A frequency, or the representative of a band.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Source {
     /// g, or the middle of a band \[1\].
     pub frequency: f64,
-    /// How many it stands for.
+    /// Number of frequencies that it represents.
     pub count: f64,
 }
 
-/// Frequencies taken together.
+/// A group of neighbouring frequencies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Band {
     first: usize,
@@ -51,7 +51,7 @@ struct Band {
 }
 
 impl Band {
-    /// The frequency that stands for all.
+    /// The representative frequency.
     fn middle(self) -> f64 {
         if self.first == self.last {
             self.first as f64
@@ -64,7 +64,7 @@ impl Band {
         (self.last - self.first + 1) as f64
     }
 
-    /// Bands from `next` to `last`, one frequency each up to `single`.
+    /// Bands from `next` to `last`; single frequencies up to `single`.
     fn all(next: usize, single: usize, last: usize) -> Vec<Self> {
         let mut bands = Vec::new();
         let mut first = next;
@@ -110,20 +110,21 @@ impl SpectralWindow {
         self.frequency_limit
     }
 
-    /// N_f for f = 1, … \[1\]: the power that values of single disks leave, over their variance.
+    /// N_f for f = 1, … \[1\]: the expected power of independent values of single disks, over their variance.
     pub fn white(&self) -> &[f64] {
         &self.white
     }
 
-    /// Σ_g K_fg S_g for f = 1, …, of a spectrum that goes on to `highest`.
+    /// Σ_g K_fg S_g for f = 1, …, of a spectrum up to `highest`.
     ///
-    /// Sources beyond those of the window count as values of single disks, which they are to disks at irregular angles.
+    /// Sources beyond those of the window count as independent values of single disks, a good approximation at
+    /// irregular angles.
     pub fn expected(&self, spectrum: impl Fn(f64) -> f64, highest: usize) -> Vec<f64> {
         let sources = self.sources(highest);
         self.expected_from(&sources, &sources.iter().map(|source| spectrum(source.frequency)).collect::<Vec<_>>())
     }
 
-    /// The frequencies at which a spectrum that goes on to `highest` must be known.
+    /// The frequencies at which a spectrum up to `highest` must be known.
     pub fn sources(&self, highest: usize) -> Vec<Source> {
         let last = self.bands.last().map_or(0, |band| band.last);
         let beyond = Band::all(last + 1, 0, highest);
@@ -142,13 +143,13 @@ impl SpectralWindow {
         rows.zip(&self.white).map(|(row, white)| product(row, &power[..own]) + beyond * white).collect()
     }
 
-    /// K_fg of frequencies that are no band: f and g from 1 to the limit.
+    /// K_fg of single frequencies: f and g from 1 to the limit.
     pub(super) fn coupling(&self, f: usize, g: usize) -> f64 {
         self.coupling[(f - 1) * self.bands.len() + g - 1]
     }
 }
 
-/// Σ a_i b_i in eight sums side by side.
+/// Σ a_i b_i in eight parallel sums.
 fn product(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
     for (a, b) in a.chunks(8).zip(b.chunks(8)) {

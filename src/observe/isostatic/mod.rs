@@ -1,12 +1,14 @@
-//! [`IsostaticLength`]: from where on the stretching of bonds varies around a ring as in a continuum, ℓ_iso.
+//! [`IsostaticLength`]: the distance beyond which the fluctuations of bond stretching are those of a continuum, ℓ_iso.
 //!
 //! ```text
 //! x = r ΔZ, or r √ΔZ        y = (h_∥(r)/h_0) xⁿ        ℓ_iso: the smallest r at which y rises to a threshold        C: x at ℓ_iso
 //! ```
 //!
-//! n is that of the [`Tail`] which makes y level beyond ℓ_iso. In an elastic medium a disk that grows strains it as 1/r²; one
-//! that is held in its place as well, as in the study, is pushed by its neighbours with a force that strains it as 1/r
-//! ([`PointForce`](crate::reference::angular_modes::point_force::PointForce)), farther out than any ℓ_iso: the chapter has both. h_0 makes h_∥ a number,
+//! n is the power of the [`Tail`] that makes y constant beyond ℓ_iso. In an elastic medium a growing disk causes a
+//! strain 1/r². In the study that disk is also held at its position. The force that holds it causes a strain 1/r
+//! ([`PointForce`](crate::reference::angular_modes::point_force::PointForce)), which dominates beyond any ℓ_iso; see
+//! the book. h_0 makes h_∥ dimensionless, see [`Normalisation`]. The threshold is a given value or a share of the
+//! plateau, see [`IsostaticRule`]; for x see [`Scale`]. Between two rings y is interpolated linearly.
 //! [`Normalisation`]; the threshold is one given or a share of the plateau, [`IsostaticRule`]; which x, [`Scale`]. Between two rings y is taken as a straight line.
 //!
 //! # Source
@@ -41,44 +43,44 @@ pub enum IsostaticOutcome {
         /// Radii of the rings on either side \[length\].
         between: [f64; 2],
     },
-    /// The innermost ring is at or above it already: ℓ_iso is at most its radius.
+    /// The innermost ring is already at or above the threshold: ℓ_iso is at most its radius.
     AboveFromTheStart {
-        /// That radius \[length\].
+        /// Its radius \[length\].
         innermost: f64,
     },
-    /// No ring reaches it.
+    /// No ring reaches the threshold.
     NeverReached {
         /// The largest y \[1\].
         largest: f64,
     },
-    /// ΔZ is not positive: there is no length.
+    /// ΔZ is not positive, so there is no ℓ_iso.
     NoExcess {
         /// ΔZ \[1\].
         excess: f64,
     },
-    /// Nothing is rigid.
+    /// There is no backbone.
     NoBackbone,
     /// Fewer than two rings have a fluctuation.
     TooFewRings,
-    /// No ring where the plateau should be.
+    /// No ring lies in the range of the plateau.
     NoPlateau,
-    /// h_0 is 0 or a ring is not a number.
+    /// h_0 is 0, or a value of a ring is NaN.
     NoScale,
 }
 
-/// ℓ_iso, and the curve it was read from.
+/// ℓ_iso, and the curve from which it is read.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct IsostaticLength {
     /// ΔZ of the backbone before; absent without one \[1\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub excess: Option<f64>,
-    /// h_0, where there is a curve \[length\].
+    /// h_0, if there is a curve \[length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<f64>,
     /// n: 1 or 2.
     #[serde(default)]
     pub tail: Tail,
-    /// What x is a distance times.
+    /// The factor in x.
     #[serde(default)]
     pub scale: Scale,
     /// The threshold, given or from the plateau \[1\].
@@ -94,7 +96,7 @@ impl IsostaticLength {
     /// ℓ_iso of an inflation.
     ///
     /// # Errors
-    /// Settings that make no sense; a packing without forces.
+    /// Invalid settings; a packing with undefined forces.
     pub fn of_inflation<const D: usize, L: PairLaw>(
         inflated: &Inflated<D>,
         law: &L,
@@ -108,7 +110,7 @@ impl IsostaticLength {
     /// ℓ_iso from one state to another of the same disks; distances are from disk `centre`, which grew.
     ///
     /// # Errors
-    /// Settings that make no sense.
+    /// Invalid settings.
     ///
     /// # Panics
     /// If the packings differ in their number of disks.
@@ -127,12 +129,12 @@ impl IsostaticLength {
         Self::of(&fluctuations, excess, increase, outer_radius, settings)
     }
 
-    /// ℓ_iso of a fluctuation against r, which may be a mean over samples, or h_r to see that it does not collapse.
+    /// ℓ_iso of a fluctuation against r. It may be a mean over samples, or h_r as a control that should not collapse.
     ///
-    /// `excess` is ΔZ, none without a backbone; `increase` d_0 and `outer_radius` R \[length\].
+    /// `excess` is ΔZ, none without a backbone; `increase` is d_0 and `outer_radius` R \[length\].
     ///
     /// # Errors
-    /// Settings that make no sense.
+    /// Invalid settings.
     pub fn of(
         fluctuations: &Fluctuations,
         excess: Option<f64>,

@@ -1,4 +1,4 @@
-//! [`IsostaticPoint`]: one ring of the curve ℓ_iso is read from.
+//! [`IsostaticPoint`]: one ring of the curve from which ℓ_iso is read.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,6 +11,6 @@ pub struct IsostaticPoint {
     pub scaled_radius: f64,
     /// y = (h_∥/h_0) xⁿ \[1\].
     pub scaled_fluctuation: f64,
-    /// Standard error of y from that of h_∥, h_0 taken as exact \[1\].
+    /// Standard error of y from that of h_∥; h_0 is treated as exact \[1\].
     pub standard_error: f64,
 }

@@ -1,4 +1,4 @@
-//! How ℓ_iso is measured, and what of it makes no sense.
+//! Settings of ℓ_iso, and their errors.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use crate::observe::fluctuations::{BondMeasure, FluctuationRing};
 use crate::observe::isostatic::point::IsostaticPoint;
 use crate::packing::PackingError;
 
-/// What h_∥ is divided by, h_0.
+/// The divisor h_0 of h_∥.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Normalisation {
@@ -16,9 +16,9 @@ pub enum Normalisation {
         /// That radius.
         radius: f64,
     },
-    /// |d_0|, by which the disk grew.
+    /// |d_0|, the increase of the radius.
     Increase,
-    /// One length: h_∥ as it is.
+    /// The unit of length: h_∥ itself.
     Length,
 }
 
@@ -26,10 +26,10 @@ pub enum Normalisation {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Tail {
-    /// As 1/r: the inflated disk is held in its place, and what holds it takes up a force.
+    /// As 1/r: the inflated disk is held at its position by a force.
     #[default]
     InverseDistance,
-    /// As 1/r²: the inflated disk is free, as in the periodic box, and the forces of its contacts add up to nothing.
+    /// As 1/r²: the inflated disk is free, as in the periodic box, and its contact forces add up to zero.
     InverseSquare,
 }
 
@@ -43,7 +43,7 @@ impl Tail {
     }
 }
 
-/// What makes a distance from the centre a number, x.
+/// The factor that makes a distance from the centre dimensionless, x.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Scale {
@@ -64,13 +64,13 @@ impl Scale {
     }
 }
 
-/// The y that ends the disordered region.
+/// The value of y that defines ℓ_iso.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum IsostaticRule {
     /// This value \[1\].
     Threshold(f64),
-    /// A share of the plateau, which is the median of y over the rings between two radii.
+    /// A share of the plateau, the median of y over the rings between two radii.
     Plateau {
         /// The smaller radius over R \[1\].
         from: f64,
@@ -85,27 +85,27 @@ pub enum IsostaticRule {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct IsostaticSettings {
-    /// Which contacts are bonds.
+    /// The contacts included.
     pub bonds: BondSet,
-    /// Which number of a bond.
+    /// The quantity of a bond.
     pub measure: BondMeasure,
     /// Width of a ring \[length\].
     pub ring_width: f64,
-    /// Radius from which on rings count \[length\]: nearer are the contacts of the inflated disk, which it pushes itself.
+    /// Smallest radius of a ring \[length\]. Excludes the contacts of the inflated disk, which it pushes directly.
     pub from: f64,
     /// h_0.
     pub normalisation: Normalisation,
-    /// The tail that makes y level.
+    /// The tail that makes y constant.
     pub tail: Tail,
-    /// What makes a distance a number.
+    /// The factor that makes a distance dimensionless.
     pub scale: Scale,
     /// The threshold.
     pub rule: IsostaticRule,
 }
 
 impl Default for IsostaticSettings {
-    /// Source: the study for the threshold, 1.3. It does not say what h_∥ is divided by; of the three only `NearCentre`
-    /// brings y near the threshold (the chapter has the numbers), so that is our reading. Its tail is 1/r.
+    /// Source: the study for the threshold, 1.3. It does not define the divisor of h_∥. Of the three, only `NearCentre`
+    /// brings y near the threshold (numbers in the book), so we use it. Its tail is 1/r.
     fn default() -> Self {
         IsostaticSettings {
             bonds: BondSet::default(),
@@ -120,38 +120,38 @@ impl Default for IsostaticSettings {
     }
 }
 
-/// Why ℓ_iso could not be looked for.
+/// Why ℓ_iso could not be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IsostaticError {
-    /// The disks themselves are at fault.
+    /// The disks themselves are invalid.
     #[error(transparent)]
     Packing(#[from] PackingError),
-    /// A ring has a width.
+    /// The width of a ring must be positive.
     #[error("ring_width is {ring_width}, not a positive number")]
     RingWidthNotPositive {
         /// The value given \[length\].
         ring_width: f64,
     },
-    /// Rings begin at the centre or beyond.
+    /// The smallest radius must not be negative.
     #[error("from is {from}, not a number from 0 on")]
     FromNegative {
         /// The value given \[length\].
         from: f64,
     },
-    /// The radius of the normalisation is one.
+    /// The radius of the normalisation must be positive.
     #[error("the radius of the normalisation is {radius}, not a positive number")]
     RadiusNotPositive {
         /// The value given \[length\].
         radius: f64,
     },
-    /// A threshold, or share of the plateau, is positive.
+    /// The threshold or share must be positive.
     #[error("the threshold or share is {value}, not a positive number")]
     ThresholdNotPositive {
         /// The value given \[1\].
         value: f64,
     },
-    /// The plateau lies within the circle.
+    /// The plateau must lie within the circle.
     #[error("the plateau goes from {from} to {to} of the outer radius: not 0 ≤ from < to ≤ 1")]
     PlateauOutOfRange {
         /// The smaller radius given \[1\].
@@ -162,7 +162,7 @@ pub enum IsostaticError {
 }
 
 impl Normalisation {
-    /// h_0 for at least one ring.
+    /// h_0; there is at least one ring.
     pub(super) fn unit(&self, rings: &[FluctuationRing], increase: f64) -> f64 {
         match *self {
             Normalisation::NearCentre { radius } => {
@@ -192,7 +192,7 @@ impl IsostaticRule {
 }
 
 impl IsostaticSettings {
-    /// Whether every number makes sense.
+    /// Checks the settings.
     pub(crate) fn check(&self) -> Result<(), IsostaticError> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         if !positive(self.ring_width) {

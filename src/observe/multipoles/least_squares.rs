@@ -1,4 +1,4 @@
-//! Linear least squares of a few columns by Householder reflections, with what the errors need.
+//! Linear least squares of a few columns by Householder reflections, with the covariance for errors.
 //!
 //! ```text
 //! X = Q R        R c = Qᵀ y        |y − X c|² = |rest of Qᵀ y|²        (XᵀX)⁻¹ = R⁻¹ R⁻ᵀ
@@ -9,18 +9,18 @@
 
 use crate::vector::larger;
 
-/// Smallest diagonal entry of R over the largest at which columns still count as independent \[1\]: beyond, half the digits
-/// of a coefficient are gone.
+/// Smallest ratio of diagonal entries of R at which columns count as independent \[1\]. Below it, a coefficient loses
+/// half of its digits.
 const LEAST_DIAGONAL: f64 = 1e-8;
 
-/// A factorised matrix of columns and the right-hand sides reflected with it.
+/// A factorised matrix of columns, and the right-hand sides with the same reflections.
 pub(super) struct LeastSquares {
     /// Columns of R, then the reflected right-hand sides.
     columns: Vec<Vec<f64>>,
     column_count: usize,
 }
 
-/// What one right-hand side gives.
+/// The solution for one right-hand side.
 pub(super) struct Solution {
     /// c.
     pub coefficients: Vec<f64>,
@@ -29,13 +29,13 @@ pub(super) struct Solution {
 }
 
 impl LeastSquares {
-    /// Factorises columns of one length, at least as long as there are columns; `None` if they are not independent.
+    /// Factorises columns of equal length, at least as long as their number; `None` if they are not independent.
     pub(super) fn new(mut columns: Vec<Vec<f64>>, right_hand_sides: Vec<Vec<f64>>) -> Option<Self> {
         let column_count = columns.len();
         columns.extend(right_hand_sides);
         for k in 0..column_count {
             let length = columns[k][k..].iter().map(|x| x * x).sum::<f64>().sqrt();
-            // Away from the entry, so that nothing cancels.
+            // The sign avoids cancellation.
             let diagonal = if columns[k][k] > 0.0 { -length } else { length };
             let mut mirror = columns[k][k..].to_vec();
             mirror[0] -= diagonal;
@@ -50,7 +50,7 @@ impl LeastSquares {
             }
         }
         let diagonal = || (0..column_count).map(|k| columns[k][k].abs());
-        // A diagonal entry that is no number makes both NaN, and nothing is above that.
+        // A NaN on the diagonal makes both NaN, and the comparison fails.
         let (least, most) =
             (-diagonal().map(|entry| -entry).fold(f64::NEG_INFINITY, larger), diagonal().fold(0.0, larger));
         (least > LEAST_DIAGONAL * most).then_some(LeastSquares { columns, column_count })

@@ -4,11 +4,11 @@
 //! d_r(θ) = c_0 + Σ_(n=1)^(n_max) (c_n cos nθ + s_n sin nθ) + rest = Σ_n A_n cos(nθ − ψ_n) + rest        the same for d_θ
 //! ```
 //!
-//! The disks of a ring stand at irregular angles, so c and s are found by least squares; in the complex form of
-//! [`angular_modes`](crate::reference::angular_modes) the amplitude of mode n is U_n = c_n − i s_n. Their errors take what the
-//! modes leave, σ² = Σ rest²/(N − 2 n_max − 1), as independent from disk to disk.
+//! The disks of a ring are at irregular angles, so c and s are found by least squares. In the complex form of
+//! [`angular_modes`](crate::reference::angular_modes) the amplitude of mode n is U_n = c_n − i s_n. For the errors the
+//! residuals, σ² = Σ rest²/(N − 2 n_max − 1), are treated as independent between disks.
 //!
-//! The mean square of a component over the circle is c_0² + Σ A_n²/2 + Σ rest²/N; each mode's share of it is given.
+//! The mean square of a component over the circle is c_0² + Σ A_n²/2 + Σ rest²/N; the share of each mode is given.
 
 mod least_squares;
 
@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use crate::displacement::{DisplacementField, Moved};
 use crate::observe::multipoles::least_squares::LeastSquares;
 
-/// Which rings and modes.
+/// Rings and modes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct MultipoleSettings {
@@ -27,35 +27,35 @@ pub struct MultipoleSettings {
     pub highest_mode: usize,
     /// Width of a ring \[length\].
     pub ring_width: f64,
-    /// Disks a ring must have for each of its 2 n_max + 1 coefficients \[1\], at least 1. Errors need one disk more
-    /// than coefficients in any case.
+    /// Number of disks that a ring must have for each of its 2 n_max + 1 coefficients \[1\], at least 1. Errors need at
+    /// least one disk more than coefficients.
     pub disks_per_coefficient: f64,
 }
 
 impl Default for MultipoleSettings {
-    /// Modes up to 4 in rings of two lengths: the ring at r = 3 has some 27 disks for 9 coefficients.
+    /// Modes up to 4 in rings of width 2: the ring at r = 3 has about 27 disks for 9 coefficients.
     fn default() -> Self {
         MultipoleSettings { highest_mode: 4, ring_width: 2.0, disks_per_coefficient: 3.0 }
     }
 }
 
-/// Settings that make no sense.
+/// Invalid settings.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MultipoleError {
-    /// Modes 0, 1 and 2 are always there.
+    /// The highest mode must be at least 2.
     #[error("highest_mode is {highest_mode}, not from 2 to {HIGHEST_MODE}")]
     HighestModeOutOfRange {
         /// The value given.
         highest_mode: usize,
     },
-    /// A ring has a width.
+    /// The width of a ring must be positive.
     #[error("ring_width is {ring_width}, not a positive number")]
     RingWidthNotPositive {
         /// The value given \[length\].
         ring_width: f64,
     },
-    /// A fit needs as many disks as coefficients.
+    /// A fit needs at least as many disks as coefficients.
     #[error("disks_per_coefficient is {disks_per_coefficient}, not a number from 1 on")]
     TooFewDisksPerCoefficient {
         /// The value given.
@@ -63,13 +63,13 @@ pub enum MultipoleError {
     },
 }
 
-/// Largest n_max: a ring of some hundreds of disks tells no more.
+/// Largest n_max: a ring has at most some hundreds of disks.
 pub const HIGHEST_MODE: usize = 64;
 
 /// Angular modes against r.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Multipoles {
-    /// Rings from the inside out, those without a disk left out.
+    /// Rings from the inside out; those without a disk are left out.
     pub rings: Vec<MultipoleRing>,
 }
 
@@ -88,21 +88,21 @@ pub struct MultipoleRing {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MultipoleFit {
-    /// Found.
+    /// Fitted.
     Fitted {
         /// Of d_r.
         radial: ComponentModes,
         /// Of d_θ.
         transverse: ComponentModes,
     },
-    /// The ring has fewer disks than the settings ask for.
+    /// The ring has fewer disks than the settings require.
     TooFewDisks {
-        /// How many it would need.
+        /// Number of disks required.
         needed: usize,
     },
-    /// The angles do not tell the modes apart.
+    /// The angles cannot separate the modes.
     AnglesTooFew,
-    /// A displacement of the ring is not a number.
+    /// A displacement in the ring is not finite.
     NotFinite,
 }
 
@@ -111,11 +111,11 @@ pub enum MultipoleFit {
 pub struct ComponentModes {
     /// Modes 0 to n_max.
     pub modes: Vec<ModeFit>,
-    /// σ, what the modes leave per disk \[length\].
+    /// σ, the residual per disk \[length\].
     pub rest: f64,
     /// c_0² + Σ A_n²/2 + Σ rest²/N, the mean square over the circle \[length²\].
     pub mean_square: f64,
-    /// Shares of modes 0, 1, 2 and of everything else in it, adding up to 1; absent where nothing moves \[1\].
+    /// Shares of modes 0, 1, 2 and of the rest in it, adding up to 1; absent if nothing moves \[1\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shares: Option<[f64; 4]>,
 }
@@ -131,26 +131,26 @@ pub struct ModeFit {
     pub sine: f64,
     /// Standard errors of c_n and s_n, the second 0 for n = 0 \[length\].
     pub standard_errors: [f64; 2],
-    /// A_n = √(c_n² + s_n²) ≥ 0; c_0 itself, with its sign, for n = 0 \[length\].
+    /// A_n = √(c_n² + s_n²) ≥ 0; for n = 0 c_0 with its sign \[length\].
     pub amplitude: f64,
-    /// Standard error of A_n along (c_n, s_n) \[length\].
+    /// Standard error of A_n, along (c_n, s_n) \[length\].
     pub amplitude_error: f64,
     /// ψ_n in (−π, π] \[rad\], 0 for n = 0: the mode is largest at θ = ψ_n/n.
     pub phase: f64,
-    /// Standard error of ψ_n across (c_n, s_n), at most π/2 \[rad\]; 0 for n = 0.
+    /// Standard error of ψ_n, perpendicular to (c_n, s_n), at most π/2 \[rad\]; 0 for n = 0.
     pub phase_error: f64,
 }
 
 impl Multipoles {
-    /// The modes of a field, on the disks that count.
+    /// The modes of a field, from the disks that count.
     ///
-    /// The order of the disks changes no bit.
+    /// The result does not depend on the order of the disks.
     ///
     /// # Errors
-    /// Settings that make no sense.
+    /// Invalid settings.
     ///
     /// # Cost
-    /// (2 n_max + 1)² operations a disk.
+    /// (2 n_max + 1)² operations per disk.
     pub fn of(field: &DisplacementField<2>, settings: &MultipoleSettings) -> Result<Self, MultipoleError> {
         settings.check()?;
         let width = settings.ring_width;
@@ -191,7 +191,7 @@ impl Member {
 }
 
 impl MultipoleSettings {
-    /// Whether every number makes sense.
+    /// Checks the settings.
     pub(crate) fn check(&self) -> Result<(), MultipoleError> {
         let Self { highest_mode, ring_width, disks_per_coefficient } = *self;
         if !(2..=HIGHEST_MODE).contains(&highest_mode) {
@@ -213,7 +213,7 @@ impl MultipoleSettings {
 
     fn fit(&self, disks: &[Member]) -> MultipoleFit {
         let coefficient_count = 2 * self.highest_mode + 1;
-        // At least one more than coefficients: with none left nothing is known of errors.
+        // At least one disk more than coefficients, as errors need.
         let needed = (self.disks_per_coefficient * coefficient_count as f64).ceil() as usize;
         let needed = needed.max(coefficient_count + 1);
         if disks.len() < needed {
@@ -278,7 +278,7 @@ impl ModeFit {
         }
     }
 
-    /// From c and s with their variances and covariance, [cc, cs, ss].
+    /// A mode from c and s with their variances and covariance, [cc, cs, ss].
     fn new(mode: usize, [cosine, sine]: [f64; 2], [cc, cs, ss]: [f64; 3]) -> Self {
         let amplitude = libm::hypot(cosine, sine);
         let phase = libm::atan2(sine, cosine);

@@ -12,7 +12,7 @@ use crate::precision::choices::{ChoiceRow, ChoiceTable};
 /// Threshold of θ* \[1\].
 const THRESHOLD: f64 = 0.1;
 
-/// Every estimator, the default first. None where the ring has too few disks.
+/// Every estimator, the default first. None if the ring has too few disks.
 pub(super) fn estimators(field: &DisplacementField<2>) -> Option<ChoiceTable> {
     let ring = RingSample::of_field(field, &RingSettings::default()).ok()?;
     let direct = |weights, leakage| SpectrumEstimator::Direct { weights, leakage };

@@ -1,8 +1,8 @@
-//! [`ChoiceTable`]: what other numerical choices move, measured on one sample.
+//! [`ChoiceTable`]: the effect of other numerical choices, measured on one sample.
 //!
-//! Ring widths and the range and search of the fit are varied on the first reference; the time step on one explicit trajectory
-//! from the inflated start, whose reference is the same trajectory at a quarter of the shortest step; the routes to the screened
-//! profile on the annulus of the sample.
+//! Ring widths and the range and search of the fit are varied on the first reference. The time step is varied on one
+//! explicit trajectory from the inflated start; its reference is the same trajectory at a quarter of the shortest step.
+//! The methods for the screened profile are compared on the annulus of the sample.
 
 mod angular;
 #[cfg(feature = "fit")]
@@ -19,16 +19,16 @@ use crate::packing::PackingError;
 use crate::precision::state::State;
 use crate::scene::Observables;
 
-/// One choice and what it moves.
+/// One choice and its effect.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ChoiceTable {
     /// Its name in files.
     pub name: &'static str,
-    /// What is varied, and on what, for readers.
+    /// What is varied, and on which data, for readers.
     pub title: &'static str,
-    /// What the first column is, then the names of the numbers, with units.
+    /// Name of the first column, then the names of the numbers, with units.
     pub columns: Vec<&'static str>,
-    /// One row a setting.
+    /// One row per setting.
     pub rows: Vec<ChoiceRow>,
 }
 
@@ -37,7 +37,7 @@ pub struct ChoiceTable {
 pub struct ChoiceRow {
     /// The setting.
     pub setting: String,
-    /// A number a column; seconds, the last one, differ from one measurement to the next.
+    /// One number per column; the last one, the time in seconds, differs between measurements.
     pub values: Vec<Option<f64>>,
 }
 

@@ -1,4 +1,4 @@
-//! Routes to the screened profile.
+//! Methods for the screened profile.
 
 use std::time::Instant;
 
@@ -8,20 +8,20 @@ use crate::reference::screened::Screened;
 use crate::reference::{Annulus, RadialSolution};
 use crate::vector::larger;
 
-/// Points of a profile.
+/// Number of points of a profile.
 const POINTS: usize = 400;
 
-/// Evaluations of a profile that are timed.
+/// Number of timed evaluations of a profile.
 const REPEATS: usize = 20;
 
-/// The closed formula with J and Y of `libm` against [`Screened`], on the annulus of the sample: κ of the fit and shares of
-/// it. None where the annulus has no screened solution.
+/// The closed formula with J and Y of `libm` compared with [`Screened`], on the annulus of the sample, at κ of the fit
+/// and fractions of it. None if the annulus has no screened solution.
 pub(super) fn routes(grown: &Grown<2>, wavenumber: f64) -> Option<ChoiceTable> {
     let annulus = Annulus::new(grown.inner_radius, grown.outer_radius).ok()?;
     let (inner, outer) = (grown.inner_radius, grown.outer_radius);
     let radii: Vec<f64> = (0..POINTS).map(|i| inner + (i as f64 + 0.5) / POINTS as f64 * (outer - inner)).collect();
     let mut rows = Vec::new();
-    // Where nothing was fitted, the first wavelength that fits the annulus.
+    // Without a fit, the first wavelength that fits the annulus.
     let largest = if wavenumber > 0.0 { wavenumber } else { 2.0 / outer };
     for share in [1.0, 1e-2, 1e-4, 1e-6] {
         let wavenumber = share * largest;

@@ -11,10 +11,10 @@ use crate::precision::choices::{ChoiceRow, ChoiceTable};
 use crate::relax::Motion;
 use crate::vector::{larger, norm};
 
-/// Steps of the trajectory at the longest step; the others have 2, 4, 8 times as many.
+/// Number of steps of the trajectory at the longest step; the others have 2, 4, 8 times as many.
 const FEWEST_STEPS: usize = 200;
 
-/// Longest step over the bound on a stable one at the start \[1\].
+/// Longest step over the stability limit at the start \[1\].
 const LONGEST_STEP: f64 = 0.5;
 
 pub(super) fn time_steps<L: PairLaw, C: DampingLaw>(
@@ -37,8 +37,8 @@ pub(super) fn time_steps<L: PairLaw, C: DampingLaw>(
     let mut last: Option<f64> = None;
     for division in [1, 2, 4, 8] {
         let (state, seconds) = place(division)?;
-        let ways = (0..state.len()).filter(counts).map(|disk| norm(displacement(&reference, &state, disk)));
-        let error = ways.fold(0.0, larger);
+        let displacements = (0..state.len()).filter(counts).map(|disk| norm(displacement(&reference, &state, disk)));
+        let error = displacements.fold(0.0, larger);
         let order = last.map(|last| libm::log2(last / error)).filter(|order| order.is_finite());
         last = Some(error);
         let share = LONGEST_STEP / division as f64;
@@ -53,13 +53,13 @@ pub(super) fn time_steps<L: PairLaw, C: DampingLaw>(
     })
 }
 
-/// Skins over the smallest radius, beside the one in use \[1\].
+/// Skins over the smallest radius, in addition to the one in use \[1\].
 const SKINS: [f64; 6] = [0.05, 0.1, 0.15, 0.35, 0.5, 1.0];
 
-/// Steps of the trajectory, at the longest step.
+/// Number of steps of the trajectory, at the longest step.
 const STEPS: usize = 2000;
 
-/// The skin changes no contact, so the largest difference from the skin in use is 0 or rounding.
+/// The skin changes no contact, so the largest difference from the skin in use must be 0 or rounding.
 pub(super) fn skins<L: PairLaw, C: DampingLaw>(
     grown: &Grown<2>,
     law: &L,
@@ -83,8 +83,8 @@ pub(super) fn skins<L: PairLaw, C: DampingLaw>(
     let mut rows = Vec::new();
     for skin in skins {
         let (state, [pairs, lists, seconds]) = go(skin)?;
-        let ways = (0..state.len()).map(|disk| norm(displacement(&reference, &state, disk)));
-        let values = vec![Some(pairs), Some(lists), Some(ways.fold(0.0, larger)), Some(seconds)];
+        let displacements = (0..state.len()).map(|disk| norm(displacement(&reference, &state, disk)));
+        let values = vec![Some(pairs), Some(lists), Some(displacements.fold(0.0, larger)), Some(seconds)];
         rows.push(ChoiceRow { setting: skin.to_string(), values });
     }
     Ok(ChoiceTable {

@@ -4,9 +4,9 @@
 //! s ← F + β s        u ← u + a s,  a where F·s ≈ 0        β = max(0, F·(F − F_old) / F_old²)
 //! ```
 //!
-//! On a quadratic energy the directions are conjugate, and n of them reach the minimum of n coordinates. The first trial length
-//! assumes the curvature of the energy along the last direction, and aims at zero slope. If a direction does not lead down, or
-//! the last one was not convex, β = 0.
+//! On a quadratic energy the directions are conjugate, and n of them reach the minimum of n coordinates. The first
+//! trial length is that of zero slope if the curvature of the energy stays that of the last direction. If a direction
+//! does not lead down, or the energy was not convex along the last one, β = 0.
 //!
 //! # Source
 //! Polak, Ribière (1969), Rev. Fr. Inform. Rech. Opér. 16, 35; β ≥ 0: Gilbert, Nocedal (1992), SIAM J. Optim. 2, 21.

@@ -1,8 +1,9 @@
 //! [`Fire`] far from the minimum, then [`Newton`](crate::relax::Newton).
 //!
-//! FIRE follows contacts that open and close, at the price of one force evaluation a step. Newton squares the residual once the
-//! contacts stay the same. FIRE hands over at a residual of `hand_over`. If Newton does not come nearer, FIRE continues and hands
-//! over at a tenth of that. When the factorisations are used up, or the factors do not fit in memory, FIRE finishes alone.
+//! FIRE follows contacts that open and close, at the cost of one force evaluation per step. Newton's method squares the
+//! residual once the contacts stay the same. FIRE hands over at a residual of `hand_over`. If Newton's method then
+//! fails to reduce the residual, FIRE continues and hands over at a tenth of it. When the factorisations are used up,
+//! or the factors do not fit in memory, FIRE finishes alone.
 
 use std::time::Instant;
 
@@ -92,7 +93,7 @@ impl Staged {
             let fire = Fire { limit, step_limit, precision: self.precision, ..Fire::default() };
             let (stop, part) = fire.run(assembly, &mut monitor, &mut offset_trace(trace, cost.step_count))?;
             cost = cost.plus(Cost { energies: monitor.energies(), ..part });
-            // An absolute limit may lie below the threshold of no force.
+            // An absolute limit may lie below the unjammed threshold.
             if matches!(
                 (stop, self.limit, last),
                 (Stop::Converged(Criterion::Unjammed), ForceLimit::Absolute(_), false)

@@ -4,9 +4,9 @@
 //! s = H F        H_(k+1) = (1 − ρ d yᵀ) H_k (1 − ρ y dᵀ) + ρ d dᵀ        d = a s,  y = F_old − F,  ρ = 1/(y·d)
 //! ```
 //!
-//! H is never formed. The method keeps m pairs (d, y). Its product with F takes 4 m n multiplications, from the initial matrix
-//! (y·d / y·y) 1 of the last pair (two-loop recursion). The whole step, a = 1, is tried first. A pair without positive
-//! curvature y·d is left out, so H stays positive definite and s points downhill.
+//! H is never formed. The method keeps m pairs (d, y). The product H F takes 4 m n multiplications, from the initial
+//! matrix (y·d / y·y) 1 of the last pair (two-loop recursion). The full step, a = 1, is tried first. A pair without
+//! positive curvature y·d is left out, so H stays positive definite and s points downhill.
 //!
 //! # Source
 //! Nocedal (1980), Math. Comput. 35, 773; Liu, Nocedal (1989), Math. Program. 45, 503; Nocedal, Wright (2006), Numerical

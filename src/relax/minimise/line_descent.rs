@@ -36,7 +36,8 @@ pub trait DirectionRule {
     /// Learns from a step.
     fn learn(&mut self, step: &Step<'_>);
 
-    /// Writes the next direction over the last one. None if only the forces are known, or if the direction would not lead down.
+    /// Writes the next direction over the last one. None if there are no stored steps or the direction would not lead
+    /// down.
     fn next(&mut self, forces: &[f64], direction: &mut [f64]) -> Option<Direction>;
 
     /// Discards all steps.

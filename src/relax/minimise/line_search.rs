@@ -4,9 +4,10 @@
 //! φ(a) = E(u + a s)        −φ'(a) = F(u + a s)·s        sought: −φ'(a) ≈ 0
 //! ```
 //!
-//! Secants in a bracket locate the zero of the slope. A point is low enough if the energy has fallen by a share of what the
-//! initial slope predicts. If that is below the rounding of energies, the energy must not rise by more than rounding, and the
-//! final slope decides. So the search works down to the rounding of the forces, which lies far below that of the energy.
+//! Secants in a bracket locate the zero of the slope. A point is accepted if the energy has fallen by a share of the
+//! fall that the initial slope predicts. If that is below the rounding of energies, the energy must not rise by more
+//! than rounding, and the final slope decides. So the search works down to the rounding of the forces, which lies far
+//! below that of the energy.
 //!
 //! # Source
 //! Hager, Zhang (2005), SIAM J. Optim. 16, 170, §4 (Wolfe's conditions by slopes alone where energies cannot decide).
@@ -57,8 +58,8 @@ pub struct Reached<const D: usize> {
 /// Length and slope of a point.
 type End = (f64, f64);
 
-/// Searches along the line from the present state, which becomes the checkpoint. None if no point tried is low enough; the positions
-/// are then undefined. Every evaluation is counted.
+/// Searches along the line from the present state, which becomes the checkpoint. None if no point tried is accepted;
+/// the positions are then undefined. Every evaluation is counted.
 pub fn search<const D: usize, L: PairLaw>(
     assembly: &mut Assembly<D, L>,
     line: &Line<'_>,
@@ -109,7 +110,7 @@ pub fn search<const D: usize, L: PairLaw>(
     Ok(low_enough(before, &reached, line.slope).then_some(reached))
 }
 
-/// The zero of the slope between two points, at a distance from both. The middle if the slopes do not bracket it.
+/// The zero of the slope between two points, kept away from both. The midpoint if the slopes do not bracket a zero.
 fn between(low: End, high: End) -> f64 {
     let width = high.0 - low.0;
     let secant = low.0 + width * low.1 / (low.1 - high.1);
@@ -145,8 +146,9 @@ fn low_enough<const D: usize>(before: &Totals<D>, reached: &Reached<D>, slope: f
     acceptance([before, &reached.totals], reached.length * slope, [slope, reached.slope], SUFFICIENT).is_some()
 }
 
-/// The fall of the energy over the predicted one, if a point is low enough. Where energies cannot resolve it, the energy must not
-/// rise by more than rounding, the slopes at both ends decide, and the result is 1/2. NaN fails.
+/// The fall of the energy over the predicted one, if a point is accepted. Where energies cannot resolve the fall, the
+/// energy must not rise by more than rounding, the slopes at both ends decide, and the result is 1/2. NaN is not
+/// accepted.
 pub fn acceptance<const D: usize>(
     [before, after]: [&Totals<D>; 2],
     promised: f64,

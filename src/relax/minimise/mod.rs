@@ -1,4 +1,5 @@
-//! Minimisers of the energy: along lines (conjugate gradients, L-BFGS), by Newton's method, and by FIRE followed by Newton's method.
+//! Minimisers of the energy: along lines (conjugate gradients, L-BFGS), by Newton's method, and FIRE followed by
+//! Newton's method.
 
 pub mod conjugate_gradients;
 #[cfg(feature = "linear")]

@@ -4,10 +4,11 @@
 //! (K + S) s = F        u ← u + a s        S ≥ 0 diagonal, → 0 near a minimum;  a ≤ 1
 //! ```
 //!
-//! K is the [`Hessian`](crate::linear::hessian::Hessian). If K + S has no Cholesky factor, S is raised, so s always points
-//! downhill. The whole step is tried first. If the energy rises because contacts close, the lowest point along the step is
-//! searched. A step is accepted if the energy has fallen by a share of what the forces predict. Where energies cannot resolve
-//! that, the work of the forces along the step decides. The quality of the quadratic model's prediction sets S for the next step.
+//! K is the [`Hessian`](crate::linear::hessian::Hessian). If K + S has no Cholesky factor, S is raised, so s always
+//! points downhill. The full step is tried first. If the energy rises because contacts close, a line search finds the
+//! lowest point along the step. A step is accepted if the energy has fallen by a share of the predicted fall. Where
+//! energies cannot resolve the fall, the work of the forces along the step decides. The ratio of the actual fall to
+//! that of the quadratic model sets S for the next step.
 //!
 //! Near a minimum each step squares the residual, as long as no contact opens or closes. Rattlers do not change that: the
 //! stiffness of their contacts is chosen to open them in one step, see the book.

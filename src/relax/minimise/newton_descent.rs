@@ -12,8 +12,8 @@ use crate::relax::outcome::{Cost, Stop};
 use crate::relax::trace::{Look, Trace};
 use crate::vector::{Vector, difference, dot, larger, norm, scaled, sum};
 
-/// Share of the predicted fall of the energy that a step must reach; Newton's own step reaches half near a minimum. Energies decide
-/// where half of this share is above their rounding.
+/// Share of the predicted fall of the energy that a step must reach; Newton's own step reaches half near a minimum.
+/// Energies decide where half of this share is above their rounding.
 const SUFFICIENT: f64 = 0.1;
 
 /// Lengths tried along one direction. Each costs an evaluation of the forces, far less than a factorisation.
@@ -35,18 +35,18 @@ pub(crate) const NEWTON_SCHEDULE: CheckSchedule =
 /// How long a descent continues without progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Patience {
-    /// To the limit of factorisations.
+    /// Continues to the limit of factorisations.
     Unlimited,
-    /// This many factorisations without the residual falling to a tenth.
+    /// Stops after this many factorisations if the residual has not fallen to a tenth.
     Factorisations(usize),
 }
 
 /// How a descent ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum End {
-    /// Finally.
+    /// With this reason to stop.
     Stop(Stop),
-    /// Its patience is exhausted.
+    /// Without progress for as long as [`Patience`] allows.
     Stalled,
 }
 
@@ -54,7 +54,7 @@ pub(crate) enum End {
 pub(crate) struct NewtonDescent {
     largest_step: f64,
     direction_limit: usize,
-    /// Solutions tried: factorisations, and steps of disks without contacts, which have no matrix.
+    /// Solutions tried: factorisations, and steps of disks without contacts, which need no matrix.
     direction_count: usize,
     patience: Patience,
     /// θ of the last step.
@@ -165,7 +165,7 @@ impl NewtonDescent {
         }
     }
 
-    /// Clips the steps of disks off the backbone. Returns the share of the step that the others may take.
+    /// Clips the steps of disks off the backbone. Returns the share of the step that the other disks may take.
     fn bound<const D: usize, L: PairLaw>(
         &self,
         assembly: &Assembly<D, L>,
@@ -184,7 +184,7 @@ impl NewtonDescent {
             }
         }
         if assembly.law().on_site_coupling() == 0.0 && assembly.mobile_count() == assembly.len() {
-            // Nothing holds the packing as a whole: its centre of mass stays in place.
+            // Nothing holds the packing as a whole: its centre of mass must not move.
             let total = step.iter().fold([0.0; D], |total, &s| sum(total, s));
             let mean = scaled(1.0 / step.len() as f64, total);
             step.iter_mut().for_each(|s| *s = difference(*s, mean));
@@ -194,8 +194,9 @@ impl NewtonDescent {
 
     /// Searches for the lowest point along a direction from the checkpoint, to within `FLATNESS`. None if no point leads down.
     ///
-    /// It shares the acceptance test with [`search`](crate::relax::minimise::line_search::search), but not its lengths. The model
-    /// gives the length, so nothing is tried beyond the whole step. The next point lies between a tenth and half of the bracket.
+    /// Its acceptance test is that of [`search`](crate::relax::minimise::line_search::search), but its lengths differ.
+    /// The model gives the length, so no length above 1 is tried. The next point lies between a tenth and half of the
+    /// bracket.
     fn search<const D: usize, L: PairLaw>(
         &mut self,
         assembly: &mut Assembly<D, L>,

@@ -1,4 +1,5 @@
-//! The Newton step of a packing: the Hessian with a shift that makes it positive definite, its factors and the solution.
+//! The Newton step of a packing: the Hessian with a shift that makes it positive definite, its factors and the
+//! solution.
 //!
 //! ```text
 //! (K' + S) s = F        S_ii = θ p_i + ε k_i on the backbone,  θ p_i + (η + θ) k_i off it
@@ -9,11 +10,11 @@
 //! δ^(α−1), so Newton's own step would leave (1 − 1/(α−1)) of such an overlap, a third for Hertzian contacts. With the secant
 //! stiffness F/δ for F', and without prestress, one step removes it.
 //!
-//! The only negative parts of K' are the prestress −F/r across contacts and −Γ of sites. The p_i are Gershgorin's rows of
-//! them. With θ = 1 the matrix is positive definite for every packing (to the change of r since the anchors). So θ ≥ 0 alone
-//! globalises the method, and it has no unit. ε k_i fixes motions without stiffness, such as the translations of a periodic box.
-//! (η + θ) k_i holds a rattler along directions without contact stiffness, so that it does not run into its neighbours. No entry
-//! of S is below 10⁻¹² of the largest k_i.
+//! The only negative parts of K' are the prestress −F/r across contacts and −Γ of sites. The p_i are their Gershgorin
+//! row sums. With θ = 1 the matrix is positive definite for every packing (up to the change of r since the anchors). So
+//! θ ≥ 0 alone makes the method converge from any start, and it has no unit. ε k_i fixes motions without stiffness,
+//! such as the translations of a periodic box. (η + θ) k_i holds a rattler along directions without contact stiffness,
+//! so that it does not run into its neighbours. No entry of S is below 10⁻¹² of the largest k_i.
 
 use crate::forces::assembly::Assembly;
 use crate::forces::stiffness_bound::stiffness_rows;
@@ -23,15 +24,16 @@ use crate::linear::{Analysis, LinearError};
 use crate::sparse::SymmetricMatrix;
 use crate::vector::{Vector, larger, norm, scaled};
 
-/// ε: far below the softest mode over the stiffest (10⁻⁷ near jamming), far above the rounding of a pivot (10⁻¹⁴).
+/// ε: far below the ratio of the softest to the stiffest mode (10⁻⁷ near jamming), far above the rounding of a pivot
+/// (10⁻¹⁴).
 const SMALLEST_SHIFT: f64 = 1e-10;
 
 /// Largest η: about what remains of the overlap of a rattler after a step. η is the net force of the rattler over the mean
 /// contact force, but at most this. An almost free rattler needs only a short displacement, even in a steep wedge.
 const OFF_BACKBONE: f64 = 1e-4;
 
-/// Smallest diagonal added, over the largest k_i. The pivots of a rattler with little stiffness may count as those of a singular
-/// matrix (10⁻¹⁴). This is a hundred times above that. Below it, the force of a rattler is below 10⁻²⁴ of the others.
+/// Smallest diagonal added, over the largest k_i. Without it, the pivots of a rattler with little stiffness may count
+/// as those of a singular matrix (10⁻¹⁴). This is a hundred times above that limit.
 const SMALLEST_DIAGONAL: f64 = 1e-12;
 
 /// The result of a factorisation.
@@ -45,7 +47,8 @@ pub enum Solved {
     OutOfMemory,
 }
 
-/// The shifted Hessian. Its buffers are kept, and its analysis as long as the pattern of entries stays the same.
+/// The shifted Hessian. Its buffers are reused; its symbolic analysis is reused while the pattern of entries stays the
+/// same.
 pub struct ShiftedHessian<const D: usize> {
     hessian: Hessian<D>,
     matrix: SymmetricMatrix,
@@ -109,7 +112,7 @@ impl<const D: usize> ShiftedHessian<D> {
     pub fn solve<L: PairLaw>(&mut self, assembly: &Assembly<D, L>, backbone: &[bool], mean: f64, shift: f64) -> Solved {
         let coupling = assembly.law().on_site_coupling().abs();
         for (step, &force) in self.step.iter_mut().zip(&assembly.forces) {
-            // Disks without rows feel their site at most.
+            // Disks without rows feel at most their site.
             *step = if coupling > 0.0 { scaled(1.0 / coupling, force) } else { [0.0; D] };
         }
         if self.hessian.matrix().dimension() == 0 {

@@ -1,6 +1,6 @@
-//! Observables as comma-separated values: a row of names, a row of units, then numbers; an empty cell where there is none.
+//! Observables as comma-separated values: a row of names, a row of units, then numbers; absent values are empty cells.
 //!
-//! Numbers are the shortest decimals that give the same `f64` again.
+//! Numbers are the shortest decimals that reproduce the `f64`.
 
 pub(crate) mod response;
 #[cfg(feature = "fit")]
@@ -26,18 +26,18 @@ impl Table {
         Table { names, units, rows: Vec::new() }
     }
 
-    /// One column more.
+    /// Adds a column.
     fn column(&mut self, name: &str, unit: &'static str) {
         self.names.push(name.into());
         self.units.push(unit);
     }
 
-    /// A row of numbers.
+    /// Adds a row of numbers.
     fn row<const N: usize>(&mut self, values: [f64; N]) {
         self.rows.push(values.map(Some).to_vec());
     }
 
-    /// A row in which some cells are empty.
+    /// Adds a row in which some cells are empty.
     fn cells(&mut self, cells: Vec<Option<f64>>) {
         self.rows.push(cells);
     }
@@ -49,7 +49,7 @@ impl Table {
                 let comma = if column > 0 { "," } else { "" };
                 text.push_str(comma);
                 if let Some(value) = value {
-                    // Whole numbers below 2⁵³ without a point: counts stay counts.
+                    // Integers below 2⁵³ are written without a decimal point.
                     write!(text, "{value}").expect("a String takes all that is written to it");
                 }
             }
@@ -59,11 +59,12 @@ impl Table {
     }
 }
 
-/// A radial profile, and beside it what was fitted.
+/// A radial profile with the fitted solutions.
 ///
 /// # Shape
-/// One row a ring. `fitted` is 1 for rings the fit used; `elastic` and `screened` are the fitted solutions r·d_r at the
-/// mean radius of the ring. The three are there if there was a fit, `screened` if there is such a solution.
+/// One row per ring. `fitted` is 1 for rings used in the fit; `elastic` and `screened` are the fitted solutions r·d_r
+/// at the mean radius of the ring. These columns exist only if there was a fit, `screened` only if there is such a
+/// solution.
 pub fn radial_profile(response: &Response, profile: &RadialProfile) -> String {
     let mut table = Table::new(&[
         ("radius", "length"),
@@ -101,7 +102,7 @@ pub fn radial_profile(response: &Response, profile: &RadialProfile) -> String {
 /// Angular profiles, ring after ring.
 ///
 /// # Shape
-/// One row a disk.
+/// One row per disk.
 pub fn angular_profiles(profiles: &[AngularProfile]) -> String {
     let mut table = Table::new(&[
         ("relative_radius", "1"),
@@ -121,7 +122,7 @@ pub fn angular_profiles(profiles: &[AngularProfile]) -> String {
 /// The radial profile of a plastic part.
 ///
 /// # Shape
-/// One row a ring.
+/// One row per ring.
 #[cfg(feature = "linear")]
 pub fn plastic_profile(profile: &RadialProfile) -> String {
     let mut table = Table::new(&[

@@ -1,4 +1,4 @@
-//! The tables of a response, one file each.
+//! The tables of a response, one file per table.
 
 use crate::observe::angular::RingOutcome;
 use crate::observe::multipoles::MultipoleFit;
@@ -7,20 +7,20 @@ use crate::response::Response;
 
 /// One file of a response.
 pub(crate) struct ResponseFile {
-    /// What follows the name of the sample.
+    /// The part of its name after that of the sample.
     pub ending: &'static str,
-    /// Its text; none where the response does not have it.
+    /// Its text; none if the response does not have it.
     pub text: fn(&Response) -> Option<String>,
     /// Whether the response has it.
     has: fn(&Response) -> bool,
 }
 
-/// The files a response has.
+/// The files of a response.
 pub(crate) fn files(response: &Response) -> impl Iterator<Item = &'static ResponseFile> {
     ALL.iter().filter(|file| (file.has)(response))
 }
 
-/// What the names of such files may end with.
+/// All possible endings of these files.
 pub(crate) fn every_ending() -> impl Iterator<Item = &'static str> {
     ALL.iter().map(|file| file.ending)
 }
@@ -69,7 +69,7 @@ fn ring(response: &Response) -> Option<&crate::response::RingResponse> {
     response.angular_correlation.as_ref()?.measured()
 }
 
-/// G(θ): one row an angle.
+/// G(θ): one row per angle.
 fn angular_correlation(ring: &crate::response::RingResponse) -> String {
     let mut table = Table::new(&[("angle", "rad"), ("correlation", "1")]);
     for (&angle, &value) in ring.correlation.angles.iter().zip(&ring.correlation.values) {
@@ -78,7 +78,7 @@ fn angular_correlation(ring: &crate::response::RingResponse) -> String {
     table.text()
 }
 
-/// S(f): one row a frequency; the relative power is absent where that of f = 1 is not positive.
+/// S(f): one row per frequency; the relative power is absent if that of f = 1 is not positive.
 fn power_spectrum(ring: &crate::response::RingResponse) -> String {
     let mut table = Table::new(&[("frequency", "1"), ("power", "length^2"), ("relative_power", "1")]);
     let relative = ring.spectrum.normalised();
@@ -88,7 +88,7 @@ fn power_spectrum(ring: &crate::response::RingResponse) -> String {
     table.text()
 }
 
-/// G*, θ* and the variance in every ring that could be measured: one row a ring, θ* absent where G never falls so low.
+/// G*, θ* and the variance in every measured ring: one row per ring; θ* is absent if G does not fall to the threshold.
 fn radial_dependence(response: &Response) -> Option<String> {
     let rings = response.radial_dependence.as_ref()?.measured()?;
     let mut table = Table::new(&[
@@ -117,7 +117,7 @@ fn radial_dependence(response: &Response) -> Option<String> {
     Some(table.text())
 }
 
-/// Angular modes: one row a ring and mode; rings without modes are left out.
+/// Angular modes: one row per ring and mode; rings without modes are left out.
 fn multipoles(response: &Response) -> Option<String> {
     let mut table = Table::new(&[
         ("radius", "length"),
@@ -153,8 +153,8 @@ fn multipoles(response: &Response) -> Option<String> {
     Some(table.text())
 }
 
-/// Contacts made (1) and broken (−1): one row a contact, disks by their row in the packing files, from 0, the midpoint from
-/// the inflated disk.
+/// Contacts made (1) and broken (−1): one row per contact. Disks are given by their row in the packing files, from 0;
+/// midpoints are relative to the inflated disk.
 fn contact_changes(response: &Response) -> Option<String> {
     let mut table = Table::new(&[
         ("change", "1"),
@@ -174,7 +174,7 @@ fn contact_changes(response: &Response) -> Option<String> {
     Some(table.text())
 }
 
-/// Bonds: one row a contact, disks and midpoint as of the contact changes.
+/// Bonds: one row per contact, with disks and midpoints as for the contact changes.
 fn bond_changes(response: &Response) -> Option<String> {
     let mut table = Table::new(&[
         ("first", "1"),
@@ -193,7 +193,7 @@ fn bond_changes(response: &Response) -> Option<String> {
     Some(table.text())
 }
 
-/// The curve ℓ_iso is read from: one row a ring.
+/// The curve from which ℓ_iso is read: one row per ring.
 fn isostatic_length(response: &Response) -> Option<String> {
     let mut table = Table::new(&[
         ("radius", "length"),

@@ -1,10 +1,10 @@
-//! What a study found beside what is published.
+//! Results of a study next to published values.
 
 use std::fmt::Write as _;
 
 use crate::transition::Comparison;
 
-/// A row a number; what has no value, no interval or no reason leaves its fields empty.
+/// One row per number; a missing value, interval or reason is an empty field.
 pub fn table(comparisons: &[Comparison]) -> String {
     let mut text = String::from("quantity,of,value,low,high,published,verdict,samples,reason\n");
     let or_empty = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());

@@ -1,4 +1,4 @@
-//! [`angular_figure`]: r·d_r against the angle, one ring a colour.
+//! [`angular_figure`]: r·d_r against the angle, one colour per ring.
 
 use std::f64::consts::PI;
 
@@ -10,10 +10,10 @@ use crate::report::figures::palette::SEQUENCE;
 use crate::report::figures::radial::with_margin;
 use crate::report::figures::{Figure, FigureError, RESCALED};
 
-/// Entries of the legend in one line.
+/// Entries per line of the legend.
 const ENTRIES_A_LINE: usize = 3;
 
-/// The angular profiles of a sample: every disk of a ring a point, joined in the order of their angles.
+/// The angular profiles of a sample: one point per disk of a ring, connected in the order of their angles.
 ///
 /// # Errors
 /// A profile without a finite number.
@@ -54,7 +54,7 @@ pub fn angular_figure(name: &str, profiles: &[AngularProfile]) -> Result<Figure,
     })
 }
 
-/// (θ/π, r·d_r) of the disks of a ring; what is not a number has no place on the axes.
+/// (θ/π, r·d_r) of the disks of a ring; values that are not finite are left out.
 fn points(profile: &AngularProfile) -> impl Iterator<Item = (f64, f64)> {
     let values = profile.radial.iter().zip(&profile.distances).map(|(radial, distance)| radial * distance);
     profile.angles.iter().map(|angle| angle / PI).zip(values).filter(|(_, value)| value.is_finite())

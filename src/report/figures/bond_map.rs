@@ -1,4 +1,4 @@
-//! [`bond_map`]: every bond where it was, coloured by r·d_∥.
+//! [`bond_map`]: every bond at its position, coloured by r·d_∥.
 
 use std::collections::BTreeMap;
 
@@ -13,31 +13,32 @@ use crate::vector::{difference, scaled, sum};
 /// Colours on either side of zero.
 const LEVELS: i32 = 16;
 
-/// Width of a bond \[length\]: thinner than the distance of two bonds, so that both are seen.
+/// Width of a bond \[length\]: less than the distance between bonds, so that both are visible.
 const WIDTH: f64 = 0.3;
 
 /// Height of a strip \[tenths of a pixel\].
 const STRIP: i64 = 60;
 
-/// Least width of a bond \[tenths of a pixel\].
+/// Smallest width of a bond \[tenths of a pixel\].
 const LEAST_WIDTH: i64 = 4;
 
-/// r·d_∥ as SVG text, the index lowered.
+/// r·d_∥ as SVG text with a subscript.
 const STRETCH: &str = "r·d<tspan dy=\"3\" font-size=\"10\">∥</tspan><tspan dy=\"-3\">\u{200B}</tspan>";
 
 /// The bonds of a sample between the centres of their disks before the inflation: red compressed, blue stretched, white
-/// unchanged (not drawn), on a scale symmetric about zero that spans 98 % of them. A circle stands at `isostatic_length`, if
-/// given \[length\].
+/// unchanged (not drawn). The scale is symmetric about zero and covers 98 % of the bonds. `isostatic_length` is drawn
+/// as a circle, if given \[length\].
 ///
-/// Bonds of one colour are one path of relative strokes, the strongest last so that weak ones do not hide them.
+/// Bonds of one colour are one path of relative strokes. The largest values come last, so that small ones do not hide
+/// them.
 pub fn bond_map(name: &str, changes: &BondChanges<2>, frame: &MapFrame, isostatic_length: Option<f64>) -> Figure {
     let rescaled = |bond: &crate::observe::bond_changes::BondChange<2>| bond.distance * bond.parallel;
     let range = Range::of(changes.bonds.iter().map(rescaled));
-    // Size, then sign: few groups, in an order that does not depend on the bonds.
+    // Absolute value, then sign: few groups, in a fixed order.
     let mut groups: BTreeMap<(i32, bool), Vec<Segment>> = BTreeMap::new();
     for bond in &changes.bonds {
         let level = level(rescaled(bond), range.shown, LEVELS);
-        // White on white.
+        // White on a white background.
         if level == 0 {
             continue;
         }
@@ -81,7 +82,7 @@ pub fn bond_map(name: &str, changes: &BondChanges<2>, frame: &MapFrame, isostati
     }
 }
 
-/// Strokes in strips across the map: each near the one before, so that relative paths have few letters.
+/// Strokes sorted in strips across the map: each is near the one before, so that relative paths are short.
 fn in_strips(mut bonds: Vec<Segment>) -> Vec<Segment> {
     bonds.sort_unstable_by_key(|&[[x, y], end]| (y.div_euclid(STRIP), x, y, end));
     bonds

@@ -1,4 +1,4 @@
-//! Axes shared by the charts: plotters draws them, with series, and a legend above so that it never covers data.
+//! Common axes of the charts, drawn by plotters with the series, and a legend above, where it covers no data.
 
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
@@ -6,7 +6,7 @@ use plotters::prelude::*;
 use crate::report::figures::{Figure, FigureError, HEIGHT, INK, WIDTH};
 use crate::report::number::superscript;
 
-/// Canvas pixels to a pixel of the picture.
+/// Canvas pixels per pixel of the picture.
 pub(crate) const SCALE: u32 = 10;
 
 /// Height of a line of the legend \[px\].
@@ -15,33 +15,33 @@ const LEGEND_LINE: u32 = 18;
 /// Plotters writes `font-size = size / 1.24`.
 const FONT_FACTOR: f64 = 1.24;
 
-/// Lines of the legend there is room for in every chart, so that charts side by side have their axes at one height.
+/// Smallest number of legend lines for which a chart has space, so that the axes of charts in a row have equal heights.
 const LEAST_LEGEND: usize = 3;
 
-/// Ends of the axes below and to the left \[px\].
+/// Distances of the axes from the lower and left edges \[px\].
 const BOTTOM: u32 = 50;
 const LEFT: u32 = 68;
 
-/// The same to the right, where half a tick label sticks out.
+/// Distance from the right edge, for half a tick label \[px\].
 const RIGHT: u32 = 14;
 
 /// Font size of tick labels, axis labels and legend \[px\].
 const FONT_SIZE: u32 = 13;
 
-/// What a chart draws on.
+/// The drawing area of a chart.
 pub(crate) type Axes<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// What drawing gives.
+/// The result of drawing.
 pub(crate) type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-/// A chart still to be drawn.
+/// A chart to be drawn.
 pub(crate) struct Chart {
     pub title: String,
     pub description: String,
-    /// SVG text with its unit.
+    /// SVG text including the unit.
     pub x_label: &'static str,
     pub x_range: [f64; 2],
-    /// SVG text without its unit.
+    /// SVG text without the unit.
     pub y_label: &'static str,
     pub y_unit: &'static str,
     pub y_range: [f64; 2],
@@ -51,14 +51,14 @@ pub(crate) struct Chart {
 /// One line of a legend.
 pub(crate) struct LegendLine(pub Vec<Entry>);
 
-/// A sign and what it means.
+/// A symbol and its meaning.
 pub(crate) struct Entry {
     pub sign: Sign,
     /// SVG text.
     pub text: String,
 }
 
-/// The sign of a series.
+/// The symbol of a series.
 #[derive(Clone, Copy)]
 pub(crate) enum Sign {
     /// Points, filled or not.
@@ -69,14 +69,14 @@ pub(crate) enum Sign {
     Line { colour: [u8; 3], dashed: bool },
 }
 
-/// The power of ten taken out of the numbers of an axis, so that tick labels stay short.
+/// The power of ten by which the numbers of an axis are divided, so that tick labels are short.
 #[derive(Clone, Copy)]
 pub(crate) struct Scaling {
     exponent: i32,
 }
 
 impl Scaling {
-    /// For numbers up to `largest` in size: none from 0.01 to 1000, otherwise a multiple of three.
+    /// For numbers with absolute values up to `largest`: none from 0.01 to 1000, otherwise a multiple of three.
     fn of(largest: f64) -> Self {
         let plain = largest == 0.0 || (0.01..1e3).contains(&largest);
         Scaling { exponent: if plain { 0 } else { 3 * (libm::log10(largest) / 3.0).floor() as i32 } }
@@ -89,7 +89,7 @@ impl Scaling {
 }
 
 impl Chart {
-    /// Draws axes, then what `draw` adds to them, then the legend.
+    /// Draws the axes, the content by `draw`, then the legend.
     pub(crate) fn draw(self, draw: impl FnOnce(&mut Axes<'_, '_>, Scaling) -> Drawn) -> Result<Figure, FigureError> {
         for (axis, [low, high]) in [("x", self.x_range), ("y", self.y_range)] {
             if !(low.is_finite() && high.is_finite() && low < high) {
@@ -102,7 +102,7 @@ impl Chart {
             Ok(()) => {}
             Err(error) => return Err(FigureError::Drawing { title: self.title, reason: error.to_string() }),
         }
-        // The canvas becomes a group of the picture; its own <svg> says nothing the picture does not.
+        // The canvas becomes a group of the picture; its own <svg> element is not needed.
         let inner =
             canvas.split_once('>').and_then(|(_, rest)| rest.rsplit_once("</svg>")).map_or("", |(inner, _)| inner);
         let elements = format!(
@@ -140,7 +140,7 @@ impl Chart {
             .y_label_formatter(&|value| tick(*value, y_high - y_low))
             .label_style(font)
             .draw()?;
-        // Zero is where nothing moved.
+        // A line at zero displacement.
         if y_low < 0.0 && 0.0 < y_high {
             let ends = self.x_range.map(|x| (x, 0.0));
             axes.draw_series([PathElement::new(ends.to_vec(), RGBColor(0xAA, 0xAA, 0xAA).stroke_width(SCALE))])?;
@@ -151,18 +151,18 @@ impl Chart {
 }
 
 impl Chart {
-    /// Height of what stands above the axes \[px\].
+    /// Height of the area above the axes \[px\].
     fn top(&self) -> u32 {
         self.legend.len().max(LEAST_LEGEND) as u32 * LEGEND_LINE + 12
     }
 
-    /// Middle of a line of the legend, whose last line stands just above the axes \[px\].
+    /// Vertical position of a line of the legend; the last line is just above the axes \[px\].
     fn row(&self, index: usize) -> f64 {
         let first = f64::from(self.top()) - 6.0 - (self.legend.len() as f64 - 0.5) * f64::from(LEGEND_LINE);
         first + index as f64 * f64::from(LEGEND_LINE)
     }
 
-    /// What the axes show, with units.
+    /// Axis labels with units.
     fn axis_labels(&self, scaling: Scaling) -> String {
         let power = match scaling.exponent {
             0 => String::new(),
@@ -181,7 +181,7 @@ impl Chart {
     }
 }
 
-/// A tick label with the decimals its axis needs.
+/// A tick label with the number of decimals that its axis needs.
 fn tick(value: f64, span: f64) -> String {
     // About seven ticks, at 1, 2 or 5 times a power of ten.
     let decimals = (-libm::log10(span / 8.0).floor()).clamp(0.0, 12.0) as usize;
@@ -192,7 +192,7 @@ fn tick(value: f64, span: f64) -> String {
 }
 
 impl LegendLine {
-    /// The line around height `y` \[px\].
+    /// SVG of the line at height `y` \[px\].
     fn markup(&self, y: f64) -> String {
         let start = f64::from(LEFT) + 2.0;
         let share = (f64::from(WIDTH) - start) / self.0.len() as f64;

@@ -1,4 +1,4 @@
-//! [`contact_map`]: where contacts are made and broken.
+//! [`contact_map`]: positions of contacts made and broken.
 
 use crate::observe::ContactChanges;
 use crate::observe::contact_changes::ChangedContact;
@@ -8,16 +8,16 @@ use crate::report::figures::map::{MapFrame, map_label};
 use crate::report::figures::palette::{hexadecimal, red_over_blue};
 use crate::report::number::count;
 
-/// Width of a point \[tenths of a pixel\]: up to a thousand contacts stand apart.
+/// Width of a point \[tenths of a pixel\]: up to a thousand contacts are distinguishable.
 const POINT: i64 = 50;
 
-/// The same where there are more.
+/// Width of a point for more contacts \[tenths of a pixel\].
 const SMALL_POINT: i64 = 30;
 
-/// Opacity of a point: those behind it are seen.
+/// Opacity of a point, so that points behind it are visible.
 const OPACITY: f32 = 0.8;
 
-/// Where the colours of made and broken contacts are on the scale of the bond map.
+/// Position of the colours of made and broken contacts on the scale of the bond map.
 const STRENGTH: f64 = 0.8;
 
 /// The contacts of the backbone that an inflation, or a deflation, made (red) and broke (blue), at their midpoints.

@@ -11,19 +11,19 @@ use crate::report::figures::{Figure, FigureError};
 /// One curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CorrelationCurve<'a> {
-    /// What it is, in the legend; markup of SVG stands for itself.
+    /// Its label in the legend; may contain SVG markup.
     pub label: String,
     /// θ \[rad\].
     pub angles: &'a [f64],
     /// G(θ) \[1\].
     pub values: Vec<f64>,
-    /// Standard errors, drawn as a band; empty where there are none.
+    /// Standard errors, drawn as a band; may be empty.
     pub standard_errors: Vec<f64>,
 }
 
-/// Curves of G against θ/π, each one colour, with bands of one standard error.
+/// Curves of G against θ/π, one colour each, with bands of one standard error.
 ///
-/// `threshold` is drawn as a dashed line, where θ* is read off.
+/// `threshold`, which defines θ*, is drawn as a dashed line.
 ///
 /// # Errors
 /// No curve with a finite number.

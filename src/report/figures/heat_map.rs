@@ -1,4 +1,4 @@
-//! [`heat_map`]: every disk where it was, coloured by r·d_r.
+//! [`heat_map`]: every disk at its position, coloured by r·d_r.
 
 use std::collections::BTreeMap;
 
@@ -15,13 +15,13 @@ const LEVELS: i32 = 32;
 /// Colour of disks that do not count.
 const RATTLER: [u8; 3] = [0xC4, 0xC8, 0xCC];
 
-/// The displacement field of a sample as a map of r·d_r, on a scale symmetric about zero that spans 98 % of the disks;
-/// the others have the colour of its ends.
+/// The displacement field of a sample as a map of r·d_r. The scale is symmetric about zero and covers 98 % of the
+/// disks; the others have the colour of its ends.
 ///
-/// Disks stand at their positions before the inflation, with their radii. Grey: not counted (rattlers). Black: the
-/// inflated disk. Each disk is a line of no length with round ends, as wide as the disk: ten letters instead of sixty.
+/// Disks are drawn at their positions before the inflation, with their radii. Grey: not counted (rattlers). Black: the
+/// inflated disk. Each disk is a line of zero length with round ends, which needs ten characters instead of sixty.
 ///
-/// `radii` are those of the packing the field was made from, in its order.
+/// `radii` are those of the packing of the field, in its order.
 ///
 /// # Panics
 /// If there are fewer radii than disks.
@@ -51,9 +51,9 @@ pub fn heat_map(name: &str, field: &DisplacementField<2>, radii: &[f64], frame: 
     }
 }
 
-/// All mobile disks and the inflated one, in a group whose origin is the centre.
+/// All mobile disks and the inflated one, in a group with its origin at the centre.
 fn disks(frame: &MapFrame, field: &DisplacementField<2>, radii: &[f64], full: f64) -> String {
-    // Colour level, then width: few groups, in an order that does not depend on the disks.
+    // Colour level, then width: few groups, in a fixed order.
     let mut groups: BTreeMap<(Option<i32>, i64), Vec<Segment>> = BTreeMap::new();
     for disk in &field.disks {
         let level = disk.counted.then(|| level(disk.distance * disk.radial, full, LEVELS));

@@ -10,7 +10,7 @@ use crate::report::figures::radial::with_margin;
 use crate::report::figures::{Figure, FigureError, escaped};
 use crate::report::number::significant;
 
-/// Entries of the legend in one line.
+/// Entries per line of the legend.
 const ENTRIES_A_LINE: usize = 2;
 
 /// Axis label.
@@ -21,7 +21,7 @@ fn across(scale: Scale) -> &'static str {
     }
 }
 
-/// h_∥/h_0 times something, as SVG text.
+/// h_∥/h_0 times a factor, as SVG text.
 macro_rules! fluctuation_times {
     ($scaled:literal) => {
         concat!(
@@ -43,8 +43,8 @@ fn up(tail: Tail, scale: Scale) -> &'static str {
     }
 }
 
-/// Curves of any number of samples or pressures, each with its name, rings joined, with standard errors; the thresholds
-/// dashed, and a ring around the place where a curve reaches its own. All have the tail and the scale of the first.
+/// Curves of several samples or pressures, each with its name, connected rings and standard errors. Thresholds are
+/// dashed, and a circle marks where a curve reaches its threshold. All curves have the tail and the scale of the first.
 ///
 /// # Errors
 /// Curves without a finite number.
@@ -114,7 +114,7 @@ pub fn isostatic_figure(name: &str, curves: &[(&str, &IsostaticLength)]) -> Resu
     })
 }
 
-/// C, where a curve has one.
+/// C, if the curve has one.
 fn outcome(length: &IsostaticLength) -> String {
     match length.outcome {
         IsostaticOutcome::Reached { product, .. } => format!(": C = {}", significant(product, 2)),

@@ -1,7 +1,7 @@
-//! [`Layer`]: the strokes of a map, as vectors or, where there are many, as one raster image.
+//! [`Layer`]: the strokes of a map, as vectors or, if there are many, as one raster image.
 //!
-//! A browser lays out ten thousand strokes at once and a hundred thousand in seconds; an image of them has one size whatever
-//! their number.
+//! A browser draws ten thousand strokes immediately but takes seconds for a hundred thousand. The size of an image does
+//! not depend on their number.
 
 use std::fmt::Write as _;
 
@@ -11,17 +11,17 @@ use tiny_skia::{Color, LineCap, Paint, PathBuilder, Pixmap, Stroke, Transform};
 
 use crate::report::figures::palette::hexadecimal;
 
-/// Strokes up to which a map is drawn as vectors.
+/// Largest number of strokes drawn as vectors.
 pub(crate) const MOST_VECTORS: usize = 20_000;
 
-/// Image pixels to a pixel of the picture: sharp on screens of high resolution and in print at 6 cm.
+/// Image pixels per pixel of the picture: sharp on high-resolution screens and in print at 6 cm.
 const SHARPNESS: f32 = 3.0;
 
-/// From one point to another.
+/// A segment between two points.
 pub(crate) type Segment = [[i64; 2]; 2];
 
-/// Strokes of one look. Points are strokes of no length; coordinates and width are tenths of a pixel, from the origin of the
-/// layer.
+/// Strokes of one style. Points are strokes of zero length. Coordinates and width are tenths of a pixel, relative to
+/// the origin of the layer.
 pub(crate) struct Group {
     pub colour: String,
     pub width: i64,
@@ -29,18 +29,18 @@ pub(crate) struct Group {
     pub strokes: Vec<Segment>,
 }
 
-/// Groups of strokes, each over the ones before.
+/// Groups of strokes, each drawn over the ones before.
 pub(crate) struct Layer {
     pub groups: Vec<Group>,
 }
 
 impl Group {
-    /// Full strokes.
+    /// Opaque strokes.
     pub(crate) fn new(colour: [u8; 3], width: i64, strokes: Vec<Segment>) -> Self {
         Group { colour: hexadecimal(colour), width, opacity: 1.0, strokes }
     }
 
-    /// As a path, each stroke seen from where the last one ended.
+    /// A path in which each stroke is relative to the end of the last one.
     fn vectors(&self) -> String {
         let mut path = String::new();
         let [mut last_x, mut last_y] = [0, 0];
@@ -58,7 +58,7 @@ impl Group {
 }
 
 impl Layer {
-    /// Elements around `origin` \[px\]; `half` is half of the side of the square that holds them \[px\].
+    /// SVG elements around `origin` \[px\]; `half` is half the side of the square that contains them \[px\].
     pub(crate) fn markup(&self, origin: [f64; 2], half: f64) -> String {
         let [x, y] = origin;
         let count: usize = self.groups.iter().map(|group| group.strokes.len()).sum();
@@ -77,11 +77,11 @@ impl Layer {
         }
     }
 
-    /// The strokes as PNG in base 64; none if there is no memory for it.
+    /// The strokes as a base-64 PNG; none if there is not enough memory.
     fn image(&self, half: f64) -> Option<String> {
         let side = (2.0 * half as f32 * SHARPNESS).ceil() as u32;
         let mut pixels = Pixmap::new(side, side)?;
-        // Tenths of a pixel from the middle to image pixels from the corner.
+        // From tenths of a pixel relative to the middle to image pixels relative to the corner.
         let middle = half as f32 * SHARPNESS;
         let to_image = Transform::from_row(0.1 * SHARPNESS, 0.0, 0.0, 0.1 * SHARPNESS, middle, middle);
         for group in &self.groups {
@@ -113,7 +113,7 @@ impl Layer {
     }
 }
 
-/// A colour written as `#rrggbb`; black if it is not.
+/// The colour of a text `#rrggbb`; black if the text is invalid.
 fn colour_of(text: &str) -> Color {
     let channel = |place: usize| text.get(place..place + 2).and_then(|digits| u8::from_str_radix(digits, 16).ok());
     match (channel(1), channel(3), channel(5)) {

@@ -1,11 +1,12 @@
-//! [`LogAxis`], [`LinearAxis`]: axes over whole decades, between two values, or with equal steps; and how they are drawn.
+//! [`LogAxis`], [`LinearAxis`]: logarithmic axes over whole decades or between two values, linear axes, and their
+//! drawing.
 
 use std::fmt::Write as _;
 
 use crate::report::figures::{HEIGHT, INK, WIDTH};
 use crate::report::number::{significant, superscript};
 
-/// Ends of the axes \[px\].
+/// Positions of the ends of the axes \[px\].
 pub(crate) const LEFT: f64 = 66.0;
 pub(crate) const RIGHT: f64 = WIDTH as f64 - 14.0;
 pub(crate) const TOP: f64 = 96.0;
@@ -14,32 +15,32 @@ pub(crate) const BOTTOM: f64 = HEIGHT as f64 - 50.0;
 /// Font size of all text \[px\].
 pub(crate) const FONT_SIZE: u32 = 13;
 
-/// Decades below the largest value that are drawn: what lies lower, zero included, stands on the lower edge.
+/// Largest number of decades below the largest value; smaller values, including zero, are drawn at the lower end.
 #[cfg(feature = "linear")]
 const MOST_DECADES: i32 = 16;
 
-/// Labels of an axis, at most.
+/// Largest number of labels of an axis.
 const MOST_LABELS: i32 = 8;
 
-/// Labels of an axis with equal steps, at most.
+/// Largest number of labels of a linear axis.
 const LINEAR_LABELS: f64 = 7.0;
 
-/// Decades up to which every tick from 2 to 9 is drawn too.
+/// Largest number of decades for which ticks from 2 to 9 are drawn.
 const FINE_DECADES: f64 = 4.5;
 
-/// Decades up to which 2 and 5 have labels too.
+/// Largest number of decades for which 2 and 5 have labels.
 const LABELLED_DECADES: f64 = 2.0;
 
 /// A logarithmic axis.
 pub(crate) struct LogAxis {
     /// log₁₀ of its ends.
     range: [f64; 2],
-    /// Where they stand \[px\].
+    /// Positions of its ends \[px\].
     ends: [f64; 2],
 }
 
 impl LogAxis {
-    /// Over the whole decades that hold these values, those above zero; none without such a value.
+    /// Over the whole decades of the positive values among these; none without positive values.
     #[cfg(feature = "linear")]
     pub(crate) fn over(values: impl Iterator<Item = f64>, ends: [f64; 2]) -> Option<Self> {
         let (low, high) = values
@@ -58,19 +59,19 @@ impl LogAxis {
         LogAxis { range: [libm::log10(low), libm::log10(high)], ends }
     }
 
-    /// Where a value stands \[px\].
+    /// Position of a value \[px\].
     pub(crate) fn place(&self, value: f64) -> f64 {
-        // What is not positive stands at the lower end.
+        // Values that are not positive are at the lower end.
         let share = (libm::log10(value.max(0.0)) - self.range[0]) / (self.range[1] - self.range[0]);
         self.ends[0] + share.clamp(0.0, 1.0) * (self.ends[1] - self.ends[0])
     }
 
-    /// Whether a value stands on the axis.
+    /// Whether a value lies on the axis.
     pub(crate) fn holds(&self, value: f64) -> bool {
         value > 0.0 && (self.range[0]..=self.range[1]).contains(&libm::log10(value))
     }
 
-    /// Labels, and where they stand.
+    /// Labels and their positions.
     fn labels(&self) -> Vec<(String, f64)> {
         let decades = self.range[1] - self.range[0];
         let [first, last] = [self.range[0].ceil() as i32, self.range[1].floor() as i32];
@@ -80,7 +81,7 @@ impl LogAxis {
         for power in (first - 1..=last).filter(|power| (last - power) % stride == 0) {
             for &step in steps {
                 let value = f64::from(step) * 10f64.powi(power);
-                // Rounding of the logarithm must not cost an end its label.
+                // Rounding of the logarithm must not exclude the label of an end.
                 let inside = (self.range[0] - 1e-9..=self.range[1] + 1e-9).contains(&libm::log10(value));
                 let plain = steps.len() > 1 && (0..4).contains(&power);
                 let text = match step {
@@ -96,7 +97,7 @@ impl LogAxis {
         labels
     }
 
-    /// Where the ticks between powers of ten stand; none on a long axis.
+    /// Positions of the ticks between powers of ten; none on a long axis.
     fn fine_ticks(&self) -> Vec<f64> {
         if self.range[1] - self.range[0] > FINE_DECADES {
             return Vec::new();
@@ -107,11 +108,11 @@ impl LogAxis {
     }
 }
 
-/// An axis with equal steps.
+/// A linear axis.
 #[cfg_attr(not(feature = "fit"), allow(dead_code, reason = "only the figures of studies have one"))]
 pub(crate) struct LinearAxis {
     range: [f64; 2],
-    /// Where its ends stand \[px\].
+    /// Positions of its ends \[px\].
     ends: [f64; 2],
 }
 
@@ -122,18 +123,18 @@ impl LinearAxis {
         LinearAxis { range: [low, high], ends }
     }
 
-    /// Where a value stands \[px\].
+    /// Position of a value \[px\].
     pub(crate) fn place(&self, value: f64) -> f64 {
         let share = (value - self.range[0]) / (self.range[1] - self.range[0]);
         self.ends[0] + share.clamp(0.0, 1.0) * (self.ends[1] - self.ends[0])
     }
 
-    /// Whether a value stands on the axis.
+    /// Whether a value lies on the axis.
     pub(crate) fn holds(&self, value: f64) -> bool {
         (self.range[0]..=self.range[1]).contains(&value)
     }
 
-    /// Labels at multiples of 1, 2 or 5 times a power of ten, and where they stand.
+    /// Labels at multiples of 1, 2 or 5 times a power of ten, and their positions.
     fn labels(&self) -> Vec<(String, f64)> {
         let span = self.range[1] - self.range[0];
         let power = 10f64.powi(libm::log10(span / LINEAR_LABELS).floor() as i32);
@@ -151,7 +152,7 @@ impl LinearAxis {
     }
 }
 
-/// Either kind.
+/// A logarithmic or linear axis.
 #[cfg_attr(not(feature = "fit"), allow(dead_code, reason = "only the figures of studies have one"))]
 pub(crate) enum Axis {
     Log(LogAxis),
@@ -159,7 +160,7 @@ pub(crate) enum Axis {
 }
 
 impl Axis {
-    /// Where a value stands \[px\].
+    /// Position of a value \[px\].
     pub(crate) fn place(&self, value: f64) -> f64 {
         match self {
             Axis::Log(axis) => axis.place(value),
@@ -167,7 +168,7 @@ impl Axis {
         }
     }
 
-    /// Whether a value stands on the axis.
+    /// Whether a value lies on the axis.
     pub(crate) fn holds(&self, value: f64) -> bool {
         match self {
             Axis::Log(axis) => axis.holds(value),
@@ -190,7 +191,7 @@ impl Axis {
     }
 }
 
-/// Both axes with ticks, labels and thin lines across, as SVG elements.
+/// Both axes with ticks, labels and thin grid lines, as SVG elements.
 pub(crate) fn axes(x_axis: &Axis, y_axis: &Axis, x_label: &str, y_label: &str) -> String {
     let mut svg = format!("<g font-size=\"{FONT_SIZE}\" stroke-width=\"1\">\n");
     for (text, x) in x_axis.labels() {

@@ -1,4 +1,4 @@
-//! What all maps share: the frame from lengths to pixels, the boundary, the scale bar and the colour bar.
+//! Common parts of all maps: the transformation from lengths to pixels, the boundary, the scale bar and the colour bar.
 
 use std::fmt::Write as _;
 
@@ -8,20 +8,20 @@ use crate::report::figures::palette::hexadecimal;
 use crate::report::figures::{HEIGHT, INK};
 use crate::vector::Vector;
 
-/// Room for the packing \[px\].
+/// Side of the area for the packing \[px\].
 const SIDE: f64 = 368.0;
 
-/// Left and upper edge of that room \[px\].
+/// Left and upper edge of that area \[px\].
 const LEFT: f64 = 4.0;
 const TOP: f64 = 22.0;
 
-/// Share of the values within the range of the colours; a few around a plastic event may be ten times as large.
+/// Share of the values within the range of the colours; some near a plastic event may be ten times larger.
 const SHOWN_SHARE: f64 = 0.98;
 
-/// From lengths to tenths of a pixel, seen from the inflated disk.
+/// The transformation from lengths to tenths of a pixel, relative to the inflated disk.
 #[derive(Debug, Clone, Copy)]
 pub struct MapFrame {
-    /// Tenths of a pixel to a length.
+    /// Tenths of a pixel per unit of length.
     zoom: f64,
     half_sides: [f64; 2],
     boundary: Boundary,
@@ -38,18 +38,18 @@ impl MapFrame {
         MapFrame { zoom: 5.0 * SIDE / half, half_sides, boundary }
     }
 
-    /// A length in whole tenths of a pixel.
+    /// A length, rounded to tenths of a pixel.
     pub(crate) fn tenths(&self, length: f64) -> i64 {
         (self.zoom * length).round() as i64
     }
 
-    /// A point in whole tenths of a pixel; the y axis of SVG points down.
+    /// A point, rounded to tenths of a pixel; the y axis of SVG points down.
     pub(crate) fn place(&self, point: Vector<2>) -> [i64; 2] {
         let [x, y] = point.map(|coordinate| self.tenths(coordinate));
         [x, -y]
     }
 
-    /// Strokes in tenths of a pixel whose origin is the inflated disk.
+    /// Strokes in tenths of a pixel, with the origin at the inflated disk.
     pub(crate) fn layer(&self, groups: Vec<Group>) -> String {
         Layer { groups }.markup([LEFT + 0.5 * SIDE, TOP + 0.5 * SIDE], 0.5 * SIDE)
     }
@@ -92,11 +92,11 @@ impl MapFrame {
     }
 }
 
-/// Sizes of the values of a map.
+/// Range of the absolute values of a map.
 pub(crate) struct Range {
-    /// Where the colours end.
+    /// Largest value on the colour scale.
     pub shown: f64,
-    /// The largest one.
+    /// Largest value.
     pub largest: f64,
 }
 
@@ -106,12 +106,12 @@ impl Range {
         values.sort_by(f64::total_cmp);
         let largest = values.last().copied().unwrap_or(0.0);
         let shown = values.get((SHOWN_SHARE * values.len() as f64) as usize).copied().unwrap_or(largest);
-        // Where fewer than two in a hundred move at all, the largest sets the scale.
+        // If fewer than 2 % move at all, the largest value sets the scale.
         Range { shown: if shown > 0.0 { shown } else { largest }, largest }
     }
 }
 
-/// The colour of a value, of so many on either side of zero.
+/// The colour level of a value, with `levels` levels on either side of zero.
 pub(crate) fn level(value: f64, full: f64, levels: i32) -> i32 {
     if full > 0.0 { ((value / full).clamp(-1.0, 1.0) * f64::from(levels)).round() as i32 } else { 0 }
 }
@@ -130,7 +130,7 @@ pub(crate) fn colour_bar(colour: fn(f64) -> [u8; 3], levels: i32) -> String {
     for level in -levels..=levels {
         let y = top + step * f64::from(levels - level);
         let colour = hexadecimal(colour(f64::from(level) / f64::from(levels)));
-        // A little overlap, so that no seam shows.
+        // The overlap avoids visible seams.
         let _ = writeln!(
             bar,
             "<rect x=\"{x}\" y=\"{y:.2}\" width=\"{width}\" height=\"{:.2}\" fill=\"{colour}\"/>",
@@ -154,7 +154,7 @@ pub(crate) fn colour_bar(colour: fn(f64) -> [u8; 3], levels: i32) -> String {
     bar
 }
 
-/// What a map shows, above it to the right; SVG text.
+/// The quantity of a map, above it on the right; SVG text.
 pub(crate) fn map_label(text: &str) -> String {
     format!("<text x=\"456\" y=\"14\" font-size=\"13\" text-anchor=\"end\">{text}</text>\n")
 }

@@ -4,9 +4,9 @@
 //! [`correlation`](correlation::correlation_figure), [`spectrum`](spectrum::spectrum_figure),
 //! [`radial_dependence`](radial_dependence::radial_dependence_figure).
 //!
-//! All have one height and one style, so that they stand in a row. The charts are drawn by plotters, on a canvas
-//! ten times finer than the picture, because plotters places points on whole pixels; maps are written directly, one
-//! stroke a disk, bond or contact.
+//! All have the same height and style, so that they fit in a row. The charts are drawn by plotters on a canvas ten
+//! times finer than the picture, because plotters rounds positions to whole pixels. Maps are written directly, one
+//! stroke per disk, bond or contact.
 
 pub mod angular;
 pub mod bond_map;
@@ -49,17 +49,17 @@ pub enum FigureError {
     Drawing {
         /// The figure.
         title: String,
-        /// What plotters says.
+        /// The error of plotters.
         reason: String,
     },
 }
 
-/// A picture with its title and a description for those who do not see it.
+/// A picture with its title and a description for readers who cannot see it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// What it is, in a few words; unique on a page.
+    /// A short title; unique on a page.
     pub title: String,
-    /// What is to be seen, in a sentence.
+    /// The content, in a sentence.
     pub description: String,
     /// SVG elements, on a canvas of WIDTH × HEIGHT.
     elements: String,
@@ -72,12 +72,12 @@ impl Figure {
         Figure { title, description, elements }
     }
 
-    /// A file of its own.
+    /// The SVG as a separate file.
     pub fn to_svg(&self) -> String {
         self.markup(r#" xmlns="http://www.w3.org/2000/svg""#)
     }
 
-    /// An element within HTML, where no name space is declared.
+    /// The SVG as an HTML element, without a declaration of the name space.
     pub fn to_inline_svg(&self) -> String {
         self.markup("")
     }
@@ -94,7 +94,7 @@ impl Figure {
     }
 }
 
-/// r·d_r as SVG text, the index lowered.
+/// r·d_r as SVG text with a subscript.
 pub(crate) const RESCALED: &str = "r·d<tspan dy=\"3\" font-size=\"10\">r</tspan><tspan dy=\"-3\">\u{200B}</tspan>";
 
 /// d_0^eff as SVG text.
@@ -102,13 +102,13 @@ pub(crate) const RESCALED: &str = "r·d<tspan dy=\"3\" font-size=\"10\">r</tspan
 pub(crate) const AMPLITUDE: &str = "d<tspan dy=\"3\" font-size=\"10\">0</tspan><tspan dy=\"-8\" font-size=\"10\">eff</tspan>\
                                     <tspan dy=\"5\">\u{200B}</tspan>";
 
-/// Fonts tried in this order.
+/// Fonts in order of preference.
 pub(crate) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 
 /// Colour of text and axes.
 pub(crate) const INK: &str = "#222222";
 
-/// Text that stands for itself in XML and HTML, also within double quotes.
+/// Escapes text for XML and HTML, including within double quotes.
 pub(crate) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -117,7 +117,7 @@ pub(crate) fn escaped(text: &str) -> String {
             '<' => escaped.push_str("&lt;"),
             '>' => escaped.push_str("&gt;"),
             '"' => escaped.push_str("&quot;"),
-            // No control character but white space is allowed in XML.
+            // XML allows no control characters except white space.
             letter if letter.is_control() && !letter.is_whitespace() => escaped.push('\u{FFFD}'),
             letter => escaped.push(letter),
         }

@@ -9,7 +9,7 @@ use crate::report::figures::palette::SEQUENCE;
 use crate::report::figures::radial::with_margin;
 use crate::report::figures::{Figure, FigureError};
 
-/// Which part of the displacement.
+/// A component of the displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Component {
     /// d_r.
@@ -18,7 +18,7 @@ pub enum Component {
     Transverse,
 }
 
-/// Entries of the legend in one line.
+/// Entries per line of the legend.
 const ENTRIES_A_LINE: usize = 3;
 
 /// r·A as SVG text.
@@ -27,14 +27,14 @@ const RADIAL: &str = "r·A<tspan dy=\"3\" font-size=\"10\">n</tspan><tspan dy=\"
 const TRANSVERSE: &str = "r·A<tspan dy=\"3\" font-size=\"10\">n</tspan><tspan dy=\"-3\"> of d</tspan><tspan dy=\"3\" \
                           font-size=\"10\">θ</tspan><tspan dy=\"-3\">\u{200B}</tspan>";
 
-/// The amplitude of a mode at a distance \[length\]; none where it has none.
+/// The amplitude of a mode at a distance \[length\]; none if the mode has none there.
 pub type ModeCurve<'a> = &'a dyn Fn(usize, f64) -> Option<f64>;
 
-/// Points of a curve.
+/// Number of points of a curve.
 const CURVE_POINTS: usize = 100;
 
-/// The modes of a sample from 0 to `highest_mode`, one a colour, rings joined, with standard errors; rings without modes
-/// are left out. `curve` is drawn dashed beside them.
+/// The modes of a sample from 0 to `highest_mode`, one colour each, with connected rings and standard errors; rings
+/// without modes are left out. `curve` is drawn dashed.
 ///
 /// # Errors
 /// No ring with a mode.

@@ -1,27 +1,27 @@
-//! Colours that stay apart for colour-blind readers.
+//! Colours that colour-blind readers can distinguish.
 
 /// Colours of lines and points. Source: Okabe, Ito (2008), Color universal design.
 pub(crate) const BLUE: [u8; 3] = [0x00, 0x72, 0xB2];
-/// As [`BLUE`].
+/// See [`BLUE`].
 pub(crate) const VERMILLION: [u8; 3] = [0xD5, 0x5E, 0x00];
-/// As [`BLUE`].
+/// See [`BLUE`].
 pub(crate) const GREEN: [u8; 3] = [0x00, 0x9E, 0x73];
-/// As [`BLUE`].
+/// See [`BLUE`].
 pub(crate) const PURPLE: [u8; 3] = [0xCC, 0x79, 0xA7];
-/// As [`BLUE`].
+/// See [`BLUE`].
 pub(crate) const ORANGE: [u8; 3] = [0xE6, 0x9F, 0x00];
-/// As [`BLUE`].
+/// See [`BLUE`].
 pub(crate) const SKY: [u8; 3] = [0x56, 0xB4, 0xE9];
 
-/// Colours of curves side by side, in this order, then from the front again; the first three as in the study, fig. 1.
+/// Colours of several curves, in this order, then repeated; the first three as in the study, fig. 1.
 pub(crate) const SEQUENCE: [[u8; 3]; 6] = [PURPLE, GREEN, VERMILLION, BLUE, ORANGE, SKY];
 
-/// Dark to light, for series that have an order. Source: viridis (Smith, van der Walt 2015, CC0), five of its colours.
+/// Dark to light, for ordered series. Source: viridis (Smith, van der Walt 2015, CC0), five of its colours.
 #[cfg(feature = "fit")]
 const ORDERED: [[u8; 3]; 5] =
     [[0x44, 0x01, 0x54], [0x3B, 0x52, 0x8B], [0x21, 0x90, 0x8C], [0x5D, 0xC8, 0x63], [0xE3, 0xC5, 0x1E]];
 
-/// The colour of one of `count` series that have an order.
+/// The colour of one of `count` ordered series.
 #[cfg(feature = "fit")]
 pub(crate) fn ordered(index: usize, count: usize) -> [u8; 3] {
     let place = index as f64 / count.saturating_sub(1).max(1) as f64 * (ORDERED.len() - 1) as f64;
@@ -29,7 +29,7 @@ pub(crate) fn ordered(index: usize, count: usize) -> [u8; 3] {
     mixed(ORDERED[class], ORDERED[class + 1], place - class as f64)
 }
 
-/// Purple over white to orange. Source: ColorBrewer 2.0 (Brewer, Harrower), PuOr in 11 classes, "colorblind safe".
+/// Purple through white to orange. Source: ColorBrewer 2.0 (Brewer, Harrower), PuOr in 11 classes, "colorblind safe".
 const DIVERGING: [[u8; 3]; 11] = [
     [0x2D, 0x00, 0x4B],
     [0x54, 0x27, 0x88],
@@ -44,8 +44,8 @@ const DIVERGING: [[u8; 3]; 11] = [
     [0x7F, 0x3B, 0x08],
 ];
 
-/// Red over white to blue. Source: ColorBrewer 2.0 (Brewer, Harrower), RdBu in 11 classes, "colorblind safe"; its middle is
-/// white here, the colour of the page.
+/// Red through white to blue. Source: ColorBrewer 2.0 (Brewer, Harrower), RdBu in 11 classes, "colorblind safe"; the
+/// middle is white, the colour of the page.
 const RED_OVER_BLUE: [[u8; 3]; 11] = [
     [0x67, 0x00, 0x1F],
     [0xB2, 0x18, 0x2B],
@@ -60,12 +60,12 @@ const RED_OVER_BLUE: [[u8; 3]; 11] = [
     [0x05, 0x30, 0x61],
 ];
 
-/// The colour of a value in −1 … 1, beyond it that of the end: purple below zero, orange above.
+/// The colour of a value in −1 … 1: purple below zero, orange above; values outside have the colour of the end.
 pub(crate) fn diverging(value: f64) -> [u8; 3] {
     between(&DIVERGING, value)
 }
 
-/// As [`diverging`]: red below zero, blue above.
+/// Like [`diverging`]: red below zero, blue above.
 pub(crate) fn red_over_blue(value: f64) -> [u8; 3] {
     between(&RED_OVER_BLUE, value)
 }
@@ -80,7 +80,7 @@ fn mixed(low: [u8; 3], high: [u8; 3], share: f64) -> [u8; 3] {
     std::array::from_fn(|i| (f64::from(low[i]) + share * (f64::from(high[i]) - f64::from(low[i]))).round() as u8)
 }
 
-/// As it stands in SVG.
+/// The colour as `#rrggbb`.
 pub(crate) fn hexadecimal([red, green, blue]: [u8; 3]) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }

@@ -1,4 +1,4 @@
-//! [`Plot`]: series of points with errors and lines, each axis linear or logarithmic, a legend above.
+//! [`Plot`]: series of points with errors and lines, with linear or logarithmic axes and a legend above.
 
 use std::fmt::Write as _;
 
@@ -9,38 +9,38 @@ use crate::report::figures::{Figure, INK};
 /// Height of a line of the legend \[px\].
 const LEGEND_LINE: f64 = 17.0;
 
-/// Lines of the legend that have room above the axes.
+/// Number of legend lines that fit above the axes.
 const LEGEND_LINES: usize = 5;
 
-/// Room beyond the outermost points: a share of a linear axis, this to the power of ten of a logarithmic one.
+/// Margin beyond the outermost points: a share of a linear axis, or a power of ten on a logarithmic one.
 const MARGIN: f64 = 0.05;
 
-/// Decades below the largest value that a logarithmic axis shows.
+/// Smallest value on a logarithmic axis over the largest.
 const MOST_DECADES: f64 = 1e-9;
 
 /// An axis of a plot.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PlotAxis {
-    /// SVG text, with its unit.
+    /// SVG text including the unit.
     pub label: String,
-    /// Whether its steps are factors.
+    /// Whether it is logarithmic.
     pub logarithmic: bool,
-    /// Its ends; absent, what the points need.
+    /// Its ends; if absent, chosen from the points.
     pub range: Option<[f64; 2]>,
 }
 
 impl PlotAxis {
-    /// With factors as steps, over what the points need.
+    /// A logarithmic axis for the range of the points.
     pub(crate) fn logarithmic(label: impl Into<String>) -> Self {
         PlotAxis { label: label.into(), logarithmic: true, range: None }
     }
 
-    /// With equal steps, over what the points need.
+    /// A linear axis for the range of the points.
     pub(crate) fn linear(label: impl Into<String>) -> Self {
         PlotAxis { label: label.into(), logarithmic: false, range: None }
     }
 
-    /// From one value to another.
+    /// Sets the ends of the axis.
     pub(crate) fn within(self, low: f64, high: f64) -> Self {
         PlotAxis { range: Some([low, high]), ..self }
     }
@@ -60,7 +60,7 @@ impl PlotAxis {
                     let margin = libm::pow(found[1] / low, MARGIN).max(1.1);
                     [low / margin, found[1] * margin]
                 } else {
-                    // One value alone still has an axis.
+                    // A single value also has an axis.
                     let margin = match found[1] - found[0] {
                         span if span > 1e-9 * found[1].abs().max(found[0].abs()) => MARGIN * span,
                         _ if found[1] == 0.0 => 1.0,
@@ -77,7 +77,7 @@ impl PlotAxis {
     }
 }
 
-/// A point, with the ends of its interval where it has one.
+/// A point, with the ends of its interval if it has one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PlotPoint {
     pub x: f64,
@@ -85,14 +85,14 @@ pub(crate) struct PlotPoint {
     pub interval: Option<[f64; 2]>,
 }
 
-/// How a series is drawn.
+/// Style of a series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Look {
-    /// Points alone.
+    /// Points only.
     Points,
     /// Hollow points.
     Hollow,
-    /// Points joined.
+    /// Connected points.
     Joined,
     /// A line.
     Line,
@@ -103,7 +103,7 @@ pub(crate) enum Look {
 /// A series of points, or a curve.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Series {
-    /// What it is, in the legend, as SVG text; empty, it has no entry.
+    /// Its label in the legend, as SVG text; if empty, it has no entry.
     pub label: String,
     pub points: Vec<PlotPoint>,
     pub look: Look,
@@ -120,16 +120,16 @@ pub(crate) fn bare(points: impl Iterator<Item = (f64, f64)>) -> Vec<PlotPoint> {
     points.map(|(x, y)| PlotPoint { x, y, interval: None }).collect()
 }
 
-/// A straight line across the axes, with a few words beside it.
+/// A straight line across the axes, with a short label.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Guide {
-    /// At this x.
+    /// At x.
     Vertical(f64, String),
-    /// At this y.
+    /// At y.
     Horizontal(f64, String),
 }
 
-/// A picture still to be drawn.
+/// A picture to be drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Plot {
     pub title: String,
@@ -141,7 +141,7 @@ pub(crate) struct Plot {
 }
 
 impl Plot {
-    /// The picture; none where no point can be shown.
+    /// The picture; none if no point can be shown.
     pub(crate) fn draw(self) -> Option<Figure> {
         let points = || self.series.iter().flat_map(|series| &series.points);
         let x_axis = self.x.axis(points().map(|point| point.x), [LEFT, RIGHT])?;
@@ -160,7 +160,7 @@ impl Plot {
         Some(Figure { title: self.title, description: self.description, elements: svg })
     }
 
-    /// Entries in as many columns as they need.
+    /// The legend, in as many columns as needed.
     fn legend(&self, svg: &mut String) {
         let named: Vec<&Series> = self.series.iter().filter(|series| !series.label.is_empty()).collect();
         let columns = named.len().div_ceil(LEGEND_LINES).max(1);
@@ -216,7 +216,7 @@ impl Series {
         svg.push('\n');
     }
 
-    /// What stands before its name in the legend.
+    /// The symbol of the series in the legend.
     fn sign(&self, svg: &mut String, x: f64, y: f64) {
         let colour = hexadecimal(self.colour);
         let fill = if self.look == Look::Hollow { "#ffffff" } else { &colour };
@@ -280,7 +280,7 @@ mod tests {
         let points = bare([(1.0, 1.0), (2.0, 2.0), (3.0, -1.0), (4.0, 4.0), (5.0, 5.0)].into_iter());
         let figure = plot(points, PlotAxis::logarithmic("y")).expect("four points");
         assert_eq!(figure.elements.matches("<polyline").count(), 2);
-        // Four points and the sign of the legend.
+        // Four points and the symbol of the legend.
         assert_eq!(figure.elements.matches("<circle").count(), 5);
     }
 

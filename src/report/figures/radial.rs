@@ -11,14 +11,14 @@ use crate::report::figures::palette::{BLUE, VERMILLION};
 use crate::report::figures::{Figure, FigureError, RESCALED};
 use crate::response::Response;
 
-/// Points of a fitted curve: two pixels apart.
+/// Number of points of a fitted curve: two pixels apart.
 const CURVE_POINTS: usize = 200;
 
 /// Colour of the measured rings.
 const MEASURED: [u8; 3] = [0x22, 0x22, 0x22];
 
-/// The radial profile of a sample: rings with their standard errors, those not fitted hollow; the solution decided for
-/// drawn out, the other dashed.
+/// The radial profile of a sample: rings with their standard errors, hollow if not fitted. The selected solution is
+/// solid, the other dashed.
 ///
 /// # Errors
 /// A profile without a finite number.
@@ -51,7 +51,7 @@ pub fn radial_figure(name: &str, response: &Response, profile: &RadialProfile) -
     })
 }
 
-/// Room for all rings with their errors, zero, and the solution decided for.
+/// Range that contains all rings with their errors, zero, and the selected solution.
 fn y_range(profile: &RadialProfile, curves: &[Curve], outer_radius: f64) -> [f64; 2] {
     let rings = profile.rings.iter().flat_map(|ring| {
         [ring.mean - ring.standard_error, ring.mean + ring.standard_error].map(|value| ring.radius * value)
@@ -66,12 +66,12 @@ fn y_range(profile: &RadialProfile, curves: &[Curve], outer_radius: f64) -> [f64
     with_margin(rings.chain(decided))
 }
 
-/// From the smallest to the largest value, zero included, with a margin.
+/// From the smallest to the largest value, including zero, with a margin.
 pub(crate) fn with_margin(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let (low, high) = values
         .filter(|value| value.is_finite())
         .fold((0.0f64, 0.0f64), |(low, high), value| (low.min(value), high.max(value)));
-    // Where nothing moves there is still an axis.
+    // If nothing moves there is still an axis.
     let span = if high > low { high - low } else { 1.0 };
     [low - 0.06 * span, high + 0.06 * span]
 }
@@ -90,7 +90,7 @@ fn legend(response: &Response, curves: &[Curve]) -> Vec<LegendLine> {
     lines
 }
 
-/// Whether a curve says more than the elastic one: a screened one with κ far below its error lies upon it.
+/// Whether a curve differs visibly from the elastic one: a screened one with κ far below its error does not.
 #[cfg(feature = "fit")]
 fn distinct(response: &Response, curve: &Curve) -> bool {
     let screened = crate::report::curve::fit_of(response).and_then(|fit| fit.screened);
@@ -139,7 +139,7 @@ fn draw_curve(
         (radius, curve.rescaled(radius))
     };
     let points: Vec<(f64, f64)> = (0..=CURVE_POINTS).map(point).collect();
-    // Plotters draws beyond the axes: what leaves them is left out.
+    // Plotters draws beyond the axes, so points outside are left out.
     for run in points.split(|&(_, value)| !(low <= value && value <= high)).filter(|run| run.len() > 1) {
         let run = run.iter().map(|&(radius, value)| (radius, scaling.apply(value)));
         if curve.decided {

@@ -10,7 +10,7 @@ use crate::report::figures::palette::SEQUENCE;
 use crate::report::figures::radial::with_margin;
 use crate::report::figures::{Figure, FigureError};
 
-/// G* of every ring that could be measured, and θ*/π of the first threshold where G falls to it.
+/// G* of every measured ring, and θ*/π at the first threshold if G falls to it.
 ///
 /// # Errors
 /// No ring with a finite number.

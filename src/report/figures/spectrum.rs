@@ -9,34 +9,34 @@ use crate::report::figures::{Figure, INK};
 /// One spectrum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpectrumPoints {
-    /// What it is, in the legend; markup of SVG stands for itself.
+    /// Its label in the legend; may contain SVG markup.
     pub label: String,
-    /// S at f = 1, 2, … \[1\]; what is not positive is not drawn.
+    /// S at f = 1, 2, … \[1\]; values that are not positive are not drawn.
     pub values: Vec<f64>,
-    /// Standard errors, drawn as bars; empty where there are none.
+    /// Standard errors, drawn as bars; may be empty.
     pub standard_errors: Vec<f64>,
 }
 
-/// A curve S(f) beside the points.
+/// A curve S(f) next to the points.
 pub struct SpectrumCurve<'a> {
-    /// What it is, in the legend; markup of SVG stands for itself.
+    /// Its label in the legend; may contain SVG markup.
     pub label: String,
     /// S(f).
     pub of: Box<dyn Fn(f64) -> f64 + 'a>,
-    /// Lowest and highest f it is drawn for.
+    /// Range of f for which it is drawn.
     pub window: [f64; 2],
 }
 
 /// Height of a line of the legend \[px\].
 const LEGEND_LINE: f64 = 18.0;
 
-/// Points of a curve.
+/// Number of points of a curve.
 const CURVE_POINTS: usize = 60;
 
-/// Decades below the largest power that are drawn.
+/// Smallest power drawn, over the largest.
 const DECADES: f64 = 1e-5;
 
-/// Spectra as points, each one colour, and curves: the first drawn out, the others dashed. None where no power is positive.
+/// Spectra as points, one colour each, and curves: the first solid, the others dashed. None if no power is positive.
 pub fn spectrum_figure(name: &str, spectra: &[SpectrumPoints], curves: &[SpectrumCurve<'_>]) -> Option<Figure> {
     let highest = spectra.iter().map(|spectrum| spectrum.values.len()).max().filter(|&count| count > 1)?;
     let positive =
@@ -47,7 +47,7 @@ pub fn spectrum_figure(name: &str, spectra: &[SpectrumPoints], curves: &[Spectru
     let y_axis = Axis::Log(LogAxis::between(0.5 * smallest, 2.0 * largest, [BOTTOM, TOP]));
     let mut svg = axes(&x_axis, &y_axis, "f", "S(f) / S(1)");
     let lines = spectra.len() + curves.len();
-    // The last line of the legend stands just above the axes.
+    // The last line of the legend is just above the axes.
     let row = |index: usize| TOP - 6.0 - (lines as f64 - 0.5 - index as f64) * LEGEND_LINE;
     for (index, curve) in curves.iter().enumerate() {
         let dashes = if index == 0 { "" } else { " stroke-dasharray=\"6 4\"" };

@@ -1,13 +1,13 @@
-//! [`Kind`]: what a folder is filled with.
+//! [`Kind`]: the type of a report in a folder.
 
 use crate::report::data_file::DataFile;
 
-/// What a folder is filled with. Reports of different kinds in one folder know nothing of each other.
+/// The type of a report in a folder. Reports of different types in one folder are independent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// The report of a run.
     Report,
-    /// The analysis of states relaxed elsewhere.
+    /// The analysis of states relaxed by other programs.
     Analysis,
     /// Error against cost.
     Precision,
@@ -23,7 +23,7 @@ impl Kind {
         }
     }
 
-    /// The file that is there if and only if all others are.
+    /// The file that exists if and only if all others do.
     pub(super) fn document(self) -> String {
         format!("{}.json", self.name())
     }
@@ -41,13 +41,13 @@ impl Kind {
         }
     }
 
-    /// How the names of folders begin that are filled or ready.
+    /// Prefix of the names of folders that are being filled or complete.
     pub(super) fn prefix(self) -> String {
         format!(".{}-", self.name())
     }
 }
 
-/// How the name of a folder ends while it is filled, and when it is complete.
+/// End of the name of a folder while it is filled, and when it is complete.
 pub(super) const PART: &str = ".part";
 
 pub(super) const READY: &str = ".ready";

@@ -1,4 +1,4 @@
-//! [`Manifest`]: what a report wrote into its folder.
+//! [`Manifest`]: the files that a report wrote into its folder.
 
 use std::io::Write as _;
 use std::path::Path;
@@ -20,16 +20,16 @@ pub(super) struct Manifest {
 #[derive(Debug, Serialize, Deserialize)]
 struct Entry {
     name: String,
-    /// SHA-256 of its content in hex; absent of wall times, which would make two lists of one scene differ.
+    /// SHA-256 of its content in hexadecimal. Absent for wall times, so that two lists of one scene do not differ.
     #[serde(skip_serializing_if = "Option::is_none")]
     checksum: Option<String>,
 }
 
-/// The one file of a run that differs from run to run.
+/// The only file of a run that differs between runs.
 const WALL_TIMES: &str = "timings.json";
 
 impl Manifest {
-    /// Of these files in a folder.
+    /// The list of these files in a folder.
     pub(super) fn of(folder: &Path, names: &[String]) -> Result<Self, ReportError> {
         let entry = |name: &String| {
             let path = folder.join(name);
@@ -43,10 +43,10 @@ impl Manifest {
         Ok(Manifest { jamscope_version: env!("CARGO_PKG_VERSION").into(), files })
     }
 
-    /// The list of a folder; none where there is none that can be read.
+    /// The list of a folder; none if there is no readable list.
     pub(super) fn read(path: &Path) -> Option<Self> {
         let manifest: Manifest = serde_json::from_slice(&std::fs::read(path).ok()?).ok()?;
-        // A name is never a way out of the folder.
+        // A name must not lead out of the folder.
         let plain = |entry: &Entry| Path::new(&entry.name).file_name().is_some_and(|name| name == entry.name.as_str());
         manifest.files.iter().all(plain).then_some(manifest)
     }
@@ -58,12 +58,12 @@ impl Manifest {
         Ok(write_atomically(path, |writer| writer.write_all((text + "\n").as_bytes()))?)
     }
 
-    /// Whether a file is one of the report.
+    /// Whether a file belongs to the report.
     pub(super) fn lists(&self, name: &str) -> bool {
         self.files.iter().any(|entry| entry.name == name)
     }
 
-    /// The names of files in a folder that are as the report wrote them.
+    /// Names of the files in a folder that have not changed since the report.
     pub(super) fn unchanged<'a>(&'a self, folder: &'a Path) -> impl Iterator<Item = &'a str> {
         let as_written = |entry: &&Entry| {
             let path = folder.join(&entry.name);
@@ -74,7 +74,7 @@ impl Manifest {
     }
 }
 
-/// SHA-256 of a file in hex.
+/// SHA-256 of a file in hexadecimal.
 fn checksum(path: &Path) -> std::io::Result<String> {
     let mut file = std::fs::File::open(path)?;
     let mut state = Sha256::new();

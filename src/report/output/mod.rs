@@ -1,17 +1,17 @@
-//! [`OutputFolder`]: all files of one report, put into a folder together.
+//! [`OutputFolder`]: writes all files of a report into a folder together.
 //!
 //! ```text
 //! DIR/.report-XXXXXX.part/         being filled; locked by the process that fills it
-//! DIR/.report-XXXXXX.part.ready/   complete; its files are moved to DIR, those of the last report are removed before
-//! DIR/.report.files.json           what the last report wrote, with checksums
+//! DIR/.report-XXXXXX.part.ready/   complete; its files are moved to DIR, after those of the last report are removed
+//! DIR/.report.files.json           the list of files of the last report, with checksums
 //! ```
 //!
-//! Whenever a process is killed, the files in `DIR` are of one report: the last one, before the rename to `.ready`, or this one,
-//! perhaps not all of it. Then the next command that uses the folder moves the rest. `report.json` is the first file removed
-//! and the last one moved: where it is, all is there.
+//! If a process is killed at any time, the files in `DIR` belong to one report: the last one before the rename to
+//! `.ready`, and this one, possibly incomplete, after it. The next command that uses the folder then moves the rest.
+//! `report.json` is removed first and moved last: if it exists, all files exist.
 //!
-//! Files that no report wrote, or that were changed since, are never removed. One that stands in the way is renamed to
-//! `NAME.~1~`.
+//! Files that no report wrote, or that were changed since, are never removed. If the name of one is needed, it is
+//! renamed to `NAME.~1~`.
 
 mod kind;
 mod manifest;
@@ -27,27 +27,27 @@ pub use kind::Kind;
 use manifest::Manifest;
 pub use place::{complete, is_of_the_last_report};
 
-/// A folder for a report, made and tried before the work that the report is of.
+/// A folder for a report, created and tested before the computation of the report.
 ///
-/// Dropped without a report it leaves nothing behind.
+/// If it is dropped without a report, nothing is left behind.
 #[derive(Debug)]
 pub struct OutputFolder {
     folder: PathBuf,
     kind: Kind,
     /// Removed when dropped.
     part: Option<tempfile::TempDir>,
-    /// While it lives the part belongs to somebody.
+    /// Shows that the folder is in use, while it exists.
     _lock: Option<File>,
-    /// Folders made on the way, the deepest first.
+    /// Folders created, the deepest first.
     made: Vec<PathBuf>,
 }
 
 impl OutputFolder {
-    /// Makes the folder if it is not there, completes what a killed process left complete, removes what it left incomplete, and
-    /// tries to write.
+    /// Creates the folder if necessary, moves a complete report of a killed process, removes incomplete ones, and tests
+    /// writing.
     ///
     /// # Errors
-    /// [`ReportError`] names the folder and what the system says.
+    /// [`ReportError`] with the folder and the error of the system.
     pub fn open(folder: &Path, kind: Kind) -> Result<Self, ReportError> {
         let made = make(folder).map_err(|source| ReportError::Folder { folder: folder.into(), source })?;
         let mut output = OutputFolder { folder: folder.into(), kind, part: None, _lock: None, made };
@@ -60,10 +60,11 @@ impl OutputFolder {
         Ok(output)
     }
 
-    /// Whether all files of these samples can be made here, by the longest name; `field` is what the names come from.
+    /// Checks whether all files of these samples can be created here, by the longest name; `field` is the origin of the
+    /// names.
     ///
     /// # Errors
-    /// [`ReportError::Name`], usually of a name too long for the file system.
+    /// [`ReportError::Name`], usually for a name that is too long for the file system.
     pub fn try_samples<'a>(
         &self,
         field: &'static str,
@@ -80,20 +81,20 @@ impl OutputFolder {
         })
     }
 
-    /// Where files are written until all are there.
+    /// The folder in which files are written until all exist.
     pub(crate) fn inside(&self) -> &Path {
-        // It is there from `open` on.
+        // It exists after `open`.
         self.part.as_ref().map_or(&self.folder, |part| part.path())
     }
 
-    /// Puts the files in their place; gives their paths, in the order of `names`.
+    /// Moves the files to their place; returns their paths, in the order of `names`.
     pub(crate) fn commit(mut self, names: Vec<String>) -> Result<Vec<PathBuf>, ReportError> {
         self.make_ready(&names)?;
         complete(&self.folder, self.kind)?;
         Ok(names.iter().map(|name| self.folder.join(name)).collect())
     }
 
-    /// Lists the files and says that all are there: from here on the report is complete. Gives the folder that is ready.
+    /// Writes the list of files and marks the folder as complete. Returns the complete folder.
     fn make_ready(&mut self, names: &[String]) -> Result<PathBuf, ReportError> {
         let manifest = Manifest::of(self.inside(), names)?;
         manifest.write(&self.inside().join(self.kind.manifest()))?;
@@ -105,7 +106,7 @@ impl OutputFolder {
         Ok(ready.into())
     }
 
-    /// Removes what processes that were killed had begun.
+    /// Removes incomplete folders of killed processes.
     fn clear(&self) -> std::io::Result<()> {
         for entry in std::fs::read_dir(&self.folder)? {
             let entry = entry?;
@@ -118,7 +119,7 @@ impl OutputFolder {
                 }
             }
         }
-        // Single files are what earlier versions had begun.
+        // Single partial files are from earlier versions.
         let known = Manifest::read(&self.folder.join(self.kind.manifest()));
         remove_unfinished(&self.folder, |name| known.as_ref().is_some_and(|known| known.lists(name)))?;
         Ok(())
@@ -129,7 +130,7 @@ impl Drop for OutputFolder {
     fn drop(&mut self) {
         self.part = None;
         for folder in &self.made {
-            // Only where it is empty.
+            // Only if it is empty.
             if std::fs::remove_dir(folder).is_err() {
                 break;
             }
@@ -137,7 +138,7 @@ impl Drop for OutputFolder {
     }
 }
 
-/// Makes a folder and those above it; gives those that were not there, the deepest first.
+/// Creates a folder and its parents; returns those created, the deepest first.
 fn make(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     let missing = folder.ancestors().take_while(|it| !it.as_os_str().is_empty() && !it.exists());
     let missing = missing.map(Path::to_path_buf).collect();
@@ -145,12 +146,12 @@ fn make(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     Ok(missing)
 }
 
-/// A new folder to fill, locked where the system can lock folders.
+/// Creates a folder to fill, locked if the system can lock folders.
 fn locked_part(folder: &Path, kind: Kind) -> std::io::Result<(tempfile::TempDir, Option<File>)> {
     loop {
         let part = tempfile::Builder::new().prefix(&kind.prefix()).suffix(PART).tempdir_in(folder)?;
         let Ok(lock) = File::open(part.path()) else { return Ok((part, None)) };
-        // A cleaning process may have taken it for one that belongs to nobody.
+        // A process that removes incomplete folders may have locked it.
         match lock.try_lock() {
             Err(std::fs::TryLockError::WouldBlock) => {}
             _ if !part.path().exists() => {}

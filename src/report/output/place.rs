@@ -9,13 +9,13 @@ use crate::report::error::ReportError;
 use crate::report::output::kind::{Kind, READY};
 use crate::report::output::manifest::Manifest;
 
-/// Moving files takes less time; whoever holds the lock of a folder longer has been stopped.
+/// Longest wait for a lock. Moving files takes less time; a process that holds its lock longer is suspended.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Moves what is complete in a folder to its place, if a process was killed before it had done so.
+/// Moves a complete report to its place, if a process was killed before doing so.
 ///
 /// # Errors
-/// [`ReportError::Place`] names the file that cannot be moved or removed; what is complete stays so.
+/// [`ReportError::Place`] with the file that cannot be moved or removed; the report stays complete.
 pub fn complete(folder: &Path, kind: Kind) -> Result<(), ReportError> {
     if ready(folder, kind)?.is_empty() {
         return Ok(());
@@ -26,24 +26,24 @@ pub fn complete(folder: &Path, kind: Kind) -> Result<(), ReportError> {
             step.take()?;
         }
     }
-    // The names reach the disk with their folder. Not every system can do that, and the content is safe already.
+    // Writes the directory entries to disk. Not every system supports it, and the contents are already safe.
     #[cfg(unix)]
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
     Ok(())
 }
 
-/// Whether a packing is one that `analyse` takes from the folder of a run: listed by the last report, or no jamscope report's.
-/// Files of earlier runs that were left behind are neither.
+/// Whether `analyse` takes a packing from the folder of a run: it is listed by the last report, or it is not from a
+/// jamscope report. Files of earlier runs are neither.
 pub fn is_of_the_last_report(folder: &Path, name: &str) -> bool {
     let Some(manifest) = Manifest::read(&folder.join(Kind::Report.manifest())) else { return true };
     let from_a_report = |path: &Path| {
-        // What cannot be read is taken, so that whoever reads it says why.
+        // Unreadable files are included, so that the reader reports the error.
         read_properties(path).is_ok_and(|it| it.iter().any(|(key, _)| key == "jamscope_version"))
     };
     manifest.lists(name) || !from_a_report(&folder.join(name))
 }
 
-/// Complete reports that wait to be moved, the oldest first.
+/// Complete reports still to be moved, the oldest first.
 pub(super) fn ready(folder: &Path, kind: Kind) -> Result<Vec<PathBuf>, ReportError> {
     let failed = |source| ReportError::Place { path: folder.into(), source };
     let mut found = Vec::new();
@@ -51,7 +51,7 @@ pub(super) fn ready(folder: &Path, kind: Kind) -> Result<Vec<PathBuf>, ReportErr
         let entry = entry.map_err(failed)?;
         let name = entry.file_name().to_string_lossy().into_owned();
         if name.starts_with(&kind.prefix()) && name.ends_with(READY) {
-            // Another process may have moved it meanwhile.
+            // Another process may have moved it already.
             let Ok(written) = entry.metadata().and_then(|it| it.modified()) else { continue };
             found.push((written, entry.path()));
         }
@@ -60,7 +60,7 @@ pub(super) fn ready(folder: &Path, kind: Kind) -> Result<Vec<PathBuf>, ReportErr
     Ok(found.into_iter().map(|(_, path)| path).collect())
 }
 
-/// The lock of the folder itself; none where the system cannot lock folders.
+/// The lock of the folder itself; none if the system cannot lock folders.
 fn lock(folder: &Path) -> Result<Option<File>, ReportError> {
     let Ok(file) = File::open(folder) else { return Ok(None) };
     let start = Instant::now();
@@ -79,13 +79,13 @@ fn lock(folder: &Path) -> Result<Option<File>, ReportError> {
 /// One change of the folder.
 #[derive(Debug)]
 pub(super) enum Step {
-    /// A file of the last report goes.
+    /// A file of the last report is removed.
     Remove(PathBuf),
-    /// A file that no report wrote, of the name of one of this report, is renamed.
+    /// A file that no report wrote is renamed, because this report needs its name.
     SetAside(PathBuf),
-    /// A file of this report comes.
+    /// A file of this report is moved.
     Move { from: PathBuf, to: PathBuf },
-    /// The folder that was ready is empty.
+    /// The folder, now empty, is removed.
     RemoveFolder(PathBuf),
 }
 
@@ -101,13 +101,13 @@ impl Step {
     }
 }
 
-/// What is left to do for a complete report. Any step may be the last one: asked again, it is what is left then.
+/// The remaining steps for a complete report. After an interruption at any step, a new call returns the rest.
 pub(super) fn steps(folder: &Path, ready: &Path, kind: Kind) -> Result<Vec<Step>, ReportError> {
     let (document, list) = (kind.document(), kind.manifest());
     let failed = |source| ReportError::Place { path: ready.into(), source };
     let mut steps = Vec::new();
     let mut removed = Vec::new();
-    // Of this report the list is moved when all but the document is there: from then on nothing old is left.
+    // The list of this report is moved after all files except the document; from then on no old file is left.
     let old = if ready.join(&list).exists() { Manifest::read(&folder.join(&list)) } else { None };
     if let Some(old) = old {
         removed.extend(old.unchanged(folder).map(str::to_string));
@@ -131,7 +131,7 @@ pub(super) fn steps(folder: &Path, ready: &Path, kind: Kind) -> Result<Vec<Step>
     Ok(steps)
 }
 
-/// Renames a file to `NAME.~N~` with the first N that is free.
+/// Renames a file to `NAME.~N~` with the first unused N.
 fn set_aside(path: &Path) -> std::io::Result<()> {
     let mut number = 1u32;
     loop {
@@ -151,7 +151,7 @@ mod tests {
     use super::*;
     use crate::report::OutputFolder;
 
-    /// Files and what is in them, hidden ones and folders left out.
+    /// Files and their contents, without hidden ones and folders.
     fn visible(folder: &Path) -> BTreeMap<String, String> {
         let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry"));
         let files = entries.filter(|entry| entry.file_type().expect("a type").is_file());
@@ -162,7 +162,7 @@ mod tests {
         files.map(|entry| pair(entry.path())).filter(|(name, _)| !name.starts_with('.')).collect()
     }
 
-    /// A report of these files, each with its own text in it, left ready; gives the folder that is.
+    /// A complete report of these files, each containing `text`; returns its folder.
     fn made_ready(folder: &Path, names: &[&str], text: &str) -> PathBuf {
         let mut output = OutputFolder::open(folder, Kind::Report).expect("a folder");
         names.iter().for_each(|name| std::fs::write(output.inside().join(name), text).expect("written"));
@@ -187,7 +187,7 @@ mod tests {
             let found = visible(folder.path());
             let has = |text: &str| found.values().any(|it| it == text);
             assert!(!(has("old") && has("new")), "after {step_count} steps: {found:?}");
-            // Where the report is, all its files are.
+            // If the report exists, so do all its files.
             if let Some(text) = found.get("report.json") {
                 let names = if text == "old" { old } else { new };
                 assert!(names.iter().all(|name| found[*name] == *text), "after {step_count} steps: {found:?}");
@@ -203,7 +203,7 @@ mod tests {
             }
             interruptions += 1;
         }
-        // Five old files and lists are removed, five new ones moved, one set aside, a folder removed.
+        // Five old files and lists are removed, five new ones moved, one renamed, one folder removed.
         assert_eq!(interruptions, 12);
     }
 
@@ -232,7 +232,7 @@ mod tests {
         let inside = live.inside().to_path_buf();
         drop((live, other));
         assert!(!inside.exists() && folder.path().exists());
-        // What was made for nothing goes too.
+        // Folders created in vain are removed too.
         let deep = folder.path().join("not/there");
         drop(OutputFolder::open(&deep, Kind::Analysis).expect("a folder"));
         assert!(!folder.path().join("not").exists());

@@ -1,4 +1,4 @@
-//! The rows that say how often samples like these are called what they are called.
+//! The rows on how often similar samples have the same phase.
 
 use crate::report::number::significant;
 use crate::report::rows::section::{Rows, Section};

@@ -1,4 +1,4 @@
-//! What a reader wants to know of each sample, row by row; the terminal table and the page lay the same rows out.
+//! The numbers of each sample, row by row, for the terminal table and for the page.
 
 pub(crate) mod analysis;
 mod frequency;
@@ -13,7 +13,7 @@ use crate::run::{Report, SampleOutcome, SampleReport, SampleResult};
 use crate::scene::Sample;
 use crate::verdict::RestVerdict;
 
-/// Whether wall times are wanted.
+/// Whether to include wall times.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Times {
     Shown,
@@ -21,7 +21,7 @@ pub(crate) enum Times {
     LeftOut,
 }
 
-/// The samples that came to nothing, with the reason.
+/// The samples without a result, with the reason.
 pub(crate) fn failures(samples: &[SampleReport]) -> impl Iterator<Item = (&str, &str)> {
     samples.iter().filter_map(|sample| match &sample.result {
         SampleOutcome::Failed(reason) => Some((sample.name.as_str(), reason.as_str())),
@@ -29,12 +29,12 @@ pub(crate) fn failures(samples: &[SampleReport]) -> impl Iterator<Item = (&str, 
     })
 }
 
-/// Whether the states of samples that came to a result are at rest.
+/// Verdicts on the states of samples with a result.
 pub(crate) fn verdicts(samples: &[SampleReport]) -> impl Iterator<Item = (&str, &RestVerdict)> {
     samples.iter().filter_map(|sample| Some((sample.name.as_str(), &done(sample)?.response.verdict)))
 }
 
-/// What samples were refused, with the reason: sample, what there is not, why.
+/// Refused quantities of samples: sample, quantity, reason.
 pub(crate) fn refusals(samples: &[SampleReport]) -> Vec<(&str, &'static str, &str)> {
     let mut refused = Vec::new();
     for (sample, result) in samples.iter().filter_map(|sample| Some((sample, done(sample)?))) {
@@ -48,12 +48,12 @@ pub(crate) fn refusals(samples: &[SampleReport]) -> Vec<(&str, &'static str, &st
     refused
 }
 
-/// Why something asked for is not there.
+/// Why a requested quantity was refused.
 pub(crate) fn refused_of<T>(measurement: &Option<Measurement<T>>) -> Option<&str> {
     measurement.as_ref().and_then(Measurement::refused)
 }
 
-/// All rows of these samples of a report; sections without rows are left out.
+/// All rows of these samples; sections without rows are left out.
 pub(crate) fn sections(report: &Report, samples: &[SampleReport], times: Times) -> Vec<Section> {
     let mut all = vec![
         states::packing(report, samples),

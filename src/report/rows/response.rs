@@ -16,7 +16,7 @@ use crate::report::rows::section::{Rows, Section};
 use crate::response::Measurement;
 use crate::response::{Phase, PhaseOutcome, Response, RingResponse};
 
-/// All sections of these responses, some without rows.
+/// All sections of these responses; some may have no rows.
 pub(crate) fn sections(responses: Vec<Option<&Response>>) -> Vec<Section> {
     vec![
         phase(responses.clone()),
@@ -30,7 +30,7 @@ pub(crate) fn sections(responses: Vec<Option<&Response>>) -> Vec<Section> {
     ]
 }
 
-/// What there is not of a response, and why.
+/// The refused quantities of a response, with reasons.
 pub(crate) fn refusals(response: &Response) -> Vec<(&'static str, &str)> {
     let found = [
         #[cfg(feature = "fit")]
@@ -88,7 +88,7 @@ fn penetration(responses: Vec<Option<&Response>>) -> Section {
     let mut rows = Rows::new(responses);
     for threshold in thresholds {
         rows.add(format!("ξ, |⟨d_r⟩| = {} [length]", significant(threshold, 1)), |it| {
-            // A jammed packing moves up to its rim.
+            // In a jammed packing displacements extend to the rim.
             if it.measured_on == MeasuredOn::Backbone {
                 return None;
             }
@@ -262,7 +262,7 @@ fn fit(responses: Vec<Option<&Response>>) -> Section {
     use crate::report::number::with_error;
 
     let mut rows = Rows::new(responses);
-    // A κ known to nothing is the elastic solution again.
+    // A κ without significance means the elastic solution.
     let screened = |it: &Response| {
         curve::fit_of(it)?.screened.filter(|fit| fit.wavenumber.standard_error < 10.0 * fit.wavenumber.value)
     };
@@ -308,7 +308,7 @@ fn fit(responses: Vec<Option<&Response>>) -> Section {
     rows.section("Fit of the radial profile")
 }
 
-/// What describes a profile, in a word.
+/// The solution that describes a profile, in a word.
 #[cfg(feature = "fit")]
 pub(crate) fn decision_name(decision: crate::fit::profile::Decision) -> &'static str {
     use crate::fit::profile::Decision;
@@ -319,7 +319,7 @@ pub(crate) fn decision_name(decision: crate::fit::profile::Decision) -> &'static
     }
 }
 
-/// κ with its error, or the bound on it.
+/// κ with its error, or its upper bound.
 #[cfg(all(feature = "fit", feature = "plot"))]
 pub(crate) fn wavenumber(fit: &crate::fit::profile::ProfileFit) -> Option<String> {
     use crate::fit::profile::Decision;

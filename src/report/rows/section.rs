@@ -10,32 +10,32 @@ pub(crate) struct Section {
 
 /// One quantity.
 pub(crate) struct Row {
-    /// What it is, with its unit.
+    /// The quantity with its unit.
     pub label: String,
-    /// One a sample; a dash where a sample has none.
+    /// One cell per sample; a dash if a sample has no value.
     pub cells: Vec<String>,
 }
 
-/// Collects the rows of some results, one a column; none where a sample came to nothing.
+/// Collects the rows of several results, one per column; none for a sample without a result.
 pub(crate) struct Rows<'a, T> {
     results: Vec<Option<&'a T>>,
     rows: Vec<Row>,
 }
 
 impl<'a> Rows<'a, SampleResult> {
-    /// No row of these samples yet.
+    /// Starts without rows, for the results of these samples.
     pub(crate) fn of_samples(samples: &'a [SampleReport]) -> Self {
         Rows::new(samples.iter().map(done).collect())
     }
 }
 
 impl<'a, T> Rows<'a, T> {
-    /// No row yet.
+    /// Starts without rows.
     pub(crate) fn new(results: Vec<Option<&'a T>>) -> Self {
         Rows { results, rows: Vec::new() }
     }
 
-    /// Adds a row, unless no sample has the quantity.
+    /// Adds a row if at least one sample has the quantity.
     pub(crate) fn add(&mut self, label: impl Into<String>, cell: impl Fn(&T) -> Option<String>) -> &mut Self {
         let cells: Vec<Option<String>> = self.results.iter().map(|result| result.and_then(&cell)).collect();
         if cells.iter().any(Option::is_some) {
@@ -45,7 +45,7 @@ impl<'a, T> Rows<'a, T> {
         self
     }
 
-    /// Adds a row that all have.
+    /// Adds a row of given cells.
     pub(crate) fn add_cells(&mut self, label: &str, cells: impl Iterator<Item = String>) {
         self.rows.push(Row { label: label.into(), cells: cells.collect() });
     }
@@ -55,7 +55,7 @@ impl<'a, T> Rows<'a, T> {
     }
 }
 
-/// The result of a sample that came to one.
+/// The result of a sample, if it has one.
 pub(crate) fn done(sample: &SampleReport) -> Option<&SampleResult> {
     match &sample.result {
         SampleOutcome::Done(result) => Some(result),

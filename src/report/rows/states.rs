@@ -55,7 +55,7 @@ pub(super) fn preparation(report: &Report, samples: &[SampleReport], times: Time
 pub(super) fn inflation(report: &Report, samples: &[SampleReport], times: Times) -> Section {
     let mut rows = Rows::of_samples(samples);
     let relaxer = |it: &SampleResult| {
-        // The result stands in the report under the name of its sample.
+        // A result is found in the report by its address, to get the name of its sample.
         let sample = samples.iter().find(|sample| done(sample).is_some_and(|other| std::ptr::eq(other, it)))?;
         settings(report, &sample.name).map(|sample| sample.relaxer.name().into())
     };
@@ -125,7 +125,7 @@ pub(super) fn certificate(samples: &[SampleReport]) -> Section {
     rows.section("Certificate")
 }
 
-/// Number of negative eigenvalues of the Hessian, or why there is none.
+/// Number of negative eigenvalues of the Hessian, or why it is unknown.
 #[cfg(feature = "linear")]
 fn negative(certificate: &Certificate) -> Option<String> {
     match &certificate.stability {
@@ -167,7 +167,7 @@ fn scaled_label(exponent: f64) -> String {
     }
 }
 
-/// Factorisations, where the relaxer made any.
+/// Number of factorisations, if the relaxer made any.
 fn factorisations(rest: &RestSummary) -> Option<String> {
     let made = rest.cost.factorisation_count;
     (made > 0).then(|| count(made))
@@ -181,7 +181,7 @@ fn criterion(rest: &RestSummary) -> &'static str {
     }
 }
 
-/// The relative residual beside the rounding floor; the net force itself where there is no contact force to relate it to.
+/// The relative residual with the rounding floor; without contact forces the net force itself.
 fn residual(rest: &RestSummary) -> String {
     if rest.criterion == Criterion::Unjammed {
         return format!("{} [force]", significant(rest.largest_net_force, 2));

@@ -1,4 +1,4 @@
-//! G(θ) and S(f) of every cell of a series, and S(f) by distance.
+//! G(θ) and S(f) of every cell of a series, and S(f) in rings.
 
 use std::f64::consts::PI;
 
@@ -14,7 +14,7 @@ use crate::transition::{RingSlope, Series};
 pub(super) fn functions(subject: &Subject<'_>) -> Vec<Figure> {
     let all = &subject.transition.series;
     let largest = all.iter().map(|series| series.cell.increase).fold(0.0, f64::max);
-    // Several inflations: the one nearest to that of the study.
+    // With several inflations: the one nearest to that of the study.
     let away = |series: &&Series| (series.cell.increase - 0.1f64.min(largest)).abs();
     let nearest = all.iter().map(|series| away(&series)).fold(f64::INFINITY, f64::min);
     let chosen = all.iter().filter(|series| away(series) <= nearest + 1e-12);
@@ -56,7 +56,7 @@ fn dashed(label: &str, points: impl Iterator<Item = (f64, f64)>) -> Curve {
     Curve { label: label.into(), points: bare(points), look: Look::Dashed, colour: [0x22; 3] }
 }
 
-/// S(1) = 1, as the study has it.
+/// S normalised to S(1) = 1, as in the study.
 fn normalised(curve: &MeanCurve) -> Vec<PlotPoint> {
     let points = curve.points();
     let Some(first) = points.first().filter(|first| first.y > 0.0) else { return Vec::new() };
@@ -100,7 +100,7 @@ fn spectrum(subject: &Subject<'_>, series: &Series) -> Option<Figure> {
     .draw()
 }
 
-/// S(f) ring by ring in the cell of every series that is nearest to the transition, and its slopes.
+/// S(f) in rings, for the cell of every series nearest to the transition, and its slopes.
 pub(super) fn by_radius(subject: &Subject<'_>) -> Vec<Figure> {
     let all = &subject.transition.series;
     let mut figures = Vec::new();

@@ -1,4 +1,4 @@
-//! ℓ_s and ℓ_iso against the pressure, the curves ℓ_iso is read from, and ξ below jamming.
+//! ℓ_s and ℓ_iso against the pressure, the curves from which ℓ_iso is read, and ξ below jamming.
 
 use crate::report::figures::Figure;
 use crate::report::figures::plot::{Guide, Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare, colour};
@@ -48,7 +48,7 @@ pub(super) fn matching(subject: &Subject<'_>) -> Vec<Figure> {
     all.iter().enumerate().filter_map(figure).collect()
 }
 
-/// y against r ΔZ, of bonds and of disks, one figure a series.
+/// y against r ΔZ, for bonds and for disks, one figure per series.
 pub(super) fn fluctuations(subject: &Subject<'_>) -> Vec<Figure> {
     let all = &subject.transition.series;
     let mut figures = Vec::new();

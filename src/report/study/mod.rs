@@ -1,6 +1,7 @@
-//! The report of a study: figures of every cell and series, tables with intervals, what agrees with the literature.
+//! The report of a study: figures of every cell and series, tables with intervals, and a comparison with the
+//! literature.
 //!
-//! A figure is drawn where the study has what it shows; nothing is said of what it has not.
+//! A figure is drawn only if the study has its data.
 
 mod angular;
 mod lengths;

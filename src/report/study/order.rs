@@ -11,13 +11,13 @@ use crate::transition::{
     ANGLE, ANTICORRELATION, FIRST_ZERO, PUBLISHED, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION, Series, beta,
 };
 
-/// Samples of a cell drawn one by one, at most.
+/// Largest number of samples of a cell drawn as points.
 const SINGLES: usize = 200;
 
-/// κ_2/κ_1, the zeros of J_1.
+/// κ_2/κ_1, from the zeros of J_1.
 const SECOND_OVER_FIRST: f64 = 7.015_586_669_815_618 / FIRST_ZERO;
 
-/// κ and Δp, every sample a point, the means joined.
+/// κ and Δp, one point per sample, with connected means.
 pub(super) fn by_sample(subject: &Subject<'_>) -> Vec<Figure> {
     let scaled = |values: &[f64], radius: f64| values.iter().map(|kappa| kappa * radius / FIRST_ZERO).collect();
     let kappa = figure(subject, "wavenumber", "κ of the best screened solution", "κ / κ₁", &scaled);
@@ -75,18 +75,18 @@ fn figure(
     })
 }
 
-/// Against what a number is drawn.
+/// The abscissa of a figure.
 #[derive(Clone, Copy)]
 pub(super) enum Abscissa {
     /// p.
     Pressure,
     /// p N^(α−1).
     Reduced,
-    /// p N^(3/2), whatever the law.
+    /// p N^(3/2), for any law.
     AsHertzian,
 }
 
-/// G* and θ* along all series.
+/// G* and θ* for all series.
 pub(super) fn against(subject: &Subject<'_>, abscissa: Abscissa) -> Vec<Figure> {
     let one = |name, title: &str, label: &str, unit: f64, guide: f64| {
         subject_plot(subject, name, title, label, unit, guide, abscissa).draw()
@@ -96,7 +96,7 @@ pub(super) fn against(subject: &Subject<'_>, abscissa: Abscissa) -> Vec<Figure> 
     [depth, angle].into_iter().flatten().collect()
 }
 
-/// θ* of another threshold of G along all series.
+/// θ* at another threshold of G for all series.
 pub(super) fn threshold(subject: &Subject<'_>, threshold: &str) -> Option<Figure> {
     let name = format!("correlation_angle_at_{threshold}");
     let title = format!("θ*, G = {threshold}");
@@ -153,7 +153,7 @@ fn scale(points: &mut [PlotPoint], unit: f64) {
     }
 }
 
-/// θ†, hollow, as far as a correlation angle can be.
+/// θ†, hollow, up to the largest possible correlation angle.
 fn crossover_angles(series: &Series, index: usize, all: &[Series]) -> Curve {
     let points = series.spectra.iter().filter_map(|spectrum| {
         let (angle, error) = spectrum.angle()?;

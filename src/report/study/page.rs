@@ -1,4 +1,4 @@
-//! [`study_page`]: the report of a study on one page that needs nothing else.
+//! [`study_page`]: the report of a study on one self-contained page.
 
 use std::fmt::Write as _;
 
@@ -49,7 +49,7 @@ pub fn study_page(merged: &Merged, transition: &Transition) -> String {
     html
 }
 
-/// Everything that may be drawn: heading, what is to be seen, figures.
+/// All possible figures: heading, description, figures.
 fn views(subject: &Subject<'_>) -> Vec<(&'static str, &'static str, Vec<Figure>)> {
     let mut order = order::against(subject, Abscissa::Reduced);
     order.extend(order::against(subject, Abscissa::Pressure));
@@ -129,7 +129,7 @@ fn introduction(merged: &Merged) -> String {
     format!("{} samples in {} cells.{left_out}{missing}{mixed}", count(merged.record_count), merged.cells.len())
 }
 
-/// A table with a head, the first column to the left.
+/// A table with a header; the first column is left-aligned.
 fn table(title: &str, text: &str, heads: &[&str], rows: &[Vec<String>]) -> String {
     if rows.is_empty() {
         return String::new();
@@ -198,7 +198,7 @@ fn estimates(transition: &Transition) -> String {
     table("Transition pressure p̂_c", &text, &["Series", "By", "p̂_c or value (interval)"], &rows)
 }
 
-/// The slope of the mean spectrum of every cell, both ways.
+/// Both slopes of the mean spectrum of every cell.
 fn slopes(transition: &Transition) -> String {
     let or_none = |found: Option<BootstrapInterval>| found.map_or("none".into(), |found| interval(&found));
     let of_series = |series: &Series| {
@@ -220,7 +220,7 @@ fn slopes(transition: &Transition) -> String {
     )
 }
 
-/// μ of θ† of every series, or how many cells there are of those it needs.
+/// μ of θ† of every series, or the number of cells available and required.
 fn divergences(transition: &Transition) -> String {
     let missing = |count: usize| format!("not fitted: {count} of {LEAST_CELLS} cells");
     let row = |series: &Series| {
@@ -329,7 +329,7 @@ fn verdict(one: &Comparison) -> String {
     }
 }
 
-/// Samples of every phase, in the order of the head of their column; those not at rest where there are some.
+/// Numbers of samples by phase, in the order of the column header; those not at rest if there are any.
 fn phase_counts(phases: &PhaseCounts) -> String {
     let mut text = format!("{}, {}, {}, {}", phases.unjammed, phases.plastic, phases.quasielastic, phases.undecided);
     if phases.not_at_rest > 0 {
@@ -338,7 +338,7 @@ fn phase_counts(phases: &PhaseCounts) -> String {
     text
 }
 
-/// Samples of every cell, with what failed, and a few numbers.
+/// Numbers of samples of every cell, failures, and some numbers.
 fn cells(merged: &Merged) -> String {
     let row = |statistics: &CellStatistics| {
         let cell = &statistics.cell;

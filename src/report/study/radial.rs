@@ -9,13 +9,13 @@ use crate::report::study::subject::{Subject, series_colour, short, target, with_
 use crate::study::{CellSamples, Single};
 use crate::transition::{FIRST_ZERO, Series};
 
-/// Points of a fitted curve.
+/// Number of points of a fitted curve.
 const CURVE_POINTS: u32 = 120;
 
-/// Cells drawn side by side, at most.
+/// Largest number of cells in a row.
 const MOST_CELLS: usize = 6;
 
-/// One sample of every cell, each with the solution that describes it better, r·d_r over its largest value.
+/// One sample of every cell with the solution that describes it better; r·d_r over its largest value.
 pub(super) fn singles(subject: &Subject<'_>) -> Vec<Figure> {
     let (size, increase) = base(subject);
     let cells: Vec<&CellSamples> =
@@ -49,7 +49,7 @@ pub(super) fn singles(subject: &Subject<'_>) -> Vec<Figure> {
     plot.draw().into_iter().collect()
 }
 
-/// The elastic solution fitted to a sample, or the screened one where its κ is nonzero.
+/// The elastic solution fitted to a sample, or the screened one if its κ is not zero.
 fn solution(subject: &Subject<'_>, single: &Single, radius: f64) -> Option<Box<dyn Fn(f64) -> f64>> {
     let inner = subject.merged.study.scene.mixture.components.iter().map(|it| it.radius).fold(f64::INFINITY, f64::min);
     let annulus = Annulus::new(inner, radius).ok()?;
@@ -76,13 +76,13 @@ fn base(subject: &Subject<'_>) -> (usize, f64) {
     (size, increases.min_by(|a, b| (a - 0.1).abs().total_cmp(&(b - 0.1).abs())).unwrap_or(0.1))
 }
 
-/// As many cells as a figure has room for, ends included.
+/// As many cells as fit in a figure, including the first and the last.
 fn spread<'a>(cells: &[&'a CellSamples]) -> Vec<&'a CellSamples> {
     let count = cells.len().min(MOST_CELLS);
     (0..count).map(|i| cells[i * (cells.len() - 1) / count.saturating_sub(1).max(1)]).collect()
 }
 
-/// Mean profiles r·d_r/d_0: of every pressure at the base inflation, of every inflation at every pressure.
+/// Mean profiles r·d_r/d_0: for every pressure at the base inflation, and for every inflation at every pressure.
 pub(super) fn means(subject: &Subject<'_>) -> Vec<Figure> {
     let (size, increase) = base(subject);
     let all: Vec<&CellSamples> = cells(subject).filter(|it| it.cell.disk_count == size).collect();
@@ -149,7 +149,7 @@ fn mean_figure(
     .draw()
 }
 
-/// Shares of the first angular modes, sample by sample, of every cell in the periodic box.
+/// Shares of the first angular modes, one point per sample, of every cell in the periodic box.
 pub(super) fn modes(subject: &Subject<'_>) -> Vec<Figure> {
     let names = ["isotropic", "dipole", "quadrupole", "rest"];
     let periodic = |samples: &&CellSamples| samples.cell.boundary == crate::inflation::Boundary::Periodic;
@@ -179,7 +179,7 @@ pub(super) fn modes(subject: &Subject<'_>) -> Vec<Figure> {
     subject.merged.samples.iter().filter(periodic).filter_map(figure).collect()
 }
 
-/// Contacts changed and returned along all series.
+/// Contacts changed and restored, for all series.
 pub(super) fn contacts(subject: &Subject<'_>) -> Vec<Figure> {
     let all = &subject.transition.series;
     let along = |series: &Series, name: &str| subject.along(series, name, |point| point.reduced_pressure);

@@ -1,4 +1,4 @@
-//! G* and θ* with N and d_0 taken out; p_c in the plane of N^β p and N² d_0.
+//! G* and θ* scaled with N and d_0; p_c in the plane of N^β p and N² d_0.
 
 use std::f64::consts::PI;
 
@@ -12,7 +12,7 @@ use crate::transition::{
     ANGLE, ANTICORRELATION, Method, SCALE_FREE_ANTICORRELATION, Series as Cells, beta, laws_and_relaxers,
 };
 
-/// A law and, where the study has several, the relaxer, in words.
+/// A law in words, with the relaxer if the study has several.
 fn words(law: LawChoice, relaxer: RelaxerChoice, subject: &Subject<'_>) -> String {
     match subject.transition.series.iter().any(|series| series.cell.relaxer != relaxer) {
         true => format!("{}, {}", law.name(), relaxer.description()),
@@ -26,7 +26,7 @@ fn several(subject: &Subject<'_>) -> bool {
     all.iter().any(|series| series.cell.increase != all[0].cell.increase)
 }
 
-/// G* and θ* against p N^(β/2)/d_0^(β/4), a figure a law and relaxer.
+/// G* and θ* against p N^(β/2)/d_0^(β/4), one figure per law and relaxer.
 pub(super) fn with_inflation(subject: &Subject<'_>) -> Vec<Figure> {
     if !several(subject) {
         return Vec::new();
@@ -66,7 +66,7 @@ pub(super) fn with_inflation(subject: &Subject<'_>) -> Vec<Figure> {
     figures
 }
 
-/// Every cell by its G*, and p_c with its power law.
+/// Every cell coloured by its G*, and p_c with its power law.
 pub(super) fn phase_diagram(subject: &Subject<'_>) -> Vec<Figure> {
     if !several(subject) {
         return Vec::new();
@@ -112,7 +112,7 @@ fn diagram(subject: &Subject<'_>, law: LawChoice, relaxer: RelaxerChoice) -> Opt
             points.sort_by(|a, b| a.1.total_cmp(&b.1));
             let label = format!("exponent {:.2} ± {:.2}", fit.exponent.value, fit.exponent.standard_error);
             curves.push(Curve { label, points: bare(points.into_iter()), look: Look::Line, colour: [0x22; 3] });
-            // The published exponent through the middle of the points.
+            // A line with the published exponent through the middle of the points.
             let middle = found.points.len() / 2;
             let mut sorted = found.points.clone();
             sorted.sort_by(|a, b| a.x.total_cmp(&b.x));

@@ -1,11 +1,11 @@
-//! What figures are drawn from, and words for cells and series.
+//! The data of figures, and words for cells and series.
 
 use crate::report::figures::plot::{PlotPoint, colour};
 use crate::report::number::significant;
 use crate::study::{Cell, CellSamples, Merged, NumberStatistics, Target};
 use crate::transition::{Series, SeriesPoint, Transition};
 
-/// What figures are drawn from.
+/// The data of figures.
 pub(super) struct Subject<'a> {
     pub merged: &'a Merged,
     pub transition: &'a Transition,
@@ -21,7 +21,7 @@ impl<'a> Subject<'a> {
         self.merged.cells[cell].numbers.get(name).copied()
     }
 
-    /// A number along a series, against p̂ or whatever `abscissa` makes of a point.
+    /// A number along a series, against p̂ or the `abscissa` of each point.
     pub fn along(&self, series: &Series, name: &str, abscissa: impl Fn(&SeriesPoint) -> f64) -> Vec<PlotPoint> {
         let point = |point: &SeriesPoint| {
             let found = self.number(point.cell, name)?;
@@ -36,7 +36,7 @@ pub(super) fn reduced(value: f64) -> String {
     format!("p̂ = {}", significant(value, 1))
 }
 
-/// Size and, where they differ among series, law, inflation and relaxer.
+/// Size and, if they differ between series, law, inflation and relaxer.
 pub(super) fn short(series: &Series, all: &[Series]) -> String {
     let Cell { law, disk_count, increase, relaxer, .. } = series.cell;
     let mut text = format!("{disk_count}");
@@ -57,7 +57,7 @@ pub(super) fn series_colour(index: usize, all: &[Series]) -> [u8; 3] {
     colour(index, all.len())
 }
 
-/// Words for a cell, with its relaxer where the study has several.
+/// Words for a cell, with its relaxer if the study has several.
 pub(super) fn with_relaxer(text: String, cell: &Cell, merged: &Merged) -> String {
     match merged.cells.iter().any(|other| other.cell.relaxer != cell.relaxer) {
         true => format!("{text}, {}", cell.relaxer.description()),
@@ -65,7 +65,7 @@ pub(super) fn with_relaxer(text: String, cell: &Cell, merged: &Merged) -> String
     }
 }
 
-/// What a cell was prepared to, as SVG text.
+/// Target of the preparation of a cell, as SVG text.
 pub(super) fn target(cell: &Cell) -> String {
     match cell.target {
         Target::Pressure(value) => format!("p = {}", significant(value, 2)),
