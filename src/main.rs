@@ -2,17 +2,17 @@
 
 #[path = "cli/analyse.rs"]
 mod analyse;
+#[path = "cli/contact_law.rs"]
+mod contact_law;
 #[cfg(feature = "linear")]
 #[path = "cli/elasticity.rs"]
 mod elasticity;
-#[path = "cli/ending.rs"]
-mod ending;
 #[path = "cli/exact/mod.rs"]
 mod exact;
+#[path = "cli/exit_code.rs"]
+mod exit_code;
 #[path = "cli/inspect.rs"]
 mod inspect;
-#[path = "cli/law_of_file.rs"]
-mod law_of_file;
 #[cfg(feature = "linear")]
 #[path = "cli/precision.rs"]
 mod precision;
@@ -41,7 +41,7 @@ use jamscope::verdict::{AboveLimit, Decision, VerdictSettings};
 ///
 /// Without a command, `run` with the built-in scene: the three phases side by side.
 #[derive(Parser)]
-#[command(version, about, after_help = ending::HELP)]
+#[command(version, about, after_help = exit_code::HELP)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -94,8 +94,8 @@ struct InspectArguments {
     /// Packing file: extended XYZ, LAMMPS data or dump.
     packing: PathBuf,
     /// The contact law, `hertzian`, `hookean` or `power:ALPHA`, where the file does not say; without either Hertzian.
-    #[arg(long, value_name = "LAW", value_parser = law_of_file::parse)]
-    law: Option<law_of_file::LawName>,
+    #[arg(long, value_name = "LAW", value_parser = contact_law::parse)]
+    law: Option<contact_law::LawName>,
     /// k' of the Hertzian and Hookean law, energy scale of the power law, where the file does not say; without either 2e5, and 1
     /// for the power law.
     #[arg(long, value_name = "K")]
@@ -167,7 +167,7 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let failed = report.samples.iter().filter(|sample| matches!(sample.result, SampleOutcome::Failed(_))).count();
     if failed == 0 {
         let not_at_rest = report.samples.iter().filter(|sample| is_refused(&sample.result));
-        return Ok(ending::of_states(&not_at_rest.map(|sample| sample.name.clone()).collect::<Vec<_>>()));
+        return Ok(exit_code::of_states(&not_at_rest.map(|sample| sample.name.clone()).collect::<Vec<_>>()));
     }
     let scene_name = arguments.scene.as_ref().map_or("the built-in scene".into(), |path| path.display().to_string());
     Err(format!("{scene_name}: {failed} of {} samples failed, see above", report.samples.len()).into())
@@ -212,7 +212,7 @@ fn relaxer_of_file(path: &std::path::Path, scene: &Scene) -> RelaxerChoice {
 }
 
 fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
-    let law = law_of_file::law_of(&arguments.packing, arguments.law, arguments.stiffness)?;
+    let law = contact_law::law_of(&arguments.packing, arguments.law, arguments.stiffness)?;
     #[cfg(feature = "linear")]
     let mode_count = arguments.modes;
     #[cfg(not(feature = "linear"))]
@@ -228,7 +228,7 @@ fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
     }
     let refused = inspection.verdict.decision() == Decision::NotAtRest;
     let name = refused.then(|| arguments.packing.display().to_string());
-    Ok(ending::of_states(&name.into_iter().collect::<Vec<_>>()))
+    Ok(exit_code::of_states(&name.into_iter().collect::<Vec<_>>()))
 }
 
 /// Prints to the standard output; a closed pipe (`| head`) is not an error.

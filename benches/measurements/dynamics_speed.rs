@@ -22,7 +22,7 @@ use jamscope::law::Hertzian;
 use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use jamscope::relax::implicit::Finish;
-use jamscope::relax::{DampedDynamics, ForceLimit, ImplicitDynamics, Look, Relaxer};
+use jamscope::relax::{Check, DampedDynamics, ForceLimit, ImplicitDynamics, Relaxer};
 
 use processor::cpu_seconds;
 
@@ -44,8 +44,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     if let Some(file) = file {
         std::fs::write(file, table(&start)?)?;
         // No step: the residual of the start.
-        let look = DampedDynamics { step_limit: 0, ..DampedDynamics::default() }.relax(start, &law, &mut ())?;
-        println!("{{\"code\": \"jamscope\", \"mobile\": {mobile}, \"residual\": {:e}}}", look.residual.relative());
+        let check = DampedDynamics { step_limit: 0, ..DampedDynamics::default() }.relax(start, &law, &mut ())?;
+        println!("{{\"code\": \"jamscope\", \"mobile\": {mobile}, \"residual\": {:e}}}", check.residual.relative());
         return Ok(());
     }
     let mut dynamics = ImplicitDynamics { limit: ForceLimit::Relative(limit), ..ImplicitDynamics::default() };
@@ -53,9 +53,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         dynamics.finish = Finish::Motion;
     }
     let mut last_step = 0.0;
-    let mut trace = |look: &Look| {
-        if look.residual > limit {
-            last_step = look.time_step;
+    let mut trace = |look: &Check| {
+        if check.residual > limit {
+            last_step = check.time_step;
         }
     };
     // One thread does all the work, so the time of the process is the time of the motion.

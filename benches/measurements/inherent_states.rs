@@ -19,7 +19,7 @@ use jamscope::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare_with};
-use jamscope::relax::{ImplicitDynamics, Look, Relaxer, Staged, Trace};
+use jamscope::relax::{Check, ImplicitDynamics, Relaxer, Staged, Trace};
 
 /// Radius of the circle over the side of the box: the study's smallest size.
 const OUTER_RADIUS_OVER_SIDE: f64 = 0.480;
@@ -44,10 +44,10 @@ struct StopAt {
 }
 
 impl Trace for StopAt {
-    fn look(&mut self, look: &Look) {
-        if !self.reached && look.energy + look.kinetic_energy <= self.energy {
+    fn checked(&mut self, check: &Check) {
+        if !self.reached && check.energy + check.kinetic_energy <= self.energy {
             self.reached = true;
-            self.kinetic_share = look.kinetic_energy / (look.energy + look.kinetic_energy);
+            self.kinetic_share = check.kinetic_energy / (check.energy + check.kinetic_energy);
         }
     }
 

@@ -10,7 +10,7 @@ use jamscope::report;
 use jamscope::scene::Observables;
 use jamscope::verdict::{Decision, VerdictSettings};
 
-use crate::law_of_file::{self, LawName};
+use crate::contact_law::{self, LawName};
 use crate::{Failure, ending, override_limit, print, scene_file};
 
 /// Arguments of `analyse`.
@@ -27,7 +27,7 @@ pub struct AnalyseArguments {
     #[arg(long, value_name = "R")]
     outer_radius: Option<f64>,
     /// The contact law, `hertzian`, `hookean` or `power:ALPHA`, where the files do not say; without either Hertzian.
-    #[arg(long, value_name = "LAW", value_parser = law_of_file::parse)]
+    #[arg(long, value_name = "LAW", value_parser = contact_law::parse)]
     law: Option<LawName>,
     /// k' of the Hertzian and Hookean law, energy scale of the power law, where the files do not say.
     #[arg(long, value_name = "K")]
@@ -92,7 +92,7 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
         return Err(failures.join("\n").into());
     }
     let refused = analyses.iter().filter(|analysis| analysis.response.verdict.decision() == Decision::NotAtRest);
-    Ok(ending::of_states(&refused.map(|analysis| analysis.name.clone()).collect::<Vec<_>>()))
+    Ok(exit_code::of_states(&refused.map(|analysis| analysis.name.clone()).collect::<Vec<_>>()))
 }
 
 fn analyse(
@@ -101,7 +101,7 @@ fn analyse(
     observables: &Observables,
     verdict: &VerdictSettings,
 ) -> Result<Analysis, Failure> {
-    let law = |path: &Path| law_of_file::law_of(path, arguments.law, arguments.stiffness);
+    let law = |path: &Path| contact_law::law_of(path, arguments.law, arguments.stiffness);
     let (first, second) = (law(&files.before)?, law(&files.after)?);
     // A file without a law has that of the other file.
     let law = match (says_law(&files.before)?, says_law(&files.after)?) {

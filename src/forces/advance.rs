@@ -58,7 +58,7 @@ pub(crate) struct Reach<'a, F> {
 }
 
 /// Moves all mobile disks and evaluates the forces at their new positions. `kick` takes (forces, velocities,
-/// displacements) of some mobile disks and returns a bound on their displacements. Returns the results of `look`
+/// displacements) of some mobile disks and returns a bound on their displacements. Returns the results of `observe`
 /// (forces, velocities) for each part of the mobile disks, in a fixed order. Returns none if the list is no longer
 /// complete; the forces are then undefined.
 ///
@@ -70,7 +70,7 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     (movers, across): (Movers<'_, K::Number, D>, &mut Across<K::Number, D>),
     reach: Reach<'_, impl Fn(usize, &[[K::Number; D]]) -> f64 + Sync>,
     kick: impl Fn(&[[K::Number; D]], &mut [[K::Number; D]], &mut [[K::Number; D]]) -> f64 + Sync,
-    look: impl Fn(&[[K::Number; D]], &[[K::Number; D]]) -> P + Send + Sync,
+    observe: impl Fn(&[[K::Number; D]], &[[K::Number; D]]) -> P + Send + Sync,
 ) -> Option<Vec<P>> {
     let Movers { velocities, displacements, forces } = movers;
     let Reach { limit, bounds, longest } = reach;
@@ -105,7 +105,7 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
         }
         let task = Task { kernel, pairs, displacements: (displacements, first as u32), tile, offset: first as u32 };
         sweep(&task, tile.inner.clone(), forces, &mut room);
-        Some(look(&forces[interior.clone()], &velocities[interior]))
+        Some(observe(&forces[interior.clone()], &velocities[interior]))
     };
     let border = |place: usize, displacements: &[[_; D]], forces: &mut [[_; D]], across: &mut [[_; D]]| {
         let (tile, offset) = (&tiles[place], (place * size) as u32);
@@ -116,7 +116,7 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
         let (tile, mobile) = (&tiles[place], velocities.len());
         add_incoming(tile, place * size, across, forces);
         let (begin, end) = (tile.interior.start.min(mobile), tile.interior.end.min(mobile));
-        [look(&forces[..begin], &velocities[..begin]), look(&forces[end..mobile], &velocities[end..])]
+        [observe(&forces[..begin], &velocities[..begin]), observe(&forces[end..mobile], &velocities[end..])]
     };
     across.fit(pairs);
     let of_tile = bounds.of_tile;

@@ -171,13 +171,13 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     ///
     /// # Shape
     /// `velocities` has one entry per mobile disk. `kick` takes (forces, velocities, displacements) of some mobile
-    /// disks and returns a bound on their displacements \[length\]. `look` takes (forces, velocities). Each mobile disk
+    /// disks and returns a bound on their displacements \[length\]. `observe` takes (forces, velocities). Each mobile disk
     /// occurs once.
     pub fn advance<P: Send>(
         &mut self,
         velocities: &mut [Vector<D>],
         kick: impl Fn(&[Vector<D>], &mut [Vector<D>], &mut [Vector<D>]) -> f64 + Sync,
-        look: impl Fn(&[Vector<D>], &[Vector<D>]) -> P + Send + Sync,
+        observe: impl Fn(&[Vector<D>], &[Vector<D>]) -> P + Send + Sync,
     ) -> Advanced<P> {
         if !self.may_advance() {
             return Advanced::Not;
@@ -188,7 +188,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             longest_difference_squared(displacements, &reference[first..first + displacements.len()]).sqrt()
         };
         let reach = Reach { limit, bounds, longest };
-        Advanced::of(advance(&Plain { law: &self.law, pairs }, pairs, (movers, &mut self.across), reach, kick, look))
+        Advanced::of(advance(&Plain { law: &self.law, pairs }, pairs, (movers, &mut self.across), reach, kick, observe))
     }
 
     /// Forces as in [`Assembly::evaluate`], with energy, virial and contact count.

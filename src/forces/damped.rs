@@ -11,7 +11,7 @@ use crate::law::damping::DampingLaw;
 use crate::law::kernel::{LawKernel, dispatch};
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::block::BLOCK;
-use crate::neighbours::for_each_pair::{Walked, walk};
+use crate::neighbours::for_each_pair::{MovedPair, for_each_pair};
 use crate::neighbours::pair_list::PairList;
 use crate::neighbours::rows::{gather, scatter};
 use crate::simd::lanes;
@@ -114,7 +114,7 @@ pub fn add_damping<const D: usize, C: DampingLaw>(
     forces: &mut [Vector<D>],
 ) -> f64 {
     let mut dissipation = 0.0;
-    walk(pairs, displacements, &mut |&Walked { pair, ends, apart, distance, overlap, .. }| {
+    for_each_pair(pairs, displacements, &mut |&MovedPair { pair, ends, apart, distance, overlap, .. }| {
         if overlap > 0.0 {
             let (i, j) = (ends.0 as usize, ends.1 as usize);
             let damping = law.damping(damping_coefficient[pair], overlap);

@@ -6,7 +6,7 @@ pub(crate) mod block_arithmetic;
 pub mod damped;
 pub mod elastic;
 pub(crate) mod layout;
-pub mod single;
+pub mod single_precision;
 pub mod stiffness_bound;
 pub mod totals;
 

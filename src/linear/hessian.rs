@@ -12,7 +12,7 @@
 
 use crate::forces::assembly::Assembly;
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::for_each_pair::{Walked, walk};
+use crate::neighbours::for_each_pair::{MovedPair, for_each_pair};
 use crate::network::backbone;
 use crate::packing::{Packing, PackingError};
 use crate::sparse::{BlockPattern, Graph, SymmetricMatrix};
@@ -226,23 +226,27 @@ impl<const D: usize> Hessian<D> {
         let (pairs, law, prestress) = (assembly.pairs(), assembly.law(), self.prestress);
         self.links.clear();
         self.near.clear();
-        walk(pairs, &assembly.displacements, &mut |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
-            let reach = reach(pair);
-            // This form makes NaN an entry, which is refused there.
-            if overlap <= -(reach + spare) {
-                return;
-            }
-            self.near.push(ends);
-            if overlap <= -reach {
-                return;
-            }
-            let force = if overlap < 0.0 { 0.0 } else { law.force(coefficient, overlap) };
-            let stiffness = if overlap.is_nan() { overlap } else { law.stiffness(force, overlap) };
-            let across = prestress.across(force, distance);
-            let (stiffness, across) = weights(&StiffContact { pair, ends, stiffness, across });
-            let block = contact_block(stiffness, across, apart, distance);
-            self.links.push(Link { ends, block });
-        });
+        for_each_pair(
+            pairs,
+            &assembly.displacements,
+            &mut |&MovedPair { pair, ends, apart, distance, overlap, coefficient }| {
+                let reach = reach(pair);
+                // This form makes NaN an entry, which is refused there.
+                if overlap <= -(reach + spare) {
+                    return;
+                }
+                self.near.push(ends);
+                if overlap <= -reach {
+                    return;
+                }
+                let force = if overlap < 0.0 { 0.0 } else { law.force(coefficient, overlap) };
+                let stiffness = if overlap.is_nan() { overlap } else { law.stiffness(force, overlap) };
+                let across = prestress.across(force, distance);
+                let (stiffness, across) = weights(&StiffContact { pair, ends, stiffness, across });
+                let block = contact_block(stiffness, across, apart, distance);
+                self.links.push(Link { ends, block });
+            },
+        );
     }
 
     fn set_members<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {

@@ -9,7 +9,7 @@ use crate::vector::Vector;
 
 /// A listed pair at the present positions, by the formula of [`geometry`](crate::forces::elastic::geometry).
 #[derive(Debug, Clone, Copy)]
-pub struct Walked<const D: usize> {
+pub struct MovedPair<const D: usize> {
     /// Index of the pair.
     pub pair: usize,
     /// The two disks.
@@ -25,7 +25,11 @@ pub struct Walked<const D: usize> {
 }
 
 /// Calls `look` for every listed pair, in the order of their indices.
-pub fn walk<const D: usize>(pairs: &PairList<D>, displacements: &[Vector<D>], look: &mut dyn FnMut(&Walked<D>)) {
+pub fn for_each_pair<const D: usize>(
+    pairs: &PairList<D>,
+    displacements: &[Vector<D>],
+    look: &mut dyn FnMut(&MovedPair<D>),
+) {
     let mut moved = [[0.0; D]; BLOCK];
     let mut at = At { apart: [[0.0; BLOCK]; D], distance: [0.0; BLOCK], overlap: [0.0; BLOCK] };
     for block in &pairs.blocks {
@@ -33,7 +37,7 @@ pub fn walk<const D: usize>(pairs: &PairList<D>, displacements: &[Vector<D>], lo
         gather(&mut moved, pairs, block, (displacements, 0));
         processor::dispatch(Measure { count: block.pair_count, listed, moved: &moved, at: &mut at });
         for (place, pair) in numbers.enumerate() {
-            look(&Walked {
+            look(&MovedPair {
                 pair,
                 ends: (pairs.first[pair], pairs.second[pair]),
                 apart: at.apart.each_ref().map(|column| column[place]),
@@ -103,7 +107,7 @@ mod tests {
         }
         let pairs = assembly.pairs();
         let mut met = Vec::new();
-        walk(pairs, &assembly.displacements, &mut |at| {
+        for_each_pair(pairs, &assembly.displacements, &mut |at| {
             let (apart, distance, overlap) = geometry(pairs, at.pair, &assembly.displacements);
             assert_eq!((at.apart, at.distance, at.overlap), (apart, distance, overlap), "pair {}", at.pair);
             assert_eq!(at.ends, (pairs.first[at.pair], pairs.second[at.pair]));

@@ -6,7 +6,7 @@
 
 pub mod block;
 pub(crate) mod cell_grid;
-pub(crate) mod concatenated;
+pub(crate) mod concatenation;
 pub(crate) mod displacement_bounds;
 pub(crate) mod fast_disks;
 pub mod for_each_pair;

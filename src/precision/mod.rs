@@ -13,13 +13,13 @@
 //!
 //! The relaxations are timed one after the other, each on one thread.
 
-pub mod choices;
 pub mod csv;
 #[cfg(feature = "plot")]
 pub mod figure;
 mod files;
 pub mod ladder;
 pub mod minima;
+pub mod numerical_choices;
 #[cfg(feature = "plot")]
 pub mod page;
 mod results;

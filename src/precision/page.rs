@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::precision::choices::ChoiceTable;
 use crate::precision::figure::figures;
+use crate::precision::numerical_choices::ChoiceTable;
 use crate::precision::results::{PrecisionReport, SamplePrecision, stop_name};
 use crate::precision::state::Measured;
 use crate::precision::table::facts;

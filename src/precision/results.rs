@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use crate::precision::choices::ChoiceTable;
 use crate::precision::ladder::{Method, Varied};
 use crate::precision::minima::{Disagreement, Minimum};
+use crate::precision::numerical_choices::ChoiceTable;
 use crate::precision::settings::PrecisionSettings;
 use crate::precision::state::Errors;
 use crate::relax::{Cost, Criterion, Stop};

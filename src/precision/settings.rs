@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::run::RunError;
-use crate::scene::{SceneError, finite};
+use crate::scene::{SceneError, finite_numbers};
 
 /// The ladders.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -103,6 +103,6 @@ impl PrecisionSettings {
             return Err(PrecisionError::NotPositive { field: "reference_limit", value });
         }
         // Fields that no rule above checks, such as new ones.
-        Ok(finite::check(self).map_err(SceneError::from)?)
+        Ok(finite_numbers::check(self).map_err(SceneError::from)?)
     }
 }

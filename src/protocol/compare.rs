@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use crate::inflation::{Rest, displacement};
 use crate::network::ContactNetwork;
-use crate::protocol::compared::{Compared, ProtocolSensitivity};
-use crate::protocol::descend::EndState;
 use crate::protocol::ending::Ending;
+use crate::protocol::run_protocol::EndState;
+use crate::protocol::sensitivity::{Compared, ProtocolSensitivity};
 use crate::protocol::settings::ProtocolSettings;
 use crate::protocol::spread::Spreads;
 use crate::relax::Criterion;

@@ -4,7 +4,7 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::Serialize;
 
-use crate::protocol::compared::ProtocolSensitivity;
+use crate::protocol::sensitivity::ProtocolSensitivity;
 use crate::protocol::spread::Spread;
 use crate::vector::larger;
 

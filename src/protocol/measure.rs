@@ -10,10 +10,10 @@ use crate::observe::ContactChanges;
 use crate::observe::RadialProfile;
 use crate::observe::angular::{AngularCorrelation, CorrelationSettings, RingSample, RingSettings};
 use crate::packing::PackingError;
-use crate::protocol::compared::Compared;
 #[cfg(feature = "fit")]
 use crate::protocol::ending_fit::EndingFit;
 use crate::protocol::ending_response::EndingResponse;
+use crate::protocol::sensitivity::Compared;
 use crate::protocol::spread::Spreads;
 #[cfg(feature = "fit")]
 use crate::reference::Annulus;

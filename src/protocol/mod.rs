@@ -16,14 +16,14 @@
 //! The standard deviation of a quantity over the endings is its error bar for the choice of the minimum.
 
 mod compare;
-mod compared;
-mod descend;
 mod ending;
 #[cfg(feature = "fit")]
 mod ending_fit;
 mod ending_response;
 mod ensemble;
 mod measure;
+mod run_protocol;
+mod sensitivity;
 mod settings;
 mod spread;
 
@@ -32,13 +32,13 @@ use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError, ball_volume};
 use crate::relax::Trace;
 
-pub use compared::{Compared, ProtocolSensitivity};
-pub use descend::Protocol;
 pub use ending::Ending;
 #[cfg(feature = "fit")]
 pub use ending_fit::{EndingFit, EndingScreened};
 pub use ending_response::EndingResponse;
 pub use ensemble::{ProtocolSummary, chosen};
+pub use run_protocol::Protocol;
+pub use sensitivity::{Compared, ProtocolSensitivity};
 pub use settings::ProtocolSettings;
 pub use spread::{Spread, Spreads};
 
@@ -63,7 +63,7 @@ impl<const D: usize> Compared<D> {
     ) -> Result<Self, PackingError> {
         let mut end_states = Vec::with_capacity(protocols.len());
         for protocol in protocols {
-            end_states.push(descend::descend(start, law, protocol, settings, &pressure, trace)?);
+            end_states.push(run_protocol::descend(start, law, protocol, settings, &pressure, trace)?);
         }
         let floating = !law.has_sites() && !start.held().contains(&true);
         Ok(compare::compare(end_states, settings, pressure_before, floating))

@@ -1,9 +1,9 @@
 //! [`Amplitude`]: how strongly a screened medium answers, as a function of its wavenumber.
 
 use crate::reference::elastic::power_gap;
+use crate::reference::oscillating::{Wave, rim_factor};
 use crate::reference::poles::{pole, pole_at};
 use crate::reference::rim::RimSolution;
-use crate::reference::wave::{Wave, rim_factor};
 use crate::reference::{Annulus, RadialSolution, ReferenceError};
 
 /// Amplitude of the screened profile over that of the elastic one, for equal d_0.

@@ -23,10 +23,10 @@
 //! where 1/r of the singular solution, the largest term for r ≪ R, has dropped out of m.
 
 use crate::reference::Annulus;
-use crate::reference::decay::Decay;
+use crate::reference::exponential::Decay;
 use crate::reference::local_series::{LocalSeries, Sign, rim_reach};
+use crate::reference::oscillating::{Turn, Wave, rim_factor};
 use crate::reference::small_wavenumber::{Pair, SMALL_BELOW};
-use crate::reference::wave::{Turn, Wave, rim_factor};
 
 /// ∂v/∂κ of the rim solution.
 #[derive(Debug, Clone)]

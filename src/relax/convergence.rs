@@ -11,7 +11,7 @@ use crate::relax::energy_account::EnergyAccount;
 use crate::relax::force_limit::{ForceLimit, RUNAWAY, UNJAMMED_FORCE};
 use crate::relax::outcome::{Cost, Criterion, Outcome, Residual, Stop};
 use crate::relax::rounding::{floor_of, mean_force};
-use crate::relax::trace::{Look, Trace};
+use crate::relax::trace::{Check, Trace};
 use crate::vector::{Vector, dot, larger};
 
 /// Evaluations between two checks of the residual. A check adds half the cost of an evaluation.
@@ -118,7 +118,7 @@ impl Monitor {
         assembly: &Assembly<D, L>,
         net_forces: &[Vector<D>],
         totals: &Totals<D>,
-        report: Look,
+        report: Check,
         trace: &mut impl Trace,
     ) -> Option<Stop> {
         self.check_count += 1;
@@ -130,7 +130,7 @@ impl Monitor {
         let (inner, outer) = self.largest(net_forces);
         let mean = totals.mean_contact_force();
         self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
-        trace.look(&Look { residual: self.last.relative(), ..report });
+        trace.checked(&Check { residual: self.last.relative(), ..report });
         if trace.interrupted() {
             return Some(Stop::Interrupted);
         }

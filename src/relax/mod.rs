@@ -36,4 +36,4 @@ pub use minimise::newton::Newton;
 pub use outcome::{Cost, Criterion, Outcome, Relaxed, Residual, Stop};
 pub use relaxer::Relaxer;
 pub use rounding::rounding_floor;
-pub use trace::{Look, Trace};
+pub use trace::{Check, Trace};

@@ -6,7 +6,7 @@ pub trait Trace {
     const ACTIVE: bool = true;
 
     /// Called at every check of the residual.
-    fn look(&mut self, look: &Look);
+    fn checked(&mut self, check: &Check);
 
     /// Called after every check. True ends the relaxer, with [`Stop::Interrupted`](crate::relax::Stop::Interrupted).
     fn interrupted(&mut self) -> bool {
@@ -16,7 +16,7 @@ pub trait Trace {
 
 /// The state of a relaxation at one check.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Look {
+pub struct Check {
     /// Steps taken so far.
     pub step_count: usize,
     /// Elastic energy, including that of the sites if the law has them; it may then be negative \[energy\].
@@ -33,11 +33,11 @@ pub struct Look {
 
 impl Trace for () {
     const ACTIVE: bool = false;
-    fn look(&mut self, _look: &Look) {}
+    fn checked(&mut self, _check: &Check) {}
 }
 
-impl<F: FnMut(&Look)> Trace for F {
-    fn look(&mut self, look: &Look) {
-        self(look);
+impl<F: FnMut(&Check)> Trace for F {
+    fn checked(&mut self, check: &Check) {
+        self(check);
     }
 }

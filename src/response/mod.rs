@@ -30,7 +30,7 @@ use crate::observe::angular::{
 };
 use crate::observe::bond_changes::BondChanges;
 use crate::observe::isostatic::IsostaticLength;
-use crate::observe::penetration::PenetrationLength;
+use crate::observe::penetration_length::PenetrationLength;
 use crate::observe::state::State;
 use crate::observe::{AngularProfile, Multipoles, RadialProfile};
 #[cfg(feature = "fit")]

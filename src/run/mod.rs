@@ -20,7 +20,7 @@ use crate::preparation::{Preparation, PreparationError, Target, prepare_with};
 use crate::processor::Processor;
 #[cfg(feature = "linear")]
 use crate::protocol::{Compared, Protocol, ProtocolSensitivity, ProtocolSettings, ProtocolSummary, chosen};
-use crate::relax::{Criterion, Look, Outcome, Relaxer, RelaxerChoice, Stop, Trace};
+use crate::relax::{Check, Criterion, Outcome, Relaxer, RelaxerChoice, Stop, Trace};
 use crate::response::{Calibration, Conditions, PhaseFrequency, Response, Subject};
 use crate::scene::reduced_pressure::reduction;
 use crate::scene::{Sample, Scene, SceneError, Source};
@@ -105,12 +105,12 @@ struct Watch<'a> {
 }
 
 impl Trace for Watch<'_> {
-    fn look(&mut self, look: &Look) {
-        if look.step_count == 0 {
+    fn checked(&mut self, check: &Check) {
+        if check.step_count == 0 {
             self.progress.stage(self.sample, self.stage, self.limit);
         }
-        if !look.restart {
-            self.progress.residual(self.sample, look.residual);
+        if !check.restart {
+            self.progress.residual(self.sample, check.residual);
         }
     }
 

@@ -8,7 +8,7 @@ use crate::packing::PackingError;
 use crate::relax::implicit::Finish;
 use crate::relax::{ForceLimit, RelaxerChoice, TimeStep};
 use crate::scene::definition::{Sample, Scene};
-use crate::scene::finite::{self, NotWritable};
+use crate::scene::finite_numbers::NotWritable;
 use crate::scene::observables::Observables;
 use crate::scene::size::{BYTES_A_DISK, DISK_INDEX};
 use crate::scene::source::Source;
@@ -153,7 +153,7 @@ impl Scene {
         }
         self.check_scales()?;
         // Fields that no rule above checks, such as new ones.
-        Ok(finite::check(self)?)
+        Ok(finite_numbers::check(self)?)
     }
 }
 
@@ -194,7 +194,7 @@ impl Observables {
                 relative_radius("observables.angular_profiles.relative_radii", radius)?;
             }
         }
-        Ok(finite::check_at("observables", self)?)
+        Ok(finite_numbers::check_at("observables", self)?)
     }
 
     /// Checks the settings of penetration, correlation, modes and isostatic length.

@@ -5,19 +5,19 @@
 
 mod check;
 mod definition;
-pub mod finite;
+pub mod finite_numbers;
 mod loose_limit;
 mod observables;
 mod protocol;
 pub(crate) mod reduced_pressure;
 mod scale;
+mod scene_input;
 mod size;
 mod source;
-mod written;
 
 pub use check::SceneError;
 pub use definition::{PreparationSettings, Sample, Scene};
-pub use finite::NotWritable;
+pub use finite_numbers::NotWritable;
 pub use observables::{
     AngularCorrelationSettings, AngularProfileSettings, BondChangeSettings, ContactChangeSettings,
     DisplacementFieldSettings, Observables, RadialProfileSettings,

@@ -10,7 +10,7 @@ use crate::observe::angular::{CorrelationSettings, RadialDependenceSettings, Rin
 use crate::observe::bond_changes::BondSet;
 use crate::observe::isostatic::IsostaticSettings;
 use crate::observe::multipoles::MultipoleSettings;
-use crate::observe::penetration::PenetrationSettings;
+use crate::observe::penetration_length::PenetrationSettings;
 
 /// The observables; absent ones are not computed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

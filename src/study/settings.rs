@@ -7,7 +7,7 @@ use crate::law::choice::LawChoice;
 use crate::memory::{Limit, TooLarge};
 use crate::relax::RelaxerChoice;
 use crate::scene::reduced_pressure::reduction;
-use crate::scene::{NotWritable, ProtocolChoice, Sample, Scene, SceneError, Source, finite};
+use crate::scene::{NotWritable, ProtocolChoice, Sample, Scene, SceneError, Source, finite_numbers};
 
 /// A scene and the lists of its varied parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -210,7 +210,7 @@ impl Study {
             others += count;
         }
         // Fields that no rule above checks, such as new ones.
-        Ok(finite::check(self)?)
+        Ok(finite_numbers::check(self)?)
     }
 
     /// Number of packings of a study without parts.

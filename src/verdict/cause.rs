@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::law::choice::LawChoice;
-use crate::verdict::digits::Digits;
+use crate::verdict::coordinate_digits::Digits;
 
 /// The residual under another law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -9,16 +9,16 @@
 //! [`Response`](crate::response::Response) take a [`VerdictPermit`], and only a verdict gives one. The relaxers have
 //! the same rule for disks off the backbone.
 
-mod balance;
 mod cause;
-mod digits;
-mod likely;
+mod coordinate_digits;
+mod diagnosis;
+mod force_balance;
 
 use serde::{Deserialize, Serialize};
 
-pub use balance::{Balance, StateBalance};
 pub use cause::{Cause, OtherLaw};
-pub use digits::Digits;
+pub use coordinate_digits::Digits;
+pub use force_balance::{Balance, StateBalance};
 
 use crate::law::choice::LawChoice;
 use crate::law::pair_law::PairLaw;
@@ -144,8 +144,8 @@ impl RestVerdict {
             AboveLimit::Refused => Decision::NotAtRest,
             AboveLimit::Given => Decision::NotAtRestButGiven,
         };
-        verdict.other_laws = likely::other_laws(states, choice);
-        verdict.likely = likely::causes(states, law, place, &verdict);
+        verdict.other_laws = diagnosis::other_laws(states, choice);
+        verdict.likely = diagnosis::causes(states, law, place, &verdict);
         verdict
     }
 

@@ -9,7 +9,7 @@ use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::implicit::{Finish, ImplicitMotion, Inertia, Stepped};
 use jamscope::relax::{
-    DampedDynamics, Fire, ForceLimit, GradientFlow, ImplicitDynamics, Look, Newton, Outcome, Relaxer, Staged, Stop,
+    Check, DampedDynamics, Fire, ForceLimit, GradientFlow, ImplicitDynamics, Newton, Outcome, Relaxer, Staged, Stop,
 };
 use jamscope::vector::{Vector, difference, larger, norm, sum};
 
@@ -319,10 +319,10 @@ fn the_end_does_not_depend_on_who_finishes() {
 fn gradient_flow_goes_downhill_at_every_step() {
     let start = inflated("hertz_N1000_p100", 1);
     let mut last = f64::INFINITY;
-    let mut check = |look: &Look| {
+    let mut check = |look: &Check| {
         // A step that is accepted has an error of two hundredths of an overlap at most: energy may rise by that of one disk.
-        assert!(look.energy <= last * (1.0 + 1e-6), "{} after {last}", look.energy);
-        last = look.energy;
+        assert!(check.energy <= last * (1.0 + 1e-6), "{} after {last}", check.energy);
+        last = check.energy;
     };
     let flow = GradientFlow::default();
     let outcome = flow.relax(start, &Hertzian::default(), &mut check).expect("no coincidence");

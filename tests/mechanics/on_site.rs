@@ -8,7 +8,7 @@ use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare_with, random_points};
-use jamscope::relax::{Criterion, DampedDynamics, Fire, ForceLimit, Look, Outcome, Relaxer, Stop};
+use jamscope::relax::{Check, Criterion, DampedDynamics, Fire, ForceLimit, Outcome, Relaxer, Stop};
 use jamscope::scene::{Scene, SceneError};
 use jamscope::vector::{Vector, difference, dot, larger, norm, scaled, sum};
 
@@ -214,11 +214,11 @@ fn energies_at_the_restarts_of_fire_never_increase_below_zero_either() {
         first.with_corrections(moved.clone()).expect("valid")
     };
     let packing = site(cross(0.0));
-    let mut looks: Vec<Look> = Vec::new();
-    let outcome = fire(1e-12).relax(packing, &law, &mut |look: &Look| looks.push(*look)).expect("apart");
+    let mut looks: Vec<Check> = Vec::new();
+    let outcome = fire(1e-12).relax(packing, &law, &mut |look: &Check| looks.push(*check)).expect("apart");
     assert!(matches!(outcome.stop, Stop::Converged(_)), "{:?}", outcome.stop);
-    let restarts: Vec<f64> = looks.iter().filter(|look| look.restart).map(|look| look.energy).collect();
-    assert!(restarts.len() > 3 && looks.iter().all(|look| look.energy < 0.0), "{restarts:?}");
+    let restarts: Vec<f64> = looks.iter().filter(|look| check.restart).map(|look| check.energy).collect();
+    assert!(restarts.len() > 3 && looks.iter().all(|look| check.energy < 0.0), "{restarts:?}");
     // Rounding of contact and site energy added up, each below 5·10³.
     assert!(restarts.is_sorted_by(|&before, &after| after <= before + 2e-13 * 1e4), "{restarts:?}");
     let damped = damped(1e-12).relax(site(cross(0.0)), &law, &mut ()).expect("apart");

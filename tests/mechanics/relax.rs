@@ -7,7 +7,7 @@ use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::random_points;
 use jamscope::relax::{
-    Criterion, DampedDynamics, Fire, ForceLimit, Look, Motion, Outcome, Relaxer, Stop, TimeStep, rounding_floor,
+    Check, Criterion, DampedDynamics, Fire, ForceLimit, Motion, Outcome, Relaxer, Stop, TimeStep, rounding_floor,
 };
 use jamscope::vector::{Vector, difference, dot, larger, norm, scaled, sum};
 use rand::{RngExt, SeedableRng};
@@ -99,12 +99,12 @@ fn hertzian_disks_keep_their_energy_without_damping_to_second_order() {
 fn energies_at_the_restarts_of_fire_never_increase() {
     for (seed, law) in [(1, Hertzian { stiffness: 2e5 }), (2, Hertzian { stiffness: 1.0 })] {
         let packing = points(200, 0.9, seed);
-        let mut looks: Vec<Look> = Vec::new();
+        let mut looks: Vec<Check> = Vec::new();
         let start = ContactNetwork::new(&packing, &law).expect("no coincidence").energy();
-        let outcome = fire(1e-8).relax(packing, &law, &mut |look: &Look| looks.push(*look)).expect("no coincidence");
+        let outcome = fire(1e-8).relax(packing, &law, &mut |look: &Check| looks.push(*check)).expect("no coincidence");
         let packing = at_rest(outcome);
         let end = ContactNetwork::new(&packing, &law).expect("no coincidence").energy();
-        let restarts: Vec<f64> = looks.iter().filter(|look| look.restart).map(|look| look.energy).collect();
+        let restarts: Vec<f64> = looks.iter().filter(|look| check.restart).map(|look| check.energy).collect();
         assert!(restarts.len() > 3, "{} restarts", restarts.len());
         // Rounding of a sum over contacts, as the relaxer claims.
         let rounding = 1.0 + 1e-13;
@@ -122,9 +122,9 @@ fn fire_comes_back_from_a_time_step_far_too_long() {
     let start = ContactNetwork::new(&packing, &law).expect("no coincidence").energy();
     let settings = Fire { time_step_fraction: 40.0, step_limit: 400, ..fire(1e-10) };
     let mut restarts = Vec::new();
-    let mut trace = |look: &Look| {
-        if look.restart {
-            restarts.push(look.energy)
+    let mut trace = |look: &Check| {
+        if check.restart {
+            restarts.push(check.energy)
         }
     };
     let outcome = settings.relax(packing, &law, &mut trace).expect("no coincidence");
@@ -149,7 +149,7 @@ fn damped_dynamics_only_loses_energy() {
             ..damped(1e-6)
         };
         let mut totals: Vec<f64> = Vec::new();
-        let mut trace = |look: &Look| totals.push(look.energy + look.kinetic_energy);
+        let mut trace = |look: &Check| totals.push(check.energy + check.kinetic_energy);
         let outcome = settings.relax(packing, &law, &mut trace).expect("no coincidence");
         assert!(matches!(outcome.stop, Stop::Converged(_)), "{:?}", outcome.stop);
         assert!(totals.len() > 100, "{} looks", totals.len());
@@ -406,18 +406,18 @@ fn a_relaxation_in_other_units_takes_the_same_steps_to_the_same_bits() {
 #[test]
 fn looks_are_rare_until_forces_are_small() {
     let limit = 1e-8;
-    let mut looks: Vec<Look> = Vec::new();
-    let mut trace = |look: &Look| looks.push(*look);
+    let mut looks: Vec<Check> = Vec::new();
+    let mut trace = |look: &Check| looks.push(*check);
     let packing = points(256, 0.95, 16);
     let outcome = fire(limit).relax(packing, &Hertzian::default(), &mut trace).expect("no coincidence");
     assert!(matches!(outcome.stop, Stop::Converged(_)));
-    looks.retain(|look| !look.restart);
+    looks.retain(|look| !check.restart);
     // "Small" is 30 times the limit, by the largest component of any disk a step before.
-    let far = looks.iter().filter(|look| look.residual > 100.0 * limit);
+    let far = looks.iter().filter(|look| check.residual > 100.0 * limit);
     assert!(far.clone().count() > 3);
-    assert!(far.clone().all(|look| look.step_count % 80 == 0), "{:?}", far.collect::<Vec<_>>());
+    assert!(far.clone().all(|look| check.step_count % 80 == 0), "{:?}", far.collect::<Vec<_>>());
     let near: Vec<usize> =
-        looks.iter().skip_while(|look| look.residual > 10.0 * limit).map(|look| look.step_count).collect();
+        looks.iter().skip_while(|look| check.residual > 10.0 * limit).map(|look| check.step_count).collect();
     assert!(near.len() > 1 && near.windows(2).all(|pair| pair[1] == pair[0] + 20), "{near:?}");
 }
 

@@ -1,7 +1,7 @@
 //! [`collapse`]: the exponents for which curves of several sizes collapse.
 
+use crate::fit::ensemble::collapse_quality::{CollapseQuality, Curve, Curves};
 use crate::fit::ensemble::error::EnsembleFitError;
-use crate::fit::ensemble::quality::{CollapseQuality, Curve, Curves};
 use crate::fit::search::minimum;
 
 /// Final step of the search, as a share of a range.

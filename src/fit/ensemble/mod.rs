@@ -15,6 +15,7 @@
 
 mod bootstrap;
 mod collapse;
+mod collapse_quality;
 mod divergence;
 mod error;
 mod half_crossing;
@@ -23,10 +24,10 @@ mod mean_powers;
 mod mean_slope;
 mod measured_point;
 mod power_law;
-mod quality;
 
 pub use bootstrap::{BootstrapInterval, bootstrap, bootstrap_all};
 pub use collapse::{Collapse, CollapseOutcome, CollapseSettings, collapse};
+pub use collapse_quality::{CollapseQuality, Curve, collapse_quality};
 pub use divergence::{Divergence, DivergenceAt, DivergenceOutcome, fit_divergence, fit_divergence_at};
 pub use error::EnsembleFitError;
 pub use half_crossing::{HalfCrossing, HitCount, Trend, half_crossing, half_crossing_interval};
@@ -34,4 +35,3 @@ pub use mean_crossover::{MeanCrossover, MeanCrossoverSettings, crossover_interva
 pub use mean_slope::{LeastSquaresSlope, LikelihoodSlope, MeanSlope, slope_interval, slope_of_mean};
 pub use measured_point::MeasuredPoint;
 pub use power_law::{PowerLaw, fit_power_law};
-pub use quality::{CollapseQuality, Curve, collapse_quality};

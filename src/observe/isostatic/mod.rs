@@ -14,12 +14,12 @@
 //! # Source
 //! Ellenbroek, Somfai, van Hecke, van Saarloos (2006), Phys. Rev. Lett. 97, 258001; the study, threshold 1.3, C ≈ 6.
 
-mod point;
+mod isostatic_point;
 mod settings;
 
 use serde::{Deserialize, Serialize};
 
-pub use point::IsostaticPoint;
+pub use isostatic_point::IsostaticPoint;
 pub use settings::{IsostaticError, IsostaticRule, IsostaticSettings, Normalisation, Scale, Tail};
 
 use crate::inflation::Inflated;

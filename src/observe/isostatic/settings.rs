@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::observe::bond_changes::BondSet;
 use crate::observe::fluctuations::{BondMeasure, FluctuationRing};
-use crate::observe::isostatic::point::IsostaticPoint;
+use crate::observe::isostatic::isostatic_point::IsostaticPoint;
 use crate::packing::PackingError;
 
 /// The divisor h_0 of h_∥.

@@ -1,6 +1,6 @@
 //! [`ElasticMode`]: an angular mode of the elastic annulus, in closed form.
 
-use crate::reference::angular_modes::exponential_gap::{Gap, product_difference};
+use crate::reference::angular_modes::exponential_differences::{Gap, product_difference};
 use crate::reference::angular_modes::{
     AngularModeError, AngularSolution, ModeAmplitudes, ModeState, compliance_ratio, finite_amplitudes,
 };

@@ -29,11 +29,11 @@
 //! 024904, for screening; Cohen, Schiller, Wang, Dijksman, Moshe (2023), arXiv:2310.09942, for the odd one.
 
 pub mod elastic;
-mod exponential_gap;
-mod frame;
+mod exponential_differences;
+mod first_order_system;
 pub mod point_force;
 pub mod screened;
-mod system;
+mod solution_basis;
 
 pub use num_complex::Complex;
 use thiserror::Error;

@@ -1,8 +1,8 @@
 //! [`ScreenedMode`]: an angular mode of the screened annulus, even and odd screening, any sign.
 
 use crate::reference::Annulus;
-use crate::reference::angular_modes::frame::Frame;
-use crate::reference::angular_modes::system::{State, System};
+use crate::reference::angular_modes::first_order_system::{State, System};
+use crate::reference::angular_modes::solution_basis::Frame;
 use crate::reference::angular_modes::{
     AngularModeError, AngularSolution, ModeAmplitudes, ModeState, compliance_ratio, finite_amplitudes, times_i,
 };

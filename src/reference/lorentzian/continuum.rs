@@ -1,11 +1,11 @@
 //! [`ContinuumLorentzian`]: the limit f† → ∞, a function of f†θ.
 
-use crate::reference::lorentzian::area;
 use crate::reference::lorentzian::complex::Complex;
 use crate::reference::lorentzian::contour::{Contour, DECAY_LIMIT, Kind, ray_angle};
 use crate::reference::lorentzian::crossing::{Crossing, SCAN_STEP, first_crossing, only_crossing, scan_end};
 use crate::reference::lorentzian::cusp::{CUSP_BELOW, Cusp};
 use crate::reference::lorentzian::error::{LorentzianError, check_exponent, check_threshold};
+use crate::reference::lorentzian::tail_integral;
 
 /// First panel of the contour: u^s bends there, which costs less than 2^(−24(1+s)).
 const FIRST_PANEL: f64 = 1.0 / 16_777_216.0;
@@ -54,7 +54,7 @@ impl ContinuumLorentzian {
         let last = last_panel(exponent, 1.0);
         let contour = Contour::new(Kind::Integral, exponent, FIRST_PANEL, last, |w| spectrum(w, exponent));
         let cusp = Cusp::new(exponent, 1.0, [1.0, -1.0]);
-        Ok(ContinuumLorentzian { exponent, area: area::whole(exponent), contour, cusp })
+        Ok(ContinuumLorentzian { exponent, area: tail_integral::whole(exponent), contour, cusp })
     }
 
     /// The exponent s \[1\].

@@ -13,7 +13,6 @@
 //! (`contour.rs` has the formula, the quadrature and the bound of what is left out), so that the cost depends neither on
 //! f† nor on θ.
 
-mod area;
 mod complex;
 mod continuum;
 mod contour;
@@ -21,6 +20,7 @@ mod crossing;
 mod cusp;
 mod error;
 mod gauss;
+mod tail_integral;
 
 use std::f64::consts::PI;
 
@@ -141,9 +141,9 @@ impl Lorentzian {
         // A in front of 1/(power + (f/scale)^s), which is S for f† < 1, and A otherwise.
         let front = power + libm::pow(scale, -exponent);
         let integral = if crossover <= CONTOUR_START {
-            (1.0 + libm::pow(crossover, exponent)) * area::scaled_beyond(exponent, crossover, CONTOUR_START)
+            (1.0 + libm::pow(crossover, exponent)) * tail_integral::scaled_beyond(exponent, crossover, CONTOUR_START)
         } else {
-            front * crossover * area::beyond(exponent, CONTOUR_START / crossover)
+            front * crossover * tail_integral::beyond(exponent, CONTOUR_START / crossover)
         };
         let total = 1.0 + integral + contour.sum_minus_integral();
         let cusp = if crossover <= 1.0 {

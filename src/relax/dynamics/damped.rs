@@ -17,7 +17,7 @@ use crate::relax::dynamics::verlet::Motion;
 use crate::relax::force_limit::ForceLimit;
 use crate::relax::outcome::{Cost, Outcome, Stop};
 use crate::relax::relaxer::Relaxer;
-use crate::relax::trace::{Look, Trace};
+use crate::relax::trace::{Check, Trace};
 
 /// Settings of explicit damped dynamics.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -128,7 +128,7 @@ impl DampedDynamics {
                 let totals = motion.assembly.evaluate_totals();
                 evaluation_count += 1;
                 let kinetic_energy = motion.kinetic_energy();
-                let look = Look {
+                let check = Check {
                     step_count,
                     energy: totals.energy,
                     kinetic_energy,
@@ -157,7 +157,7 @@ impl DampedDynamics {
                     NetForce::Elastic => &motion.assembly.forces[..mobile],
                     NetForce::Total => &motion.accelerations[..mobile],
                 };
-                if let Some(stop) = monitor.check(&motion.assembly, net_forces, &totals, look, trace) {
+                if let Some(stop) = monitor.check(&motion.assembly, net_forces, &totals, check, trace) {
                     break stop;
                 }
                 if monitor.takes_new_anchors() {

@@ -21,7 +21,7 @@ use crate::forces::assembly::Assembly;
 use crate::forces::damped::{add_damping, damped_forces};
 use crate::law::damping::DampingLaw;
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::for_each_pair::{Walked, walk};
+use crate::neighbours::for_each_pair::{MovedPair, for_each_pair};
 use crate::packing::{Packing, PackingError};
 use crate::relax::column_operations::products;
 use crate::vector::{Vector, difference, dot, larger};
@@ -214,10 +214,10 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         row.clear();
         row.resize(2 * assembly.len(), 0.0);
         let (stiffness, resistance) = row.split_at_mut(assembly.len());
-        walk(
+        for_each_pair(
             assembly.pairs(),
             &assembly.displacements,
-            &mut |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
+            &mut |&MovedPair { pair, ends, apart, distance, overlap, coefficient }| {
                 let (i, j) = (ends.0 as usize, ends.1 as usize);
                 let closing = |of: &[Vector<D>]| {
                     let other = if j < mobile { of[j] } else { [0.0; D] };

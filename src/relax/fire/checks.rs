@@ -9,7 +9,7 @@ use crate::relax::convergence::Monitor;
 use crate::relax::fire::run::Run;
 use crate::relax::fire::state::State;
 use crate::relax::outcome::Stop;
-use crate::relax::trace::{Look, Trace};
+use crate::relax::trace::{Check, Trace};
 
 /// Steps between two computations of the bound on the time step.
 const BOUND_INTERVAL: usize = 40;
@@ -53,7 +53,7 @@ impl Run<'_> {
         (totals, sums): (&Totals<D>, &Products),
         trace: &mut impl Trace,
     ) -> Result<Option<Stop>, PackingError> {
-        let look = Look {
+        let check = Check {
             step_count: self.step_count,
             energy: totals.energy,
             kinetic_energy: 0.5 * sums.speed_squared,
@@ -62,7 +62,7 @@ impl Run<'_> {
             restart: false,
         };
         let mobile = assembly.mobile_count();
-        if let Some(stop) = monitor.check(assembly, &assembly.forces[..mobile], totals, look, trace) {
+        if let Some(stop) = monitor.check(assembly, &assembly.forces[..mobile], totals, check, trace) {
             return Ok(Some(stop));
         }
         if self.step_count == 0 {

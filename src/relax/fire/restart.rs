@@ -11,7 +11,7 @@ use crate::relax::fire::settings::Uphill;
 use crate::relax::fire::state::State;
 use crate::relax::outcome::Stop;
 use crate::relax::rounding::ENERGY_ROUNDING;
-use crate::relax::trace::{Look, Trace};
+use crate::relax::trace::{Check, Trace};
 
 impl Run<'_> {
     /// Stops all disks; if the energy is higher than at the last restart, returns to that restart. Returns the products
@@ -76,7 +76,7 @@ impl Run<'_> {
     /// Reports the restart.
     fn report<T: Trace>(&self, trace: &mut T) {
         if T::ACTIVE {
-            let look = Look {
+            let check = Check {
                 step_count: self.step_count,
                 energy: self.rest_energy,
                 kinetic_energy: 0.0,
@@ -84,7 +84,7 @@ impl Run<'_> {
                 time_step: self.time_step,
                 restart: true,
             };
-            trace.look(&look);
+            trace.checked(&check);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::forces::advance::Advanced;
 use crate::forces::assembly::Assembly;
-use crate::forces::single::Single;
+use crate::forces::single_precision::Single;
 use crate::law::pair_law::PairLaw;
 use crate::relax::column_operations::{Products, combine, products};
 use crate::relax::fire::step::Step;

@@ -1,6 +1,6 @@
 //! [`Step`]: one step of FIRE.
 
-use crate::forces::single::Units;
+use crate::forces::single_precision::Units;
 use crate::relax::column_operations::kick_and_drift;
 use crate::simd::real::Real;
 

@@ -18,7 +18,7 @@ use crate::relax::force_limit::ForceLimit;
 use crate::relax::minimise::newton_descent::{End, NEWTON_SCHEDULE, NewtonDescent, Patience};
 use crate::relax::outcome::{Cost, Criterion, Outcome, Stop};
 use crate::relax::relaxer::Relaxer;
-use crate::relax::trace::{Look, Trace};
+use crate::relax::trace::{Check, Trace};
 
 /// FIRE, then Newton's method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -132,8 +132,8 @@ struct OffsetTrace<'a, T> {
 impl<T: Trace> Trace for OffsetTrace<'_, T> {
     const ACTIVE: bool = T::ACTIVE;
 
-    fn look(&mut self, look: &Look) {
-        self.trace.look(&Look { step_count: self.first + look.step_count, ..*look });
+    fn checked(&mut self, check: &Check) {
+        self.trace.checked(&Check { step_count: self.first + check.step_count, ..*check });
     }
 
     fn interrupted(&mut self) -> bool {

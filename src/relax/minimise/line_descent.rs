@@ -10,7 +10,7 @@ use crate::relax::convergence::{CheckSchedule, Monitor};
 use crate::relax::force_limit::ForceLimit;
 use crate::relax::minimise::line_search::{Line, search};
 use crate::relax::outcome::{Cost, Outcome, Stop};
-use crate::relax::trace::{Look, Trace};
+use crate::relax::trace::{Check, Trace};
 
 /// Steps between two checks of the residual. A step has one or two evaluations.
 const CHECK_INTERVAL: usize = 10;
@@ -107,7 +107,7 @@ impl Descent {
             let enough = self.limit_of(monitor.residual().mean_contact_force);
             let due = cost.step_count.is_multiple_of(CHECK_INTERVAL) || lost;
             if due || force_squared.is_nan() || force_squared <= enough * enough {
-                let look = Look {
+                let check = Check {
                     step_count: cost.step_count,
                     energy: totals.energy,
                     kinetic_energy: 0.0,
@@ -115,7 +115,7 @@ impl Descent {
                     time_step: 0.0,
                     restart: false,
                 };
-                if let Some(stop) = monitor.check(assembly, &assembly.forces[..mobile], &totals, look, trace) {
+                if let Some(stop) = monitor.check(assembly, &assembly.forces[..mobile], &totals, check, trace) {
                     return Ok((stop, cost));
                 }
                 if lost {

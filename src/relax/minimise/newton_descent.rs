@@ -9,7 +9,7 @@ use crate::relax::convergence::{CheckSchedule, Monitor};
 use crate::relax::minimise::line_search::acceptance;
 use crate::relax::minimise::shifted_hessian::{ShiftedHessian, Solved};
 use crate::relax::outcome::{Cost, Stop};
-use crate::relax::trace::{Look, Trace};
+use crate::relax::trace::{Check, Trace};
 use crate::vector::{Vector, difference, dot, larger, norm, scaled, sum};
 
 /// Share of the predicted fall of the energy that a step must reach; Newton's own step reaches half near a minimum.
@@ -87,7 +87,7 @@ impl NewtonDescent {
         let mut shifted = ShiftedHessian::new(assembly);
         let (mut best, mut best_count) = (f64::INFINITY, self.direction_count);
         loop {
-            let look = Look {
+            let check = Check {
                 step_count: self.cost.step_count,
                 energy: totals.energy,
                 kinetic_energy: 0.0,
@@ -95,7 +95,7 @@ impl NewtonDescent {
                 time_step: 0.0,
                 restart: false,
             };
-            if let Some(stop) = monitor.check(assembly, &assembly.forces[..mobile], &totals, look, trace) {
+            if let Some(stop) = monitor.check(assembly, &assembly.forces[..mobile], &totals, check, trace) {
                 return Ok(End::Stop(stop));
             }
             let residual = monitor.residual().relative();

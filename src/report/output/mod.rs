@@ -13,19 +13,19 @@
 //! Files that no report wrote, or that were changed since, are never removed. If the name of one is needed, it is
 //! renamed to `NAME.~1~`.
 
-mod kind;
 mod manifest;
-mod place;
+mod move_into_place;
+mod report_kind;
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use crate::io::{remove_unfinished, try_name};
 use crate::report::error::ReportError;
-use crate::report::output::kind::{PART, READY};
-pub use kind::Kind;
+use crate::report::output::report_kind::{PART, READY};
 use manifest::Manifest;
-pub use place::{complete, is_of_the_last_report};
+pub use move_into_place::{complete, is_of_the_last_report};
+pub use report_kind::Kind;
 
 /// A folder for a report, created and tested before the computation of the report.
 ///

@@ -1,7 +1,7 @@
 //! The numbers of each sample, row by row, for the terminal table and for the page.
 
 pub(crate) mod analysis;
-mod frequency;
+mod phase_frequency;
 pub(crate) mod response;
 pub(crate) mod section;
 mod states;
@@ -63,7 +63,7 @@ pub(crate) fn sections(report: &Report, samples: &[SampleReport], times: Times) 
     ];
     let responses = samples.iter().map(|sample| done(sample).map(|result| &result.response)).collect();
     all.extend(response::sections(responses));
-    all.push(frequency::section(samples));
+    all.push(phase_frequency::section(samples));
     #[cfg(feature = "linear")]
     all.extend([states::plastic(samples), crate::report::protocol::section(samples)]);
     all.retain(|section| !section.rows.is_empty());

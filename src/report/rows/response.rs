@@ -6,7 +6,7 @@ use crate::fit::angular::{CrossoverOutcome, SlopeOutcome};
 use crate::observe::angular::CrossingOutcome;
 use crate::observe::isostatic::{IsostaticLength, IsostaticOutcome, Scale};
 use crate::observe::multipoles::{ComponentModes, MultipoleFit};
-use crate::observe::penetration::Penetration;
+use crate::observe::penetration_length::Penetration;
 #[cfg(feature = "fit")]
 use crate::report::curve;
 use crate::report::number::{count, significant};

@@ -4,11 +4,11 @@
 //! A figure is drawn only if the study has its data.
 
 mod angular;
+mod figure_data;
 mod lengths;
-mod order;
+mod order_parameters;
 mod page;
 mod radial;
 mod scaling;
-mod subject;
 
 pub use page::study_page;

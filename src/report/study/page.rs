@@ -7,12 +7,12 @@ use crate::report::figures::{Figure, escaped};
 use crate::report::number::{count, significant, with_error};
 use crate::report::page::{head, pictures};
 use crate::report::study::angular;
+use crate::report::study::figure_data::Subject;
 use crate::report::study::lengths;
-use crate::report::study::order;
-use crate::report::study::order::Abscissa;
+use crate::report::study::order_parameters;
+use crate::report::study::order_parameters::Abscissa;
 use crate::report::study::radial;
 use crate::report::study::scaling;
-use crate::report::study::subject::Subject;
 use crate::study::{CellStatistics, Merged, NumberStatistics, PhaseCounts};
 use crate::transition::{
     CellSpectrum, Comparison, ExponentOutcome, LEAST_CELLS, LEAST_SAMPLES, Sampled, Series, Transition,
@@ -51,13 +51,14 @@ pub fn study_page(merged: &Merged, transition: &Transition) -> String {
 
 /// All possible figures: heading, description, figures.
 fn views(subject: &Subject<'_>) -> Vec<(&'static str, &'static str, Vec<Figure>)> {
-    let mut order = order::against(subject, Abscissa::Reduced);
-    order.extend(order::against(subject, Abscissa::Pressure));
+    let mut order = order_parameters::against(subject, Abscissa::Reduced);
+    order.extend(order_parameters::against(subject, Abscissa::Pressure));
     let hertzian = subject.transition.series.iter().all(|series| crate::transition::beta(&series.cell.law) == 3.0);
-    let as_hertzian = if hertzian { Vec::new() } else { order::against(subject, Abscissa::AsHertzian) };
+    let as_hertzian = if hertzian { Vec::new() } else { order_parameters::against(subject, Abscissa::AsHertzian) };
     let mut profiles = radial::singles(subject);
     profiles.extend(radial::means(subject));
-    let thresholds = ["0.02", "0.05", "0.2"].into_iter().filter_map(|it| order::threshold(subject, it)).collect();
+    let thresholds =
+        ["0.02", "0.05", "0.2"].into_iter().filter_map(|it| order_parameters::threshold(subject, it)).collect();
     let mut scaled = scaling::with_inflation(subject);
     scaled.extend(scaling::phase_diagram(subject));
     vec![
@@ -69,7 +70,7 @@ fn views(subject: &Subject<'_>) -> Vec<(&'static str, &'static str, Vec<Figure>)
         (
             "Screening and pressure change",
             "κ of the best screened solution over κ₁, its first pole, and the change of pressure. Every pale point is a sample.",
-            order::by_sample(subject),
+            order_parameters::by_sample(subject),
         ),
         (
             "Angular correlation and spectrum",
@@ -84,7 +85,7 @@ fn views(subject: &Subject<'_>) -> Vec<(&'static str, &'static str, Vec<Figure>)
         (
             "Crossover",
             "θ† = k/f† of the fitted Lorentzians, and θ* beside its exact value for a Lorentzian spectrum.",
-            order::crossovers(subject),
+            order_parameters::crossovers(subject),
         ),
         ("Against p N^(3/2)", "The scaling of Hertzian disks, which Hookean ones do not follow.", as_hertzian),
         ("Thresholds", "The correlation angle θ* with other thresholds of G.", thresholds),

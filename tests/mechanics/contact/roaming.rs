@@ -3,7 +3,7 @@
 use super::*;
 use crate::scenes::tiled::tiled;
 use jamscope::forces::advance::Advanced;
-use jamscope::forces::single::Single;
+use jamscope::forces::single_precision::Single;
 use jamscope::io::read_packing;
 
 /// A packing a few disks of which, side by side, go through each other and the rest, straight on, each in a direction of its own.

@@ -1,7 +1,7 @@
 //! The loop in single precision against the one in double.
 
 use jamscope::forces::Assembly;
-use jamscope::forces::single::Single;
+use jamscope::forces::single_precision::Single;
 use jamscope::law::{Hertzian, Hookean, PairLaw, PowerLaw};
 use jamscope::packing::{Domain, Packing};
 use jamscope::vector::{difference, norm};

@@ -5,7 +5,7 @@
 use jamscope::law::{Hertzian, Hookean, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
-use jamscope::relax::{Look, Newton, Relaxer, RelaxerChoice, Stop};
+use jamscope::relax::{Check, Newton, Relaxer, RelaxerChoice, Stop};
 use jamscope::vector::{Vector, difference, dot, larger, norm, scaled, sum};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -93,7 +93,7 @@ fn the_energy_falls_where_contacts_that_close_make_the_whole_step_climb() {
         let near = at_rest(relax(&fire(1e-4), inflated(name, 0), &law));
         let mut looks = Vec::new();
         let settings = Newton { step_limit: 40, ..newton(1e-12) };
-        let _ = settings.relax(near, &law, &mut |look: &Look| looks.push(*look)).expect("no coincidence");
+        let _ = settings.relax(near, &law, &mut |look: &Check| looks.push(*check)).expect("no coincidence");
         only_falls(&looks, 1.0, &format!("{law:?}"));
     }
     check(Hookean::default(), "hooke_N1000_p100");
@@ -111,7 +111,7 @@ proptest! {
         fn check<const D: usize, L: PairLaw>(packing: Packing<D>, law: &L) {
             let settings = Newton { step_limit: 60, ..newton(1e-10) };
             let mut looks = Vec::new();
-            let _ = settings.relax(packing, law, &mut |look: &Look| looks.push(*look)).expect("no coincidence");
+            let _ = settings.relax(packing, law, &mut |look: &Check| looks.push(*check)).expect("no coincidence");
             only_falls(&looks, 1.0, &format!("{law:?}"));
         }
         match law {

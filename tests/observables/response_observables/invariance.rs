@@ -10,7 +10,7 @@ use jamscope::observe::isostatic::{
     IsostaticLength, IsostaticOutcome, IsostaticRule, IsostaticSettings, Normalisation,
 };
 use jamscope::observe::multipoles::{ModeFit, MultipoleFit, MultipoleSettings, Multipoles};
-use jamscope::observe::penetration::{Penetration, PenetrationLength, PenetrationSettings};
+use jamscope::observe::penetration_length::{Penetration, PenetrationLength, PenetrationSettings};
 use jamscope::observe::{RadialProfile, Ring};
 use jamscope::packing::Packing;
 use jamscope::relax::Fire;

@@ -1,4 +1,4 @@
-use jamscope::observe::penetration::{Penetration, PenetrationError, PenetrationLength, PenetrationSettings};
+use jamscope::observe::penetration_length::{Penetration, PenetrationError, PenetrationLength, PenetrationSettings};
 use jamscope::observe::{RadialProfile, Ring};
 use jamscope::reference::{Annulus, RadialSolution, elastic::Elastic, screened::Screened};
 

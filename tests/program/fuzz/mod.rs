@@ -8,9 +8,9 @@
 //! temporary files; its path, seed and number are printed. What ends the whole process is left there in a folder `jamscope-fuzz-…`.
 
 mod commands;
+#[path = "../../../src/cli/contact_law.rs"]
+mod contact_law;
 mod corpus;
-#[path = "../../../src/cli/law_of_file.rs"]
-mod law_of_file;
 mod mutation;
 #[path = "../../../src/cli/scene_file.rs"]
 mod scene_file;

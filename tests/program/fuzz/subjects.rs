@@ -31,8 +31,8 @@ pub fn nameless(message: &str, path: &Path, fields: &[&str]) -> Fault {
 
 /// Reads a packing of either dimension and does what `inspect` does.
 pub fn packing(path: &Path) -> Fault {
-    for asked in [None, law_of_file::parse("power:2.5").ok()] {
-        match law_of_file::law_of(path, asked, None) {
+    for asked in [None, contact_law::parse("power:2.5").ok()] {
+        match contact_law::law_of(path, asked, None) {
             Ok(law) if asked.is_none() => {
                 if let Some(fault) = inspected::<2>(path, law).or_else(|| inspected::<3>(path, law)) {
                     return Some(fault);

@@ -6,24 +6,24 @@ use crate::forces::assembly::Assembly;
 use crate::forces::totals::Totals;
 use crate::law::damping::DampingLaw;
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::for_each_pair::walk;
+use crate::neighbours::for_each_pair::for_each_pair;
 use crate::packing::{Packing, PackingError};
 use crate::relax::convergence::Monitor;
 use crate::relax::dynamics::damped::NetForce;
 use crate::relax::dynamics::energy_balance::{Energies, EnergyBalance};
 use crate::relax::dynamics::implicit::allowed_error::AllowedError;
 use crate::relax::dynamics::implicit::explicit_phase::explicit_phase;
-use crate::relax::dynamics::implicit::finish::{Finish, FinishState, NewtonFinish};
 use crate::relax::dynamics::implicit::inertia::{Inertia, Stepped};
 use crate::relax::dynamics::implicit::method_selection::{Method, MethodSelection};
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
-use crate::relax::dynamics::implicit::rkc::phase::rkc_phase;
+use crate::relax::dynamics::implicit::newton_finish::{Finish, FinishState, NewtonFinish};
+use crate::relax::dynamics::implicit::rkc::stabilised_phase::rkc_phase;
 use crate::relax::dynamics::implicit::stagnation::Stagnation;
 use crate::relax::dynamics::implicit::step_control::{LARGEST_RATIO, SMALLEST_RATIO, step_ratio};
 use crate::relax::force_limit::ForceLimit;
 use crate::relax::minimise::newton_descent::NEWTON_SCHEDULE;
 use crate::relax::outcome::{Cost, Outcome, Stop};
-use crate::relax::trace::{Look, Trace};
+use crate::relax::trace::{Check, Trace};
 use crate::vector::{Vector, larger, norm};
 
 /// Settings of damped dynamics or of gradient flow.
@@ -95,7 +95,7 @@ impl Integration {
         let mut selection = MethodSelection::new(motion);
         loop {
             let kinetic_energy = motion.kinetic_energy();
-            let look = Look {
+            let check = Check {
                 step_count: cost.step_count,
                 energy: totals.energy,
                 kinetic_energy,
@@ -103,7 +103,7 @@ impl Integration {
                 time_step,
                 restart: false,
             };
-            if let Some(stop) = monitor.check(&motion.assembly, self.net_forces(motion), &totals, look, trace) {
+            if let Some(stop) = monitor.check(&motion.assembly, self.net_forces(motion), &totals, check, trace) {
                 return Ok(stop);
             }
             let residual = monitor.residual().relative();
@@ -229,7 +229,7 @@ impl Integration {
 fn typical_overlap<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, overlaps: &mut Vec<f64>) -> f64 {
     let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
     overlaps.clear();
-    walk(assembly.pairs(), &assembly.displacements, &mut |pair| {
+    for_each_pair(assembly.pairs(), &assembly.displacements, &mut |pair| {
         if pair.overlap > 0.0 {
             overlaps.push(pair.overlap);
         }

@@ -14,12 +14,12 @@
 
 mod allowed_error;
 mod explicit_phase;
-mod finish;
 mod inertia;
 mod integration;
 mod method_selection;
 mod motion;
 mod multirate;
+mod newton_finish;
 pub(crate) mod relaxers;
 mod rkc;
 mod rosenbrock;
@@ -28,7 +28,7 @@ mod step_control;
 mod step_matrix;
 pub mod tableau;
 
-pub use finish::Finish;
 pub use inertia::{Inertia, Stepped, Work};
 pub use motion::ImplicitMotion;
+pub use newton_finish::Finish;
 pub use relaxers::{GradientFlow, ImplicitDynamics};

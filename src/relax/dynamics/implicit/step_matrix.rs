@@ -14,7 +14,7 @@ use crate::law::pair_law::PairLaw;
 use crate::linear::hessian::{Hessian, Members, Prestress};
 use crate::linear::iterative::{IncompleteFactor, IterationLimits, conjugate_gradients};
 use crate::linear::{Analysis, Factorisation, LinearError};
-use crate::neighbours::for_each_pair::{Walked, walk};
+use crate::neighbours::for_each_pair::{MovedPair, for_each_pair};
 use crate::relax::dynamics::implicit::inertia::{Inertia, Work};
 use crate::sparse::SymmetricMatrix;
 use crate::vector::{Vector, larger, norm, scaled};
@@ -150,21 +150,25 @@ impl<const D: usize> StepMatrix<D> {
             column.clear();
             column.resize(pairs.place_count(), 0.0);
         }
-        walk(pairs, &assembly.displacements, &mut |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
-            let margin = (APPROACH_FACTOR * larger(last(ends.0), last(ends.1))).min(terms.margin);
-            self.margins[pair] = margin;
-            if overlap <= -margin {
-                return;
-            }
-            let wide = overlap + margin;
-            let damping = match terms.inertia {
-                Inertia::Massive => terms.damping.damping(terms.damping_coefficient[pair], wide),
-                Inertia::Friction(_) => 0.0,
-            };
-            let along = law.stiffness(law.force(coefficient, wide), wide) + damping / terms.scale;
-            self.along[pair] = along;
-            self.links.push(Link { ends, normal: scaled(1.0 / distance, apart), damping });
-        });
+        for_each_pair(
+            pairs,
+            &assembly.displacements,
+            &mut |&MovedPair { pair, ends, apart, distance, overlap, coefficient }| {
+                let margin = (APPROACH_FACTOR * larger(last(ends.0), last(ends.1))).min(terms.margin);
+                self.margins[pair] = margin;
+                if overlap <= -margin {
+                    return;
+                }
+                let wide = overlap + margin;
+                let damping = match terms.inertia {
+                    Inertia::Massive => terms.damping.damping(terms.damping_coefficient[pair], wide),
+                    Inertia::Friction(_) => 0.0,
+                };
+                let along = law.stiffness(law.force(coefficient, wide), wide) + damping / terms.scale;
+                self.along[pair] = along;
+                self.links.push(Link { ends, normal: scaled(1.0 / distance, apart), damping });
+            },
+        );
     }
 }
 

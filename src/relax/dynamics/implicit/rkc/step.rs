@@ -4,7 +4,7 @@
 use crate::forces::damped::damped_forces;
 use crate::law::damping::DampingLaw;
 use crate::law::pair_law::PairLaw;
-use crate::neighbours::for_each_pair::{Walked, walk};
+use crate::neighbours::for_each_pair::{MovedPair, for_each_pair};
 use crate::packing::PackingError;
 use crate::relax::dynamics::implicit::inertia::Inertia;
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
@@ -33,25 +33,29 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         blocks.clear();
         blocks.resize(assembly.len(), [[0.0; D]; D]);
         let mut ratio = 0.0;
-        walk(pairs, &assembly.displacements, &mut |&Walked { pair, ends, apart, distance, overlap, coefficient }| {
-            if overlap + self.margin <= 0.0 {
-                return;
-            }
-            let damping = self.damping.damping(self.damping_coefficient[pair], overlap.max(0.0));
-            if overlap > 0.0 {
-                let force = law.force(coefficient, overlap);
-                ratio = larger(law.stiffness(force, overlap) / damping, ratio);
-            }
-            let (i, j) = (ends.0 as usize, ends.1 as usize);
-            let weight = if j < mobile { damping } else { 0.5 * damping } / (distance * distance);
-            for a in 0..D {
-                for b in 0..D {
-                    let value = weight * apart[a] * apart[b];
-                    blocks[i][a][b] += value;
-                    blocks[j][a][b] += value;
+        for_each_pair(
+            pairs,
+            &assembly.displacements,
+            &mut |&MovedPair { pair, ends, apart, distance, overlap, coefficient }| {
+                if overlap + self.margin <= 0.0 {
+                    return;
                 }
-            }
-        });
+                let damping = self.damping.damping(self.damping_coefficient[pair], overlap.max(0.0));
+                if overlap > 0.0 {
+                    let force = law.force(coefficient, overlap);
+                    ratio = larger(law.stiffness(force, overlap) / damping, ratio);
+                }
+                let (i, j) = (ends.0 as usize, ends.1 as usize);
+                let weight = if j < mobile { damping } else { 0.5 * damping } / (distance * distance);
+                for a in 0..D {
+                    for b in 0..D {
+                        let value = weight * apart[a] * apart[b];
+                        blocks[i][a][b] += value;
+                        blocks[j][a][b] += value;
+                    }
+                }
+            },
+        );
         let decay = 2.0 * blocks[..mobile].iter().map(largest_eigenvalue).fold(0.0, larger);
         (ratio.is_finite() && decay.is_finite()).then_some(Stiffness { decay, ratio })
     }

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use crate::io::read_properties;
 use crate::report::error::ReportError;
-use crate::report::output::kind::{Kind, READY};
 use crate::report::output::manifest::Manifest;
+use crate::report::output::report_kind::{Kind, READY};
 
 /// Longest wait for a lock. Moving files takes less time; a process that holds its lock longer is suspended.
 const PATIENCE: Duration = Duration::from_secs(30);

@@ -15,7 +15,7 @@ use crate::relax::convergence::Monitor;
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
 use crate::relax::minimise::newton_descent::{End, NewtonDescent, Patience};
 use crate::relax::outcome::{Cost, Stop};
-use crate::relax::trace::{Look, Trace};
+use crate::relax::trace::{Check, Trace};
 use crate::vector::{Vector, difference, larger, norm};
 
 /// How a motion ends.
@@ -62,14 +62,14 @@ const FACTORISATION_LIMIT: usize = 100;
 /// A trace that hides a trial, because the trial may be rejected, and keeps its last check.
 struct HiddenTrace<'a, T> {
     trace: &'a mut T,
-    last: Option<Look>,
+    last: Option<Check>,
 }
 
 impl<T: Trace> Trace for HiddenTrace<'_, T> {
     const ACTIVE: bool = T::ACTIVE;
 
-    fn look(&mut self, look: &Look) {
-        self.last = Some(*look);
+    fn checked(&mut self, check: &Check) {
+        self.last = Some(*check);
     }
 
     fn interrupted(&mut self) -> bool {
@@ -141,8 +141,8 @@ impl<const D: usize> NewtonFinish<D> {
             let near = farthest(&|disk| before.place(disk)) <= NEAR;
             let again = self.minimum.as_ref().is_some_and(|minimum| farthest(&|disk| minimum[disk]) <= SAME);
             if near || again {
-                if let Some(look) = last {
-                    trace.look(&look);
+                if let Some(check) = last {
+                    trace.checked(&check);
                 }
                 return Ok(Some(stop));
             }

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::inflation::Grown;
-use crate::precision::choices::{ChoiceRow, ChoiceTable};
+use crate::precision::numerical_choices::{ChoiceRow, ChoiceTable};
 use crate::reference::screened::Screened;
 use crate::reference::{Annulus, RadialSolution};
 use crate::vector::larger;

@@ -182,7 +182,7 @@ impl<const D: usize> Single<D> {
         assembly: &mut Assembly<D, L>,
         velocities: &mut [[f32; D]],
         kick: impl Fn(&[[f32; D]], &mut [[f32; D]], &mut [[f32; D]]) -> f64 + Sync,
-        look: impl Fn(&[[f32; D]], &[[f32; D]]) -> P + Send + Sync,
+        observe: impl Fn(&[[f32; D]], &[[f32; D]]) -> P + Send + Sync,
     ) -> Advanced<P> {
         if !assembly.may_advance() {
             return Advanced::Not;
@@ -197,7 +197,7 @@ impl<const D: usize> Single<D> {
         let kernel = Pressed { law: &law, pairs, blocks: &self.blocks };
         let movers = Movers { velocities, displacements: &mut self.offsets, forces: &mut self.forces };
         let reach = Reach { limit, bounds, longest };
-        let advanced = Advanced::of(advance(&kernel, pairs, (movers, &mut self.across), reach, kick, look));
+        let advanced = Advanced::of(advance(&kernel, pairs, (movers, &mut self.across), reach, kick, observe));
         if matches!(advanced, Advanced::Moved) || assembly.checks_next() {
             // The assembly checks its displacements.
             self.settle(assembly);

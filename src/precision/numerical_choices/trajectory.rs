@@ -7,7 +7,7 @@ use crate::inflation::{Grown, displacement};
 use crate::law::damping::DampingLaw;
 use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
-use crate::precision::choices::{ChoiceRow, ChoiceTable};
+use crate::precision::numerical_choices::{ChoiceRow, ChoiceTable};
 use crate::relax::Motion;
 use crate::vector::{larger, norm};
 

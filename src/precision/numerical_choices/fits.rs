@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::fit::profile::ProfileFitSettings;
 use crate::inflation::Grown;
-use crate::precision::choices::{ChoiceRow, ChoiceTable};
+use crate::precision::numerical_choices::{ChoiceRow, ChoiceTable};
 use crate::precision::state::{State, fit};
 use crate::scene::Observables;
 

@@ -98,7 +98,7 @@ impl Penetration {
 /// # Example
 /// ```
 /// use jamscope::observe::{RadialProfile, Ring};
-/// use jamscope::observe::penetration::{Penetration, PenetrationLength, PenetrationSettings};
+/// use jamscope::observe::penetration_length::{Penetration, PenetrationLength, PenetrationSettings};
 ///
 /// // d_r = exp(−r): 10⁻³ is reached at r = ln 1000.
 /// let ring = |r: f64| Ring { radius: r, disk_count: 1, mean: (-r).exp(), spread: 0.0, standard_error: 0.0 };
@@ -106,7 +106,7 @@ impl Penetration {
 /// let lengths = PenetrationLength::of(&profile, &PenetrationSettings::default())?;
 /// let length = lengths[0].penetration.radius().expect("it falls below");
 /// assert!((length - 1000f64.ln()).abs() < 1e-14);
-/// # Ok::<(), jamscope::observe::penetration::PenetrationError>(())
+/// # Ok::<(), jamscope::observe::penetration_length::PenetrationError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PenetrationLength {

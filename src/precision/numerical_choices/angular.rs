@@ -7,7 +7,7 @@ use crate::observe::angular::{
     AngularCorrelation, CorrelationEstimator, CorrelationSettings, FrequencyLimit, Leakage, PowerSpectrum, RingSample,
     RingSettings, SpectrumEstimator, SpectrumSettings, Weights,
 };
-use crate::precision::choices::{ChoiceRow, ChoiceTable};
+use crate::precision::numerical_choices::{ChoiceRow, ChoiceTable};
 
 /// Threshold of θ* \[1\].
 const THRESHOLD: f64 = 0.1;

@@ -8,7 +8,7 @@
 //! Conte (1966), SIAM Rev. 8, 309 (after Godunov).
 
 use crate::reference::angular_modes::Complex;
-use crate::reference::angular_modes::system::{State, System, size};
+use crate::reference::angular_modes::first_order_system::{State, System, size};
 use crate::vector::larger;
 
 /// Two solutions, orthonormal in U, v, P and W, the last two divided by the rate.
