@@ -1,4 +1,4 @@
-//! `Complex`: the few operations on complex numbers the contour needs.
+//! `Complex`: the operations on complex numbers that the contour needs.
 
 use std::ops::{Add, Mul};
 

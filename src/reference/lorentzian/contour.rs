@@ -1,6 +1,6 @@
 //! `Contour`: Σ S(f) cos fθ as an integral along a ray in the complex plane, for many θ.
 //!
-//! For S analytic between the real axis and the ray `w = a + t e^(iα)`, a half an odd number, and 0 ≤ θ ≤ 2π,
+//! For S analytic between the real axis and the ray `w = a + t e^(iα)`, a half-integer, and 0 ≤ θ ≤ 2π,
 //!
 //! ```text
 //! Σ_(f > a) S(f) cos fθ = Re ∫ S(w) [e^(iwθ) + e^(iw(2π−θ))] / (1 − e^(2πiw)) dw
@@ -10,41 +10,41 @@
 //! one). On the ray nothing oscillates faster than it decays. Without the denominator and the second exponential, and
 //! with a = 0, it is the integral ∫ S(u) cos uθ du.
 //!
-//! The poles of `S = A/(1 + (w/f†)^s)` begin at arg w = π/s. The ray has half that angle, so that no singularity is seen
-//! from a within an angle α of it, whatever f† is.
+//! The poles of `S = A/(1 + (w/f†)^s)` begin at arg w = π/s. The ray has half that angle, so that seen from a all
+//! singularities are at least an angle α away from it, for any f†.
 //!
 //! # Quadrature
 //! One panel [0, t_0], then panels \[t, 2t\], each with the same Gauss–Legendre nodes. So the exponentials of one panel
-//! are the squares of those of the panel before. Panels that end below tθ = 0.4 are summed for all θ at once, as
-//! the moments of a power series in θ. The cost of a θ depends neither on θ nor on f†.
+//! are the squares of those of the previous panel. Panels that end below tθ = 0.4 are summed for all θ at once, as the
+//! moments of a power series in θ. The cost for a θ depends neither on θ nor on f†.
 //!
-//! # What is left out
-//! Gauss–Legendre with p nodes on a panel of length L errs by at most
+//! # Errors
+//! Gauss–Legendre with p nodes on a panel of length L has an error of at most
 //!
 //! ```text
 //! (32/15) L M ρ^(−2(p−1)) / (1 − ρ^(−2))        ρ + 1/ρ = 2 √(5 − 4 cos 2β)
 //! ```
 //!
 //! where M bounds the integrand in the ellipse of that ρ around the panel (Trefethen (2008), SIAM Rev. 50, 67, theorem
-//! 4.5). The ellipse of a panel \[t, 2t\] touches the rays at angle β from the contour: with β < α no singularity is
-//! inside, and there `|1 + (w/f†)^s| ≥ cos(πβ/2α)`, `|1 − e^(2πiw)| ≥ 1 − exp(−π tan(α − β))`, `|e^(iwθ)| ≤ 1`.
-//! p is chosen from this bound ([`node_count`]); a unit test sums it over the panels with the true maxima M and finds less
-//! than 2⁻⁵⁹ Σ S for exponents from 1.01 to 100 and f† from 0 to 10⁶.
-//! The series of moments is cut where the next term is below 0.4^15/15! = 10⁻¹⁸, that of the exponentials below
-//! 0.8^18/18! = 3·10⁻¹⁸; panels beyond tθ sin α = 40 are left out, e^(−40) = 4·10⁻¹⁸.
+//! 4.5). The ellipse of a panel \[t, 2t\] touches the rays at angle β from the contour. For β < α it contains no
+//! singularity, and there `|1 + (w/f†)^s| ≥ cos(πβ/2α)`, `|1 − e^(2πiw)| ≥ 1 − exp(−π tan(α − β))`, `|e^(iwθ)| ≤ 1`. p
+//! is chosen from this bound ([`node_count`]). A unit test sums it over the panels with the true maxima M and finds
+//! less than 2⁻⁵⁹ Σ S for exponents from 1.01 to 100 and f† from 0 to 10⁶. The series of moments is truncated where the
+//! next term is below 0.4^15/15! = 10⁻¹⁸, that of the exponentials below 0.8^18/18! = 3·10⁻¹⁸. Panels beyond tθ sin α =
+//! 40 are left out, e^(−40) = 4·10⁻¹⁸.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::reference::lorentzian::complex::Complex;
 use crate::reference::lorentzian::gauss::gauss_legendre;
 
-/// Nodes handled together, so that the compiler can use wide registers.
+/// Number of nodes processed together, for vector instructions.
 const LANES: usize = 4;
 
 /// Panels that end below this tθ are summed by moments.
 const MOMENT_REACH: f64 = 0.4;
 
-/// Moments kept: 0.4^15/15! = 8·10⁻¹⁹.
+/// Number of moments: 0.4^15/15! = 8·10⁻¹⁹.
 const MOMENT_COUNT: usize = 15;
 
 /// Terms of e^z for |z| ≤ 0.8 beyond the constant: 0.8^18/18! = 3·10⁻¹⁸.
@@ -66,7 +66,7 @@ const INVERSE_FACTORIALS: [f64; EXPONENTIAL_DEGREE + 1] = {
     values
 };
 
-/// β/α of the ellipses the number of nodes is derived from.
+/// β/α of the ellipses from which the number of nodes is derived.
 const ELLIPSE_SHARE: f64 = 0.85;
 
 /// Half the angle of the first pole.
@@ -78,11 +78,12 @@ pub(super) fn ray_angle(exponent: f64) -> f64 {
 fn ellipse(exponent: f64) -> (f64, f64) {
     let beta = ELLIPSE_SHARE * ray_angle(exponent);
     let half_sum = (5.0 - 4.0 * libm::cos(2.0 * beta)).sqrt();
-    // ρ + 1/ρ = 2 half_sum; 2 half_sum ≥ 2, and half_sum² − 1 = 8 sin²β keeps its digits.
+    // ρ + 1/ρ = 2 half_sum; 2 half_sum ≥ 2, and half_sum² − 1 = 8 sin²β without cancellation.
     (beta, half_sum + 8.0_f64.sqrt() * libm::sin(beta))
 }
 
-/// Nodes a panel so that the bound of the module text, for the panels where S is about its largest, is below 2⁻⁵⁴.
+/// Number of nodes per panel for which the bound of the module documentation, for the panels with the largest S, is
+/// below 2⁻⁵⁴.
 fn node_count(exponent: f64) -> usize {
     let (beta, rho) = ellipse(exponent);
     let spectrum = 1.0 / libm::cos(FRAC_PI_2 * ELLIPSE_SHARE);
@@ -107,10 +108,10 @@ struct Moments {
     image: [Complex; MOMENT_COUNT],
 }
 
-/// Which integral is taken.
+/// Type of the integral.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Kind {
-    /// The sum over the integers above `start`, half an odd number.
+    /// The sum over the integers above `start`, a half-integer.
     Sum {
         /// a.
         start: f64,
@@ -128,19 +129,19 @@ pub(super) struct Contour {
     direction: Complex,
     /// t_0, the end of the first panel.
     first: f64,
-    /// Nodes in [1, 2], those of a panel in units of where it begins.
+    /// Nodes in [1, 2], in units of the start of a panel.
     units: Vec<[f64; LANES]>,
-    /// Weights of e^(iwθ), panel after panel, without the first.
+    /// Weights of e^(iwθ), panel after panel, except the first.
     direct: Vec<Lanes>,
     /// Weights of e^(iw(2π−θ)) e^(−2πiw), for the first panels of `direct`.
     image: Vec<Lanes>,
-    /// One for every panel, the first included.
+    /// One for every panel, including the first.
     moments: Vec<Moments>,
 }
 
 impl Contour {
-    /// The contour of `spectrum`, whose poles begin at arg w = π/`exponent`, with a first panel up to `first` and further
-    /// ones at least up to `last`.
+    /// The contour of `spectrum`, whose poles begin at arg w = π/`exponent`, with a first panel up to `first` and
+    /// further ones to at least `last`.
     pub(super) fn new(kind: Kind, exponent: f64, first: f64, last: f64, spectrum: impl Fn(Complex) -> Complex) -> Self {
         let angle = ray_angle(exponent);
         let direction = Complex::polar(1.0, angle);
@@ -214,13 +215,13 @@ impl Contour {
         Contour { start, direction, first, units, direct, image, moments }
     }
 
-    /// Twice the real part of ∫ S e^(2πiw)/(1 − e^(2πiw)) dw: what the sum over S has more than the integral.
+    /// Twice the real part of ∫ S e^(2πiw)/(1 − e^(2πiw)) dw: the difference between the sum over S and the integral.
     pub(super) fn sum_minus_integral(&self) -> f64 {
         // Beyond the panels of `image` the exponential is below e^(−80).
         2.0 * self.moments.last().expect("there is a first panel").image[0].re
     }
 
-    /// The largest θ the moments of the first panel are good for.
+    /// The largest θ for which the moments of the first panel are valid.
     pub(super) fn largest_angle(&self) -> f64 {
         MOMENT_REACH / self.first
     }
@@ -280,7 +281,7 @@ impl Contour {
     }
 }
 
-/// What the panels beyond the moments give.
+/// The contribution of the panels beyond the moments.
 struct Beyond {
     direct: Complex,
     direct_slope: Complex,
@@ -289,7 +290,7 @@ struct Beyond {
 }
 
 impl Moments {
-    /// Adds a node at t = `place` t_top, as if τ were t: [`turned`](Self::turned) puts that right.
+    /// Adds a node at t = `place` t_top, as if τ were t; [`turned`](Self::turned) corrects this.
     fn add(&mut self, direct: Complex, image: Complex, place: f64) {
         let mut power = 1.0;
         for n in 0..MOMENT_COUNT {
@@ -306,7 +307,7 @@ impl Moments {
         }
     }
 
-    /// With τ = `direction` t.
+    /// The contribution for τ = `direction` t.
     fn turned(&self, direction: Complex) -> Self {
         let (mut moments, mut power) = (*self, Complex::new(1.0, 0.0));
         for n in 0..MOMENT_COUNT {
@@ -374,7 +375,7 @@ fn reciprocals(a: &Lanes) -> Lanes {
     }
 }
 
-/// Adds a product to the sum number `place`, and times the distance to the next.
+/// Adds a product to the sum with index `place`, and the product times the distance to the next sum.
 #[inline(always)]
 fn accumulate<const SLOPE: bool>(sums: &mut [Lanes; 4], place: usize, product: &Lanes, distance: &[f64; LANES]) {
     for lane in 0..LANES {
@@ -418,7 +419,8 @@ mod tests {
 
     #[test]
     fn what_the_quadrature_leaves_out_is_below_rounding() {
-        // Chosen for 2⁻⁵⁴ where the bounds of S and of the denominator meet, which they do nowhere.
+        // Chosen for 2⁻⁵⁴ if the bounds of S and of the denominator were reached at the same point, which never
+        // happens.
         for exponent in [1.01, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 30.0, 100.0] {
             let ((beta, rho), count) = (ellipse(exponent), node_count(exponent));
             let half_sum = (5.0 - 4.0 * (2.0 * beta).cos()).sqrt();
@@ -440,7 +442,7 @@ mod tests {
 
     #[test]
     fn weights_are_not_much_larger_than_what_they_sum_to() {
-        // What rounding is multiplied by. The smallest angles see all panels.
+        // The factor of the rounding. The smallest angles use all panels.
         for exponent in [1.01, 1.2, 1.5, 2.0, 3.0, 4.0, 6.0, 10.0, 31.0, 100.0] {
             for crossover in [0.0, 0.4, 1.0, 1.5, 1.7, 3.0, 10.0, 1e3, 1e6] {
                 let spectrum = |w| complex_spectrum(crossover, exponent, w);

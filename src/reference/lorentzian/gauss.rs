@@ -1,4 +1,4 @@
-//! Nodes and weights of Gauss–Legendre quadrature, any count.
+//! Nodes and weights of Gauss–Legendre quadrature for any number of nodes.
 
 use std::f64::consts::PI;
 
@@ -13,8 +13,8 @@ pub(super) fn gauss_legendre(count: usize) -> (Vec<f64>, Vec<f64>) {
     let (mut nodes, mut weights) = (vec![0.0; count], vec![0.0; count]);
     for index in 0..count.div_ceil(2) {
         let mut x = libm::cos(PI * (index as f64 + 0.75) / (count as f64 + 0.5));
-        // The estimate is off by O(count⁻²) of the spacing and every step squares the error: four are enough from 4 to
-        // 1000 nodes, the fifth is the last bit.
+        // The estimate has an error of O(count⁻²) of the spacing, and every step squares it: four steps suffice from 4
+        // to 1000 nodes; the fifth fixes the last bit.
         for _ in 0..5 {
             let (value, slope) = legendre(count, x);
             x -= value / slope;
