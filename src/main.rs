@@ -95,8 +95,8 @@ struct InspectArguments {
     /// The contact law, `hertzian`, `hookean` or `power:ALPHA`, where the file does not say; without either Hertzian.
     #[arg(long, value_name = "LAW", value_parser = law_of_file::parse)]
     law: Option<law_of_file::LawName>,
-    /// k' of the Hertzian and Hookean law, energy scale of the power law, where the file does not say; without either 2e5, and 1
-    /// for the power law.
+    /// k' of the Hertzian and Hookean law, energy scale of the power law, where the file does not say; without either
+    /// 2e5, and 1 for the power law.
     #[arg(long, value_name = "K")]
     stiffness: Option<f64>,
     /// Dimension of the packing.

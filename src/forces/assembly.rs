@@ -174,7 +174,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             // An anchor is the rounded difference of position and origin; the displacement has the remainder.
             let from_site = |&disk: &u32| {
                 let position = packing.positions()[disk as usize];
-                let offset = packing.way_from_site(disk as usize, position);
+                let offset = packing.vector_from_site(disk as usize, position);
                 std::array::from_fn(|d| extended_sum(offset[d], -two_sum(position[d], -origin[d]).1))
             };
             assembly.from_sites = assembly.order[..assembly.mobile_count].iter().map(from_site).collect();

@@ -31,8 +31,8 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// κ and r_n in 1/length, A without unit.
 ///
 /// # Source
-/// Lemaître et al. (2021), Phys. Rev. E 104, 024904, for the profile; product and sum as derived above. For a → 0 the product
-/// is that of J_1, Abramowitz & Stegun (1964), 9.5.10.
+/// Lemaître et al. (2021), Phys. Rev. E 104, 024904, for the profile; product and sum as derived above. For a → 0 the
+/// product is that of J_1, Abramowitz & Stegun (1964), 9.5.10.
 ///
 /// # Accuracy
 /// Relative error of A below 3.2·10⁻¹⁵ (1 + κ_n/|κ − κ_n|), like that of the profile; of r_n below 4·10⁻¹⁵. Largest

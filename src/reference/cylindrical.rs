@@ -8,7 +8,7 @@
 //! the rounding of κR. There are therefore three methods, with δ = κ(R − r) the distance from the rim:
 //!
 //! 1. `ln(R/r) ≤ 1` and `δ ≤ 1.2`: power series in ln(R/r) from the differential equation ([`LocalSeries`]), with
-//! stored coefficients;
+//!    stored coefficients;
 //! 2. `x ≥ 2`: `v = R √(P(x) P(y) / (x y)) sin(δ + φ(y) − φ(x))`, with δ as a sum of two numbers;
 //! 3. otherwise the bracket, with arguments corrected for their rounding.
 

@@ -70,7 +70,8 @@ impl<const D: usize> RimSolution<D> {
         Ok(RimSolution { annulus, wavenumber, form, response: OnceLock::new() })
     }
 
-    /// ∂v/∂κ \[length²\] at `radius` \[length\], NaN outside the annulus; of order κ as κ → 0, and of order (R − r)³ as r → R.
+    /// ∂v/∂κ \[length²\] at `radius` \[length\], NaN outside the annulus; of order κ as κ → 0, and of order (R − r)³ as
+    /// r → R.
     ///
     /// # Accuracy
     /// Error below 3.2·10⁻¹⁵ of the amplitude of its oscillation in κ, `√((∂v/∂κ)² + (R − r)² v²)`; for κR < 2 and near

@@ -24,7 +24,8 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// Radii and displacement in lengths, κ in 1/length.
 ///
 /// # Source
-/// Lemaître et al. (2021), Phys. Rev. E 104, 024904; in three dimensions Charan et al. (2023), Phys. Rev. E 107, 055005.
+/// Lemaître et al. (2021), Phys. Rev. E 104, 024904; in three dimensions Charan et al. (2023), Phys. Rev. E 107,
+/// 055005.
 ///
 /// # Accuracy
 /// Relative error, near a node relative to the local envelope, below 3.2·10⁻¹⁵ (1 + κ_n/|κ − κ_n|), where the factor is
@@ -107,7 +108,7 @@ impl<const D: usize> Screened<D> {
     ///
     /// - itself, for κR < 2 (also for κ → 0, where it is of order κ) and near a, where it vanishes as r − a;
     /// - `√((∂d/∂κ)² + (R − a)² d²)`, its amplitude as κ changes, within half of 1/κ of the rim, where it vanishes as R
-    /// − r;
+    ///   − r;
     /// - the local amplitude of its oscillation in r elsewhere.
     ///
     /// Tested for R/a from 1.001 to 10⁷, κR from 10⁻⁸ to 10⁶

@@ -8,11 +8,11 @@
 //! the right is not), as κa → 0, as r → a and as r → R. There are therefore three methods, connected by two numbers:
 //!
 //! 1. Near a: `∂(d/d_0)/∂κ = u(r) ∂β/∂κ + h(r)` with β = d'(a)/d_0, u(a) = 0, u'(a) = 1, and h = ∂f/∂κ at fixed β,
-//! which begins as (r − a)²; both by [`LocalSeries`].
+//!    which begins as (r − a)²; both by [`LocalSeries`].
 //! 2. Near R: `(d/d_0) [∂ ln v(r)/∂κ − Λ]` with Λ = ∂ ln v(a)/∂κ; the first term begins as (R − r)², by
-//! [`LocalSeries`].
+//!    [`LocalSeries`].
 //! 3. Between: for small κR power series in κ² ([`Pair`]); otherwise modulus and phase ([`Wave`]), or I and K
-//! ([`Decay`]).
+//!    ([`Decay`]).
 //!
 //! ∂β/∂κ, and Λ if the rim is far, are determined where two methods overlap.
 //!

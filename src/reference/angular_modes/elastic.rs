@@ -114,7 +114,7 @@ impl ElasticMode {
         let (inner, outer) = (self.annulus.inner_radius(), self.annulus.outer_radius());
         let n = f64::from(self.mode);
         let (p, q) = (2.0 * n + 2.0, 2.0 * n - 2.0);
-        let (t, tau, way) = (log_ratio(outer, radius), self.depth, log_ratio(radius, inner));
+        let (t, tau, eta) = (log_ratio(outer, radius), self.depth, log_ratio(radius, inner));
         let epsilon = self.compliance_ratio;
         let (soft, stiff, mixed) = (4.0 * epsilon, (1.0 - epsilon).powi(2), (1.0 - epsilon) * (1.0 + epsilon));
 
@@ -131,8 +131,8 @@ impl ElasticMode {
         let flat = ratio_power(inner, radius, n - 1.0) / determinant;
         let share = (radius / outer).powi(2);
         // [E_2(τ) E_p(t) − E_p(τ) E_2(t)]/x² = E_2(η) E_p(t) − x^(2n) E_p(η) E_2(t) with η = ln(r/a) = τ − t.
-        let [way_p, way_2] = [p, 2.0].map(|m| Gap::integral(m, way));
-        let from_inner = product_difference([way_2, here_p], [way_p.times_power(2.0 * n, t), here_2]);
+        let [inner_p, inner_2] = [p, 2.0].map(|m| Gap::integral(m, eta));
+        let from_inner = product_difference([inner_2, here_p], [inner_p.times_power(2.0 * n, t), here_2]);
         let value = [
             [steep * both([whole_q, here_p], [whole_2_q, here_2]), flat * mixed * from_inner],
             [

@@ -57,7 +57,8 @@ impl ModeAmplitudes {
         ModeAmplitudes { radial: Complex::new(radial, 0.0), transverse: Complex::new(0.0, -transverse) }
     }
 
-    /// The radial and the transverse component at `angle` θ, `[Re(U e^(inθ)), Re(V e^(inθ))]`, for mode n = `mode` \[length\].
+    /// The radial and the transverse component at `angle` θ, `[Re(U e^(inθ)), Re(V e^(inθ))]`, for mode n = `mode`
+    /// \[length\].
     pub fn at_angle(&self, mode: u32, angle: f64) -> [f64; 2] {
         let wave = phase_factor(mode, angle);
         [(self.radial * wave).re, (self.transverse * wave).re]

@@ -16,8 +16,8 @@
 //! (`reference::bessel_functions::spherical_functions_have_their_digits_at_any_argument`).
 //!
 //! # Limits
-//! j_n and i_n take any x; i_n overflows to ∞ at 718. y_0, y_1, k_0, k_1 at 0 are ∓∞ and ∞; NaN for x < 0. y_1 and k_1, of order 1/x²,
-//! overflow for x < 10⁻¹⁵⁴.
+//! j_n and i_n take any x; i_n overflows to ∞ at 718. y_0, y_1, k_0, k_1 at 0 are ∓∞ and ∞; NaN for x < 0. y_1 and k_1,
+//! of order 1/x², overflow for x < 10⁻¹⁵⁴.
 //!
 //! # Cost
 //! See `cargo bench --bench reference -- bessel`.

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-/// Nodes in (−1, 1), ascending, and weights: `∫ f dx = Σ weight f(node)`, exact for polynomials up to degree 2·count − 1.
+/// Nodes in (−1, 1), ascending, and weights: `∫ f dx = Σ weight f(node)`, exact for polynomials up to degree 2·count −
+/// 1.
 ///
 /// Newton's method on the Legendre polynomial from the estimate `cos(π (k − 1/4)/(count + 1/2))`; the weight is
 /// `2 / ((1 − x²) P'(x)²)`.

@@ -87,7 +87,7 @@ pub(crate) struct PlotPoint {
 
 /// Style of a series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Look {
+pub(crate) enum Style {
     /// Points only.
     Points,
     /// Hollow points.
@@ -106,7 +106,7 @@ pub(crate) struct Series {
     /// Its label in the legend, as SVG text; if empty, it has no entry.
     pub label: String,
     pub points: Vec<PlotPoint>,
-    pub look: Look,
+    pub style: Style,
     pub colour: [u8; 3],
 }
 
@@ -185,10 +185,10 @@ impl Series {
     fn markup(&self, svg: &mut String, x_axis: &Axis, y_axis: &Axis) {
         let colour = hexadecimal(self.colour);
         let shown = |point: &&PlotPoint| x_axis.holds(point.x) && y_axis.holds(point.y);
-        if matches!(self.look, Look::Joined | Look::Line | Look::Dashed) {
-            let (width, dashes) = match self.look {
-                Look::Joined => (1.0, ""),
-                Look::Dashed => (1.8, " stroke-dasharray=\"6 4\""),
+        if matches!(self.style, Style::Joined | Style::Line | Style::Dashed) {
+            let (width, dashes) = match self.style {
+                Style::Joined => (1.0, ""),
+                Style::Dashed => (1.8, " stroke-dasharray=\"6 4\""),
                 _ => (1.8, ""),
             };
             let all: Vec<&PlotPoint> = self.points.iter().collect();
@@ -201,10 +201,10 @@ impl Series {
                 );
             }
         }
-        if matches!(self.look, Look::Line | Look::Dashed) {
+        if matches!(self.style, Style::Line | Style::Dashed) {
             return;
         }
-        let fill = if self.look == Look::Hollow { "#ffffff" } else { &colour };
+        let fill = if self.style == Style::Hollow { "#ffffff" } else { &colour };
         for point in self.points.iter().filter(shown) {
             let (x, y) = (x_axis.place(point.x), y_axis.place(point.y));
             if let Some(interval) = point.interval {
@@ -219,17 +219,17 @@ impl Series {
     /// The symbol of the series in the legend.
     fn sign(&self, svg: &mut String, x: f64, y: f64) {
         let colour = hexadecimal(self.colour);
-        let fill = if self.look == Look::Hollow { "#ffffff" } else { &colour };
-        let line = match self.look {
-            Look::Points | Look::Hollow => None,
-            Look::Joined => Some(("1", "")),
-            Look::Line => Some(("2", "")),
-            Look::Dashed => Some(("2", " stroke-dasharray=\"6 4\"")),
+        let fill = if self.style == Style::Hollow { "#ffffff" } else { &colour };
+        let line = match self.style {
+            Style::Points | Style::Hollow => None,
+            Style::Joined => Some(("1", "")),
+            Style::Line => Some(("2", "")),
+            Style::Dashed => Some(("2", " stroke-dasharray=\"6 4\"")),
         };
         if let Some((width, dashes)) = line {
             let _ = write!(svg, "<path d=\"M{x} {y}h24\" stroke=\"{colour}\" stroke-width=\"{width}\"{dashes}/>");
         }
-        if !matches!(self.look, Look::Line | Look::Dashed) {
+        if !matches!(self.style, Style::Line | Style::Dashed) {
             let middle = x + 12.0;
             let _ = write!(svg, "<circle cx=\"{middle}\" cy=\"{y}\" r=\"2.8\" fill=\"{fill}\" stroke=\"{colour}\"/>");
         }
@@ -270,7 +270,7 @@ mod tests {
     use super::*;
 
     fn plot(points: Vec<PlotPoint>, y: PlotAxis) -> Option<Figure> {
-        let series = Series { label: "a".into(), points, look: Look::Joined, colour: colour(0, 1) };
+        let series = Series { label: "a".into(), points, style: Style::Joined, colour: colour(0, 1) };
         let (title, description) = ("t".to_string(), "d".to_string());
         Plot { title, description, x: PlotAxis::logarithmic("x"), y, series: vec![series], guides: Vec::new() }.draw()
     }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::reference::lorentzian::{Lorentzian, USUAL_EXPONENT};
 use crate::report::figures::Figure;
-use crate::report::figures::plot::{Guide, Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare, colour};
+use crate::report::figures::plot::{Guide, Plot, PlotAxis, PlotPoint, Series as Curve, Style, bare, colour};
 use crate::report::number::significant;
 use crate::report::study::subject::{Subject, reduced, short};
 use crate::study::{MeanCurve, MeanPoint};
@@ -33,7 +33,7 @@ fn correlation(subject: &Subject<'_>, series: &Series) -> Option<Figure> {
         curves.push(Curve {
             label: reduced(point.reduced_pressure),
             points: bare(curve.points().iter().map(|point| (point.x / PI, point.y))),
-            look: Look::Line,
+            style: Style::Line,
             colour: colour(index, series.points.len().max(5)),
         });
     }
@@ -53,7 +53,7 @@ fn correlation(subject: &Subject<'_>, series: &Series) -> Option<Figure> {
 }
 
 fn dashed(label: &str, points: impl Iterator<Item = (f64, f64)>) -> Curve {
-    Curve { label: label.into(), points: bare(points), look: Look::Dashed, colour: [0x22; 3] }
+    Curve { label: label.into(), points: bare(points), style: Style::Dashed, colour: [0x22; 3] }
 }
 
 /// S normalised to S(1) = 1, as in the study.
@@ -76,12 +76,12 @@ fn spectrum(subject: &Subject<'_>, series: &Series) -> Option<Figure> {
         let Some(curve) = subject.samples(point).curves.get("power_spectrum") else { continue };
         let (points, colour) = (normalised(curve), colour(index, count));
         highest = points.iter().map(|point| point.x).fold(highest, f64::max);
-        curves.push(Curve { label: reduced(point.reduced_pressure), points, look: Look::Points, colour });
+        curves.push(Curve { label: reduced(point.reduced_pressure), points, style: Style::Points, colour });
         let found = series.spectra.iter().find(|it| it.point.cell == point.cell).and_then(|it| it.crossover?.found());
         if let Some(lorentzian) = found.and_then(|found| Lorentzian::new(found, USUAL_EXPONENT).ok()) {
             let points = (0..=60).map(|step| libm::pow(24.0, f64::from(step) / 60.0));
             let points = bare(points.map(|f| (f, lorentzian.spectrum(f) / lorentzian.spectrum(1.0))));
-            fits.push(Curve { label: String::new(), points, look: Look::Line, colour });
+            fits.push(Curve { label: String::new(), points, style: Style::Line, colour });
         }
     }
     if curves.is_empty() {
@@ -121,7 +121,7 @@ pub(super) fn by_radius(subject: &Subject<'_>) -> Vec<Figure> {
             };
             let label = format!("r̂ = {}", ring.relative_radius);
             let points = normalised(curve).iter().map(|point| PlotPoint { interval: None, ..*point }).collect();
-            curves.push(Curve { label, points, look: Look::Points, colour: colour(place, found.len().max(5)) });
+            curves.push(Curve { label, points, style: Style::Points, colour: colour(place, found.len().max(5)) });
         }
         curves.push(power_law());
         let plot = Plot {
@@ -141,7 +141,7 @@ pub(super) fn by_radius(subject: &Subject<'_>) -> Vec<Figure> {
         slopes.push(Curve {
             label: format!("{}, p̂ = {}", short(series, all), significant(point.reduced_pressure, 1)),
             points: points.collect(),
-            look: Look::Joined,
+            style: Style::Joined,
             colour: colour(index, all.len()),
         });
     }

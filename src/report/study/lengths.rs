@@ -1,7 +1,7 @@
 //! ℓ_s and ℓ_iso against the pressure, the curves from which ℓ_iso is read, and ξ below jamming.
 
 use crate::report::figures::Figure;
-use crate::report::figures::plot::{Guide, Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare, colour};
+use crate::report::figures::plot::{Guide, Plot, PlotAxis, PlotPoint, Series as Curve, Style, bare, colour};
 use crate::report::number::with_error;
 use crate::report::study::subject::{Subject, reduced, series_colour, short};
 use crate::transition::{FIRST_ZERO, ISOSTATIC_THRESHOLD, JAMMING, JammingSeries, Series};
@@ -26,12 +26,12 @@ pub(super) fn matching(subject: &Subject<'_>) -> Vec<Figure> {
         let radius = series.points.iter().find_map(|point| subject.number(point.cell, "outer_radius"))?.mean;
         let some = !isostatic.is_empty();
         let curves = vec![
-            Curve { label: "ℓₛ = 1/κ".into(), points: screening.collect(), look: Look::Points, colour },
-            Curve { label: "ℓ_iso".into(), points: isostatic, look: Look::Joined, colour: [0x22; 3] },
+            Curve { label: "ℓₛ = 1/κ".into(), points: screening.collect(), style: Style::Points, colour },
+            Curve { label: "ℓ_iso".into(), points: isostatic, style: Style::Joined, colour: [0x22; 3] },
             Curve {
                 label: "75 p^(−1/3), published".into(),
                 points: bare(published),
-                look: Look::Dashed,
+                style: Style::Dashed,
                 colour: [0x77; 3],
             },
         ];
@@ -58,7 +58,7 @@ pub(super) fn fluctuations(subject: &Subject<'_>) -> Vec<Figure> {
                 series.lengths.iter().enumerate().filter(|(_, it)| !it.curve.is_empty()).map(|(index, it)| Curve {
                     label: reduced(it.point.reduced_pressure),
                     points: bare(it.curve.iter().map(|row| (row[1], row[place]))),
-                    look: Look::Joined,
+                    style: Style::Joined,
                     colour: colour(index, series.lengths.len().max(5)),
                 });
             let plot = Plot {
@@ -110,9 +110,9 @@ fn penetration(all: &[&JammingSeries], threshold: f64, from_jamming: bool) -> Op
             label = format!("{label}, ν = {}", with_error(fit.exponent.value, fit.exponent.standard_error));
             let line =
                 points.iter().map(|point| (point.x, fit.amplitude.value * libm::pow(point.x, -fit.exponent.value)));
-            curves.push(Curve { label: String::new(), points: bare(line), look: Look::Line, colour });
+            curves.push(Curve { label: String::new(), points: bare(line), style: Style::Line, colour });
         }
-        curves.push(Curve { label, points, look: Look::Points, colour });
+        curves.push(Curve { label, points, style: Style::Points, colour });
     }
     let (x, title) = match from_jamming {
         true => (PlotAxis::logarithmic("φ_J − φ, φ_J = 0.842"), "distance from jamming"),

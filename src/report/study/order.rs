@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::reference::lorentzian::{Lorentzian, USUAL_EXPONENT};
 use crate::report::figures::Figure;
-use crate::report::figures::plot::{Guide, Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare, colour};
+use crate::report::figures::plot::{Guide, Plot, PlotAxis, PlotPoint, Series as Curve, Style, bare, colour};
 use crate::report::study::subject::{Subject, series_colour, short};
 use crate::study::NumberStatistics;
 use crate::transition::{
@@ -62,8 +62,8 @@ fn figure(
         }
         let colour = series_colour(index, all);
         let pale = colour.map(|part| 255 - (255 - part) / 3);
-        curves.push(Curve { label: String::new(), points, look: Look::Points, colour: pale });
-        curves.push(Curve { label: short(series, all), points: means, look: Look::Joined, colour });
+        curves.push(Curve { label: String::new(), points, style: Style::Points, colour: pale });
+        curves.push(Curve { label: short(series, all), points: means, style: Style::Joined, colour });
     }
     curves.iter().any(|curve| !curve.points.is_empty()).then(|| Plot {
         title: format!("{title} against p̂"),
@@ -127,7 +127,12 @@ fn subject_plot(
         };
         let mut points = subject.along(series, name, at);
         scale(&mut points, unit);
-        curves.push(Curve { label: short(series, all), points, look: Look::Joined, colour: series_colour(index, all) });
+        curves.push(Curve {
+            label: short(series, all),
+            points,
+            style: Style::Joined,
+            colour: series_colour(index, all),
+        });
         if name == ANGLE && matches!(abscissa, Abscissa::Reduced) {
             curves.push(crossover_angles(series, index, all));
         }
@@ -162,7 +167,7 @@ fn crossover_angles(series: &Series, index: usize, all: &[Series]) -> Curve {
     });
     let points = points.filter(|point| point.y < 1.0).collect();
     let label = if index == 0 { "θ† / π, hollow".into() } else { String::new() };
-    Curve { label, points, look: Look::Hollow, colour: series_colour(index, all) }
+    Curve { label, points, style: Style::Hollow, colour: series_colour(index, all) }
 }
 
 /// θ† against the distance from the transition, with the fit; θ* against f†, with the exact curve.
@@ -184,8 +189,8 @@ pub(super) fn crossovers(subject: &Subject<'_>) -> Vec<Figure> {
             let line = bare(line);
             let label =
                 format!("{}, μ = {:.2} ± {:.2}", short(series, all), fit.exponent.value, fit.exponent.standard_error);
-            curves.push(Curve { label, points, look: Look::Points, colour });
-            curves.push(Curve { label: String::new(), points: line, look: Look::Line, colour });
+            curves.push(Curve { label, points, style: Style::Points, colour });
+            curves.push(Curve { label: String::new(), points: line, style: Style::Line, colour });
         }
         let points = series.spectra.iter().filter_map(|spectrum| {
             let found = spectrum.crossover?.found()?;
@@ -193,7 +198,7 @@ pub(super) fn crossovers(subject: &Subject<'_>) -> Vec<Figure> {
             let interval = angle.mean_interval.map(|ends| ends.map(|end| end / PI));
             Some(PlotPoint { x: found, y: angle.mean / PI, interval })
         });
-        angles.push(Curve { label: short(series, all), points: points.collect(), look: Look::Points, colour });
+        angles.push(Curve { label: short(series, all), points: points.collect(), style: Style::Points, colour });
     }
     let divergence = Plot {
         title: "θ† below the transition".into(),
@@ -209,7 +214,7 @@ pub(super) fn crossovers(subject: &Subject<'_>) -> Vec<Figure> {
         Some((crossover, angle / PI))
     });
     let measured = angles.iter().any(|curve| !curve.points.is_empty());
-    let exact = Curve { label: "exact".into(), points: bare(exact), look: Look::Line, colour: colour(3, 4) };
+    let exact = Curve { label: "exact".into(), points: bare(exact), style: Style::Line, colour: colour(3, 4) };
     angles.push(exact);
     let relation = measured.then(|| Plot {
         title: "θ* against f†".into(),

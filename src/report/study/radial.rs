@@ -4,7 +4,7 @@ use crate::reference::elastic::Elastic;
 use crate::reference::screened::Screened;
 use crate::reference::{Annulus, RadialSolution};
 use crate::report::figures::Figure;
-use crate::report::figures::plot::{Guide, Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare, colour};
+use crate::report::figures::plot::{Guide, Plot, PlotAxis, PlotPoint, Series as Curve, Style, bare, colour};
 use crate::report::study::subject::{Subject, series_colour, short, target, with_relaxer};
 use crate::study::{CellSamples, Single};
 use crate::transition::{FIRST_ZERO, Series};
@@ -28,12 +28,12 @@ pub(super) fn singles(subject: &Subject<'_>) -> Vec<Figure> {
         let colour = colour(index, cells.len().clamp(5, MOST_CELLS));
         let points = bare(single.profile.iter().map(|[r, d]| (r / radius, r * d / unit)));
         let label = with_relaxer(target(&samples.cell), &samples.cell, subject.merged);
-        curves.push(Curve { label, points, look: Look::Points, colour });
+        curves.push(Curve { label, points, style: Style::Points, colour });
         if let Some(solution) = solution(subject, single, radius) {
             let at = |step: u32| 0.05 + 0.95 * f64::from(step) / f64::from(CURVE_POINTS);
             let points =
                 (0..=CURVE_POINTS).map(at).map(|share| (share, share * radius * solution(share * radius) / unit));
-            curves.push(Curve { label: String::new(), points: bare(points), look: Look::Line, colour });
+            curves.push(Curve { label: String::new(), points: bare(points), style: Style::Line, colour });
         }
     }
     let plot = Plot {
@@ -129,13 +129,13 @@ fn mean_figure(
             PlotPoint { x: point.x / radius, y: point.x * point.y / unit, interval }
         });
         let colour = colour(index, cells.len().max(5));
-        curves.push(Curve { label: label(samples), points: points.collect(), look: Look::Joined, colour });
+        curves.push(Curve { label: label(samples), points: points.collect(), style: Style::Joined, colour });
     }
     let inner = subject.merged.study.scene.mixture.components.iter().map(|it| it.radius).fold(f64::INFINITY, f64::min);
     let elastic = Elastic::<2>::new(Annulus::new(inner, widest).ok()?, 1.0).ok()?;
     let at = |step: u32| 0.02 + 0.98 * f64::from(step) / f64::from(CURVE_POINTS);
     let exact = bare((0..=CURVE_POINTS).map(at).map(|share| (share, share * widest * elastic.value(share * widest))));
-    curves.push(Curve { label: "elastic".into(), points: exact, look: Look::Dashed, colour: [0x22; 3] });
+    curves.push(Curve { label: "elastic".into(), points: exact, style: Style::Dashed, colour: [0x22; 3] });
     Plot {
         title,
         description:
@@ -157,7 +157,7 @@ pub(super) fn modes(subject: &Subject<'_>) -> Vec<Figure> {
         let curve = |(index, name): (usize, &&str)| {
             let values = samples.numbers.get(&format!("share_{name}"))?;
             let points = bare(values.iter().enumerate().map(|(place, &value)| ((place + 1) as f64, value)));
-            Some(Curve { label: (*name).into(), points, look: Look::Joined, colour: colour(index, names.len()) })
+            Some(Curve { label: (*name).into(), points, style: Style::Joined, colour: colour(index, names.len()) })
         };
         let series: Vec<Curve> = names.iter().enumerate().filter_map(curve).collect();
         Plot {
@@ -185,16 +185,17 @@ pub(super) fn contacts(subject: &Subject<'_>) -> Vec<Figure> {
     let along = |series: &Series, name: &str| subject.along(series, name, |point| point.reduced_pressure);
     let (mut changes, mut returns) = (Vec::new(), Vec::new());
     for (index, series) in all.iter().enumerate() {
-        for (name, word, look) in [("contacts_made", "made", Look::Joined), ("contacts_broken", "broken", Look::Hollow)]
+        for (name, word, style) in
+            [("contacts_made", "made", Style::Joined), ("contacts_broken", "broken", Style::Hollow)]
         {
             let label = format!("{word}, {}", short(series, all));
-            changes.push(Curve { label, points: along(series, name), look, colour: series_colour(index, all) });
+            changes.push(Curve { label, points: along(series, name), style, colour: series_colour(index, all) });
         }
         let points = along(series, "contacts_returned_share");
         returns.push(Curve {
             label: short(series, all),
             points,
-            look: Look::Joined,
+            style: Style::Joined,
             colour: series_colour(index, all),
         });
     }

@@ -6,7 +6,7 @@ use crate::law::choice::LawChoice;
 use crate::relax::RelaxerChoice;
 use crate::report::figures::Figure;
 use crate::report::figures::palette::{BLUE, VERMILLION};
-use crate::report::figures::plot::{Look, Plot, PlotAxis, PlotPoint, Series as Curve, bare};
+use crate::report::figures::plot::{Plot, PlotAxis, PlotPoint, Series as Curve, Style, bare};
 use crate::report::study::subject::{Subject, series_colour, short};
 use crate::transition::{
     ANGLE, ANTICORRELATION, Method, SCALE_FREE_ANTICORRELATION, Series as Cells, beta, laws_and_relaxers,
@@ -49,7 +49,12 @@ pub(super) fn with_inflation(subject: &Subject<'_>) -> Vec<Figure> {
                     ..*point
                 });
                 let colour = series_colour(index, all);
-                curves.push(Curve { label: short(series, all), points: points.collect(), look: Look::Joined, colour });
+                curves.push(Curve {
+                    label: short(series, all),
+                    points: points.collect(),
+                    style: Style::Joined,
+                    colour,
+                });
             }
             let (a, b) = (0.5 * beta, 0.25 * beta);
             let plot = Plot {
@@ -91,10 +96,10 @@ fn diagram(subject: &Subject<'_>, law: LawChoice, relaxer: RelaxerChoice) -> Opt
         Curve {
             label: "G* below 0.293".into(),
             points: bare(plastic.into_iter()),
-            look: Look::Points,
+            style: Style::Points,
             colour: VERMILLION,
         },
-        Curve { label: "G* above 0.293".into(), points: bare(elastic.into_iter()), look: Look::Points, colour: BLUE },
+        Curve { label: "G* above 0.293".into(), points: bare(elastic.into_iter()), style: Style::Points, colour: BLUE },
     ];
     let law_of = |method| {
         let mut all = subject.transition.pressure_laws.iter();
@@ -102,7 +107,7 @@ fn diagram(subject: &Subject<'_>, law: LawChoice, relaxer: RelaxerChoice) -> Opt
     };
     if let Some(found) = law_of(Method::Anticorrelation) {
         let points = bare(found.points.iter().map(|point| (point.y, point.x)));
-        curves.push(Curve { label: "p_c by G*".into(), points, look: Look::Hollow, colour: [0x22; 3] });
+        curves.push(Curve { label: "p_c by G*".into(), points, style: Style::Hollow, colour: [0x22; 3] });
         if let Some(fit) = &found.fit {
             let points = found
                 .points
@@ -111,7 +116,7 @@ fn diagram(subject: &Subject<'_>, law: LawChoice, relaxer: RelaxerChoice) -> Opt
             let mut points: Vec<(f64, f64)> = points.collect();
             points.sort_by(|a, b| a.1.total_cmp(&b.1));
             let label = format!("exponent {:.2} ± {:.2}", fit.exponent.value, fit.exponent.standard_error);
-            curves.push(Curve { label, points: bare(points.into_iter()), look: Look::Line, colour: [0x22; 3] });
+            curves.push(Curve { label, points: bare(points.into_iter()), style: Style::Line, colour: [0x22; 3] });
             // A line with the published exponent through the middle of the points.
             let middle = found.points.len() / 2;
             let mut sorted = found.points.clone();
@@ -119,7 +124,7 @@ fn diagram(subject: &Subject<'_>, law: LawChoice, relaxer: RelaxerChoice) -> Opt
             let through = sorted[middle];
             let line = sorted.iter().map(|point| (through.y * libm::pow(point.x / through.x, 0.25 * beta), point.x));
             let label = format!("exponent {}, published", 0.25 * beta);
-            curves.push(Curve { label, points: bare(line), look: Look::Dashed, colour: [0x77; 3] });
+            curves.push(Curve { label, points: bare(line), style: Style::Dashed, colour: [0x77; 3] });
         }
     }
     Plot {
