@@ -201,8 +201,8 @@ impl AngularSolution for ScreenedMode {
     }
 }
 
-/// The sine of the angle between the solutions that vanish at the rim and those that vanish at a, at its smallest
-/// anywhere between, over its value at a. At a pole one solution vanishes at both.
+/// The sine of the angle between the solutions that vanish at the rim and those that vanish at a: its value at a over
+/// its smallest value anywhere between. At a pole one solution vanishes at both.
 fn closeness(system: &System, radii: &[f64], frames: &[Frame]) -> f64 {
     let mut inner = Frame::held(system, radii[radii.len() - 1]);
     let mut sines = Vec::with_capacity(radii.len());
