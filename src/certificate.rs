@@ -16,8 +16,8 @@
 //! *Bucklers* are disks of the backbone with exactly D + 1 contacts: they can buckle.
 //!
 //! # Source
-//! Goodrich, Liu, Nagel (2012), Phys. Rev. Lett. 109, 095704 (isostatic number of finite packings). Charbonneau, Corwin, Parisi,
-//! Zamponi (2015), Phys. Rev. Lett. 114, 125504 (bucklers).
+//! Goodrich, Liu, Nagel (2012), Phys. Rev. Lett. 109, 095704 (isostatic number of finite packings). Charbonneau,
+//! Corwin, Parisi, Zamponi (2015), Phys. Rev. Lett. 114, 125504 (bucklers).
 
 use serde::Serialize;
 

@@ -228,8 +228,8 @@ impl Lattice {
         ([x, y], [x_rest, y_rest])
     }
 
-    /// A periodic box of this many rectangular cells along each axis: b × √3 b with two disks (triangular) or b × b with
-    /// one (square).
+    /// A periodic box of this many rectangular cells along each axis: b × √3 b with two disks (triangular) or b × b
+    /// with one (square).
     ///
     /// # Errors
     /// No cell. If a box is too small for one image per pair, later functions refuse it.

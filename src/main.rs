@@ -22,6 +22,8 @@ mod progress;
 mod scene_file;
 #[path = "cli/study.rs"]
 mod study;
+#[path = "cli/study_progress.rs"]
+mod study_progress;
 #[path = "cli/threads.rs"]
 mod threads;
 

@@ -53,7 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         dynamics.finish = Finish::Motion;
     }
     let mut last_step = 0.0;
-    let mut trace = |look: &Check| {
+    let mut trace = |check: &Check| {
         if check.residual > limit {
             last_step = check.time_step;
         }

@@ -276,9 +276,9 @@ fn held(packing: &Packing<2>, centre: usize, outer_radius: f64, boundary: Bounda
     if boundary == Boundary::Periodic {
         return vec![false; packing.len()];
     }
-    let said = packing.held();
+    let marked = packing.held();
     // Held disks of a file are more reliable than a radius, which may be rounded.
-    let told = said.iter().enumerate().any(|(disk, &held)| held && disk != centre);
+    let has_held = marked.iter().enumerate().any(|(disk, &held)| held && disk != centre);
     let far = |disk: usize| norm(packing.separation(disk, centre)) >= outer_radius;
-    (0..packing.len()).map(|disk| disk == centre || said[disk] || (by_radius && !told && far(disk))).collect()
+    (0..packing.len()).map(|disk| disk == centre || marked[disk] || (by_radius && !has_held && far(disk))).collect()
 }

@@ -11,13 +11,13 @@ use jamscope::scene::Observables;
 use jamscope::verdict::{Decision, VerdictSettings};
 
 use crate::contact_law::{self, LawName};
-use crate::{Failure, ending, override_limit, print, scene_file};
+use crate::{Failure, exit_code, override_limit, print, scene_file};
 
 /// Arguments of `analyse`.
 #[derive(Args)]
 pub struct AnalyseArguments {
-    /// A folder with pairs NAME.before.* and NAME.after.* (or NAME.displacement.*, as a run writes it), and NAME.deflated.*
-    /// where there is one; or the files before, after and, if there is one, after the deflation.
+    /// A folder with pairs NAME.before.* and NAME.after.* (or NAME.displacement.*, as a run writes it), and
+    /// NAME.deflated.* where there is one; or the files before, after and, if there is one, after the deflation.
     #[arg(required = true, num_args = 1..=3, value_name = "DIR | BEFORE AFTER [DEFLATED]")]
     states: Vec<PathBuf>,
     /// Label of the inflated disk; without it the one whose radius changed.

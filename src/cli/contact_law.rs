@@ -125,7 +125,7 @@ pub fn law_of(
         }
         _ => Ok(()),
     };
-    let told = match value("law") {
+    let in_file = match value("law") {
         None => None,
         Some(law) => {
             let word = law.to_ascii_lowercase();
@@ -149,13 +149,13 @@ pub fn law_of(
         }
     };
     // A stiffness belongs to the law given with it.
-    let told_stiffness = match told {
+    let stiffness_in_file = match in_file {
         Some(LawName::Power(_)) => number("stiffness", "scale")?,
         Some(_) => number("stiffness", "stiffness")?,
         None => None,
     };
-    let law = agreed(&name, "law", told, asked)?.unwrap_or(LawName::Hertzian);
-    let stiffness = agreed(&name, "stiffness", told_stiffness, asked_stiffness)?;
+    let law = agreed(&name, "law", in_file, asked)?.unwrap_or(LawName::Hertzian);
+    let stiffness = agreed(&name, "stiffness", stiffness_in_file, asked_stiffness)?;
     Ok(match law {
         LawName::Hertzian => {
             LawChoice::Hertzian(stiffness.map_or_else(Hertzian::default, |stiffness| Hertzian { stiffness }))
@@ -178,16 +178,16 @@ fn number_after(text: &str, word: &str) -> Option<f64> {
 fn agreed<T: Copy + PartialEq + std::fmt::Display>(
     path: &str,
     what: &'static str,
-    told: Option<T>,
+    in_file: Option<T>,
     asked: Option<T>,
 ) -> Result<Option<T>, LawOfFileError> {
-    match (told, asked) {
+    match (in_file, asked) {
         (Some(file), Some(command_line)) if file != command_line => Err(LawOfFileError::Contradiction {
             path: path.into(),
             what,
             file: file.to_string(),
             command_line: command_line.to_string(),
         }),
-        _ => Ok(told.or(asked)),
+        _ => Ok(in_file.or(asked)),
     }
 }

@@ -3,19 +3,15 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Mutex;
-use std::time::Duration;
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use indicatif::{ProgressBar, ProgressStyle};
 use jamscope::relax::RelaxerChoice;
 use jamscope::scene::ProtocolChoice;
-use jamscope::study::{
-    self, FailureKind, Merged, Plan, Problem, Recipe, Record, RecordOutcome, Scale, Shard, Study, StudyProgress, Task,
-};
+use jamscope::study::{self, FailureKind, Merged, Plan, Problem, Recipe, Scale, Shard, Study};
 
 use crate::scene_file::refuse_cut;
+use crate::study_progress::Bar;
 use crate::threads::set_threads;
 use crate::{Failure, print};
 
@@ -192,7 +188,7 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
             .map(|execution| (execution, None, None))
             .map_err(|error| error.to_string()),
     };
-    bar.bar.finish_and_clear();
+    bar.clear();
     // The lock is held until the report is written, so that the report is of this study.
     let (done, merged, _lock) = executed?;
     let mut text = format!(
@@ -322,53 +318,11 @@ fn problems(what: &str, problems: &[Problem]) -> String {
     format!("{} files {what}:\n{}", problems.len(), each.collect::<String>())
 }
 
-/// One bar: packings done, samples per minute, failures, remaining time.
-struct Bar {
-    bar: ProgressBar,
-    counts: Mutex<Counts>,
-}
-
-#[derive(Default)]
-struct Counts {
-    run: usize,
-    failures: BTreeMap<FailureKind, usize>,
-}
-
-impl Bar {
-    fn new(task_count: usize) -> Self {
-        let style = ProgressStyle::with_template("{bar:30} {pos}/{len} packings, {elapsed} gone, {eta} left{msg}")
-            .unwrap_or_else(|_| ProgressStyle::default_bar());
-        let bar = ProgressBar::new(task_count as u64).with_style(style);
-        bar.enable_steady_tick(Duration::from_millis(500));
-        Bar { bar, counts: Mutex::new(Counts::default()) }
-    }
-}
-
-impl StudyProgress for Bar {
-    fn task(&self, _task: &Task, records: &[Record], seconds: Option<f64>) {
-        let Ok(mut counts) = self.counts.lock() else { return };
-        for record in records {
-            counts.run += usize::from(seconds.is_some());
-            if let RecordOutcome::Failed { kind, .. } = record.outcome {
-                *counts.failures.entry(kind).or_default() += 1;
-            }
-        }
-        if seconds.is_none() {
-            // Packings that already existed do not count in the estimate of the remaining time.
-            self.bar.set_length(self.bar.length().unwrap_or(1).saturating_sub(1));
-        } else {
-            self.bar.inc(1);
-        }
-        let minutes = self.bar.elapsed().as_secs_f64() / 60.0;
-        let failed: Vec<String> =
-            counts.failures.iter().map(|(kind, count)| format!(", {count} failed ({})", kind.name())).collect();
-        self.bar.set_message(format!(", {:.1} samples a minute{}", counts.run as f64 / minutes, failed.concat()));
-    }
-}
-
 /// The cost of a plan.
 mod cost {
-    use super::{Path, Plan, Shard, Task};
+    use jamscope::study::Task;
+
+    use super::{Path, Plan, Shard};
     use jamscope::study::measured_seconds;
 
     /// The plan, cell by cell, with the times of finished packings or else the expected times.

@@ -130,11 +130,11 @@ pub fn fit_radial_profile(
     let trial_count = 2.0 * (pole_count_below::<2>(annulus, largest_wavenumber) + 1) as f64;
 
     let grid = landscape.grid(largest_wavenumber);
-    let judge = Judge { rings: &rings, at_rest: rings.weighted(&rings.rescaled, &rings.rescaled) };
-    let elastic = fit_elastic(&landscape, &judge, &grid);
+    let criteria = Criteria { rings: &rings, at_rest: rings.weighted(&rings.rescaled, &rings.rescaled) };
+    let elastic = fit_elastic(&landscape, &criteria, &grid);
     let screened = landscape
         .minimum(&grid)
-        .and_then(|minimum| fit_screened(&landscape, &judge, annulus, &minimum, elastic.chi_squared, trial_count));
+        .and_then(|minimum| fit_screened(&landscape, &criteria, annulus, &minimum, elastic.chi_squared, trial_count));
 
     let level = settings.significance;
     let describes = |share: f64, chance: f64| share >= settings.least_share && chance < level;
@@ -177,13 +177,13 @@ impl ProfileFitSettings {
 }
 
 /// The common criteria for both fits.
-struct Judge<'a> {
+struct Criteria<'a> {
     rings: &'a Rings,
     /// χ² for zero displacement.
     at_rest: f64,
 }
 
-impl Judge<'_> {
+impl Criteria<'_> {
     /// The factor by which the variances exceed those from the errors of the rings.
     fn scale(&self, at: &Projection, effective_count: f64, parameter_count: usize) -> f64 {
         let reduced = at.chi_squared / freedom(effective_count, parameter_count);
@@ -196,10 +196,10 @@ impl Judge<'_> {
     }
 }
 
-fn fit_elastic(landscape: &Landscape<'_>, judge: &Judge<'_>, grid: &[(f64, f64)]) -> ElasticFit {
+fn fit_elastic(landscape: &Landscape<'_>, criteria: &Criteria<'_>, grid: &[(f64, f64)]) -> ElasticFit {
     let at = landscape.project(0.0);
     let count = effective_count(&at.residuals, 1);
-    let scale = judge.scale(&at, count, 1);
+    let scale = criteria.scale(&at, count, 1);
     let inner_value = landscape.inner_value(0.0);
     ElasticFit {
         amplitude: Estimate {
@@ -208,23 +208,23 @@ fn fit_elastic(landscape: &Landscape<'_>, judge: &Judge<'_>, grid: &[(f64, f64)]
         },
         wavenumber_bound: wavenumber_bound(landscape, grid, BOUND_RISE * scale),
         chi_squared: at.chi_squared,
-        share_described: judge.share(&at, 1),
+        share_described: criteria.share(&at, 1),
         effective_ring_count: count,
-        chance_of_nothing: chance(judge.at_rest, at.chi_squared, 1, freedom(count, 1)),
+        chance_of_nothing: chance(criteria.at_rest, at.chi_squared, 1, freedom(count, 1)),
     }
 }
 
 /// The screened solution at the minimum `at`; none if the rings cannot separate κ from the amplitude there.
 fn fit_screened(
     landscape: &Landscape<'_>,
-    judge: &Judge<'_>,
+    criteria: &Criteria<'_>,
     annulus: Annulus,
     at: &Projection,
     elastic_chi_squared: f64,
     trial_count: f64,
 ) -> Option<ScreenedFit> {
     let count = effective_count(&at.residuals, 2);
-    let scale = judge.scale(at, count, 2);
+    let scale = criteria.scale(at, count, 2);
     let curvature = landscape.curvature(at);
     let [[slope_variance, covariance], [_, wavenumber_variance]] = curvature.inverse;
     // With all rings at one radius the matrix is singular to rounding.
@@ -247,9 +247,9 @@ fn fit_screened(
         correlation: joint / (amplitude_variance * wavenumber_variance).sqrt(),
         branch: pole_count_below::<2>(annulus, at.wavenumber),
         chi_squared: at.chi_squared,
-        share_described: judge.share(at, 2),
+        share_described: criteria.share(at, 2),
         effective_ring_count: count,
-        chance_of_nothing: corrected(chance(judge.at_rest, at.chi_squared, 2, degrees), trial_count),
+        chance_of_nothing: corrected(chance(criteria.at_rest, at.chi_squared, 2, degrees), trial_count),
         chance_of_elastic: corrected(chance(elastic_chi_squared, at.chi_squared, 1, degrees), trial_count),
     })
 }

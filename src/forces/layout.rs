@@ -47,7 +47,7 @@ impl<const D: usize> Layout<D> {
         // An anchor is the rounded difference of position and origin; the displacement has the remainder.
         let from_site = |&disk: &u32| {
             let position = packing.positions()[disk as usize];
-            let offset = packing.displacement_from_site(disk as usize, position);
+            let offset = packing.vector_from_site(disk as usize, position);
             std::array::from_fn(|d| extended_sum(offset[d], -two_sum(position[d], -origin[d]).1))
         };
         let with_sites = if has_sites { &order[..mobile_count] } else { &[] };

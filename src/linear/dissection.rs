@@ -13,8 +13,8 @@
 //! elimination tree). This does not change the factor, but makes its columns contiguous.
 //!
 //! # Source
-//! George (1973), SIAM J. Numer. Anal. 10, 345 (nested dissection); Kőnig (1931) and Kuhn (1955), Nav. Res. Logist. Q. 2,
-//! 83 (cover and matching); Liu (1990), SIAM J. Matrix Anal. Appl. 11, 134 (elimination trees).
+//! George (1973), SIAM J. Numer. Anal. 10, 345 (nested dissection); Kőnig (1931) and Kuhn (1955), Nav. Res. Logist. Q.
+//! 2, 83 (cover and matching); Liu (1990), SIAM J. Matrix Anal. Appl. 11, 134 (elimination trees).
 
 use crate::sparse::Graph;
 use crate::vector::Vector;

@@ -141,7 +141,7 @@ pub struct IterativeSolution {
 }
 
 /// Iterations between two evaluations of the true residual, from which the recurrence drifts away.
-const LOOK_EVERY: usize = 50;
+const CHECK_EVERY: usize = 50;
 
 /// Solves A x = b. The iteration starts from `solution` and overwrites it with x.
 ///
@@ -170,7 +170,7 @@ pub fn conjugate_gradients(
         factor.solve(&mut conditioned);
         let mut direction = conditioned.clone();
         let mut energy = product_of(&residual, &conditioned);
-        let restart_at = iteration_count + LOOK_EVERY.max(dimension.min(2000));
+        let restart_at = iteration_count + CHECK_EVERY.max(dimension.min(2000));
         loop {
             if iteration_count >= limits.iteration_count {
                 let backward_error = true_residual(matrix, norm, right_side, solution, &mut residual);

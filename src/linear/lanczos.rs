@@ -22,7 +22,7 @@ const STEPS: (usize, usize) = (30, 300);
 
 /// Steps between two checks of the tridiagonal matrix: at least the first number, and a share of the steps so far. The
 /// cost of a check grows as the third power of the steps.
-const LOOK_EVERY: (usize, usize) = (8, 8);
+const CHECK_EVERY: (usize, usize) = (8, 8);
 
 /// Unit vectors near eigenvectors, those of the largest eigenvalues first, from one random start.
 ///
@@ -41,7 +41,7 @@ pub(super) fn largest(
     make_orthogonal(&mut next, known, &[]);
     let mut basis: Vec<Vec<f64>> = Vec::new();
     let (mut diagonal, mut beside): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
-    let mut look_at = wanted + LOOK_EVERY.0;
+    let mut check_at = wanted + CHECK_EVERY.0;
     loop {
         let length = norm(&next);
         next.iter_mut().for_each(|value| *value /= length);
@@ -56,8 +56,8 @@ pub(super) fn largest(
         let size = diagonal.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
         // The rest is the rounding of the solution: the vectors span an invariant subspace. NaN ends the run as well.
         let closed = left.is_nan() || left <= FOUND * size || basis.len() == room;
-        if closed || basis.len() >= look_at || basis.len() == step_limit {
-            look_at = basis.len() + LOOK_EVERY.0.max(basis.len() / LOOK_EVERY.1);
+        if closed || basis.len() >= check_at || basis.len() == step_limit {
+            check_at = basis.len() + CHECK_EVERY.0.max(basis.len() / CHECK_EVERY.1);
             let found = pairs(&diagonal, &beside, if closed { 0.0 } else { left });
             if closed || basis.len() == step_limit || found.len() >= wanted {
                 return Ok(found.iter().map(|weights| combined(&basis, weights)).collect());

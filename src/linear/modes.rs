@@ -10,8 +10,8 @@
 //! K − μ count all eigenvalues below a bound μ (Sylvester), and the search continues until all of them are found.
 //!
 //! # Source
-//! Ericsson, Ruhe (1980), Math. Comput. 35, 1251 (shift and invert, spectrum slicing). Participation ratio: Bell, Dean (1970),
-//! Discuss. Faraday Soc. 50, 55.
+//! Ericsson, Ruhe (1980), Math. Comput. 35, 1251 (shift and invert, spectrum slicing). Participation ratio: Bell, Dean
+//! (1970), Discuss. Faraday Soc. 50, 55.
 
 use faer::{Mat, Side};
 

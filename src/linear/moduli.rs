@@ -106,7 +106,8 @@ impl<const D: usize> ElasticModuli<D> {
     /// The elastic constants of a packing at rest. Rattlers and their contacts are excluded.
     ///
     /// # Errors
-    /// Held disks, the open plane, a law with sites; no backbone; a backbone that is not rigid (its Hessian is singular).
+    /// Held disks, the open plane, a law with sites; no backbone; a backbone that is not rigid (its Hessian is
+    /// singular).
     pub fn of<L: PairLaw>(packing: &Packing<D>, law: &L, prestress: Prestress) -> Result<Self, LinearError> {
         let held_count = packing.held().iter().filter(|&&held| held).count();
         if held_count > 0 {

@@ -6,8 +6,8 @@
 //! [`Analysis::of`](crate::linear::Analysis::of) uses [`best`].
 //!
 //! # Source
-//! Amestoy, Davis, Duff (1996), SIAM J. Matrix Anal. Appl. 17, 886 (approximate minimum degree, as in faer 0.24); George
-//! (1973), SIAM J. Numer. Anal. 10, 345 (nested dissection).
+//! Amestoy, Davis, Duff (1996), SIAM J. Matrix Anal. Appl. 17, 886 (approximate minimum degree, as in faer 0.24);
+//! George (1973), SIAM J. Numer. Anal. 10, 345 (nested dissection).
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;

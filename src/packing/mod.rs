@@ -207,7 +207,7 @@ impl<const D: usize> Packing<D> {
     }
 
     /// Exact vector from the site of a disk (its centre, if there are no sites) to a point.
-    pub(crate) fn displacement_from_site(&self, disk: usize, point: Vector<D>) -> [(f64, f64); D] {
+    pub(crate) fn vector_from_site(&self, disk: usize, point: Vector<D>) -> [(f64, f64); D] {
         let (site, rest) = self.sites.as_ref().map_or(self.centre(disk), |sites| sites[disk]);
         std::array::from_fn(|d| extended_sum(two_sum(point[d], -site[d]), -rest[d]))
     }

@@ -103,7 +103,7 @@ struct Mark<'a> {
 /// The runs of a ladder, connected from loose to tight: filled in a reference minimum, hollow in another, crossed out
 /// if the step limit was reached.
 fn ladder_markup(method: Method, varied: Varied, ladder: &[Mark<'_>]) -> String {
-    let (colour, shape) = style(method);
+    let (colour, shape) = colour_and_marker(method);
     let mut svg = String::new();
     let points: Vec<String> = ladder.iter().map(|mark| format!("{:.1},{:.1}", mark.x, mark.y)).collect();
     if points.len() > 1 {
@@ -152,7 +152,7 @@ impl Shape {
 }
 
 /// Colour and marker of a relaxer. Colours from Okabe, Ito (2008); related relaxers share one and differ in the marker.
-fn style(method: Method) -> (&'static str, Shape) {
+fn colour_and_marker(method: Method) -> (&'static str, Shape) {
     match method {
         Method::Fire => ("#0072b2", Shape::Circle),
         Method::FireStepBack => ("#56b4e9", Shape::Triangle),
@@ -179,7 +179,7 @@ fn legend(unjammed: bool) -> String {
         (20.0 + (index % COLUMNS) as f64 * 146.0, 14.0 + (index / COLUMNS) as f64 * LINE)
     }
     for (index, method) in Method::ALL.into_iter().enumerate() {
-        let (colour, shape) = style(method);
+        let (colour, shape) = colour_and_marker(method);
         let (x, y) = cell(index);
         entry(index, shape.markup(x, y, colour, colour), method.name());
     }

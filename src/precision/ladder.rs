@@ -110,8 +110,8 @@ pub fn rungs(settings: &PrecisionSettings, damping: DampingChoice) -> Vec<Rung> 
     let mut rungs = Vec::new();
     for method in Method::ALL {
         // Above its hand-over, FIRE followed by Newton's method is FIRE.
-        let told = |limit: &&f64| method != Method::Staged || **limit < Staged::default().hand_over;
-        for &limit in settings.force_limits.iter().filter(told) {
+        let distinct = |limit: &&f64| method != Method::Staged || **limit < Staged::default().hand_over;
+        for &limit in settings.force_limits.iter().filter(distinct) {
             if let Some(relaxer) = at_limit(method, limit, settings, damping) {
                 rungs.push(Rung { method, varied: Varied::ForceLimit, value: limit, relaxer });
             }

@@ -27,7 +27,7 @@ pub(super) fn of_sample<L: PairLaw>(
     let damping = damping_of(&sample.relaxer);
     let grown = Grown::new(&scene.inflation, packing, law, &sample.relaxer, sample.seed, &mut ())?;
     let rungs = if grown.before.criterion == Criterion::Unjammed {
-        rungs(&settings.where_nothing_presses(), damping)
+        rungs(&settings.for_unjammed(), damping)
     } else {
         rungs(settings, damping)
     };
@@ -38,7 +38,7 @@ pub(super) fn of_sample<L: PairLaw>(
     for (done, rung) in rungs.iter().enumerate() {
         let what = format!("{}, {} {:e}", rung.method.name(), rung.varied.name(), rung.value);
         progress.begins(done, &what);
-        let run = match runs.last().filter(|last| would_end_alike(last, rung)) {
+        let run = match runs.last().filter(|last| can_be_skipped(last, rung)) {
             Some(last) => Run { value: rung.value, ..last.clone() },
             None => run_of(rung, &what, &grown, law, scene, &mut minima)?,
         };
@@ -69,7 +69,7 @@ fn damping_of(relaxer: &RelaxerChoice) -> DampingChoice {
 
 /// Whether a run can be skipped: after one that reached its step limit, a tighter limit on the same trajectory gives
 /// the same end.
-fn would_end_alike(last: &Run, rung: &Rung) -> bool {
+fn can_be_skipped(last: &Run, rung: &Rung) -> bool {
     last.stop == Stop::StepLimit
         && (last.method, last.varied) == (rung.method, rung.varied)
         && rung.varied == Varied::ForceLimit

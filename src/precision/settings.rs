@@ -73,7 +73,7 @@ const FLIGHT_LIMIT: usize = 100;
 impl PrecisionSettings {
     /// The ladders for an unjammed packing, in which all limits relative to contact forces are met as soon as these
     /// vanish.
-    pub(super) fn where_nothing_presses(&self) -> Self {
+    pub(super) fn for_unjammed(&self) -> Self {
         PrecisionSettings {
             force_limits: vec![self.force_limits.iter().copied().fold(f64::INFINITY, f64::min)],
             time_steps: Vec::new(),

@@ -150,8 +150,8 @@ impl State {
     /// Largest distance between the two positions of a disk, over the backbone of `other` \[length\].
     pub fn distance(&self, other: &State) -> f64 {
         let counts = |disk: &usize| !self.packing.held()[*disk] && (other.unjammed || other.backbone[*disk]);
-        let way = |disk: usize| norm(displacement(&other.packing, &self.packing, disk));
-        (0..self.packing.len()).filter(counts).map(way).fold(0.0, larger)
+        let distance = |disk: usize| norm(displacement(&other.packing, &self.packing, disk));
+        (0..self.packing.len()).filter(counts).map(distance).fold(0.0, larger)
     }
 
     /// The errors of this state relative to another.

@@ -1,4 +1,4 @@
-//! [`Amplitude`]: how strongly a screened medium answers, as a function of its wavenumber.
+//! [`Amplitude`]: the amplitude of the response of a screened medium, as a function of its wavenumber.
 
 use crate::reference::elastic::power_gap;
 use crate::reference::oscillating::{Wave, rim_factor};
@@ -14,33 +14,33 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// A(κ) → r_n/(κ − κ_n)  at a pole        A(κ) = 1 + Σ_n 2κ² r_n / (κ_n (κ² − κ_n²))
 /// ```
 ///
-/// v is the rim solution: whatever happens between, the field arrives at the rim A times as steep as the elastic one does. A
-/// is 1 at κ = 0, even in κ, and changes sign at every pole κ_n ([`pole`]), where it has the
-/// residue r_n of sign (−1)^n.
+/// v is the rim solution. At the rim the field is A times as steep as the elastic one. A is 1 at κ = 0, is even in κ,
+/// and changes sign at every pole κ_n ([`pole`]), where it has the residue r_n with the sign (−1)^n.
 ///
-/// *The product.* v(a; κ) is an entire function of κ that grows as e^(|Im κ| (R−a)), hence one of κ² of order 1/2, and such a
-/// function is its value at 0 times Π (1 − κ²/κ_n²) over its zeros (Hadamard's theorem). Its zeros are the poles.
+/// *The product.* v(a; κ) is an entire function of κ that grows as e^(|Im κ| (R−a)), so it is a function of κ² of order
+/// 1/2. Such a function is its value at 0 times Π (1 − κ²/κ_n²) over its zeros (Hadamard's theorem). Its zeros are the
+/// poles.
 ///
-/// *The sum.* With φ_n the field that vanishes at both edges for κ = κ_n, d = d_el + Σ c_n φ_n, d_el the elastic field. The equation gives
-/// c_n = −κ² ⟨φ_n, d_el⟩/((κ² − κ_n²) ⟨φ_n, φ_n⟩) with the weight r^(D−1), Green's identity ⟨φ_n, d_el⟩ = a^(D−1) φ_n'(a) d_0/κ_n².
-/// So c_n φ_n' falls as n^(−2), the sum may be differentiated at R, and d'(R)/d_el'(R) = 1 + Σ κ² b_n/(κ² − κ_n²) with b_n
-/// without κ; at the pole that is κ_n b_n/(2(κ − κ_n)), hence b_n = 2 r_n/κ_n.
+/// *The sum.* Let φ_n be the field that vanishes at both edges for κ = κ_n, and d = d_el + Σ c_n φ_n, d_el the elastic
+/// field. The equation gives c_n = −κ² ⟨φ_n, d_el⟩/((κ² − κ_n²) ⟨φ_n, φ_n⟩) with the weight r^(D−1). Green's identity
+/// is ⟨φ_n, d_el⟩ = a^(D−1) φ_n'(a) d_0/κ_n². So c_n φ_n' falls as n^(−2), and the sum may be differentiated at R:
+/// d'(R)/d_el'(R) = 1 + Σ κ² b_n/(κ² − κ_n²), where b_n does not depend on κ. At the pole this is κ_n b_n/(2(κ − κ_n)),
+/// so b_n = 2 r_n/κ_n.
 ///
 /// # Units
 /// κ and r_n in 1/length, A without unit.
 ///
 /// # Source
-/// Lemaître et al. (2021), Phys. Rev. E 104, 024904, for the profile; product and sum as derived above. For a → 0 the product
-/// is that of J_1, Abramowitz & Stegun (1964), 9.5.10.
+/// Lemaître et al. (2021), Phys. Rev. E 104, 024904, for the profile; product and sum as derived above. For a → 0 the
+/// product is that of J_1, Abramowitz & Stegun (1964), 9.5.10.
 ///
 /// # Accuracy
-/// Relative error of A below 3.2·10⁻¹⁵ (1 + κ_n/|κ − κ_n|), as that of the profile; of r_n below 4·10⁻¹⁵. Largest found over R/a
-/// from 1.001 to 10⁷, n ≤ 1000, κR ≤ 10⁶, against multi-precision (`reference::amplitude`): 3.3·10⁻¹⁶ of
-/// that factor, and 8.2·10⁻¹⁶.
+/// Relative error of A below 3.2·10⁻¹⁵ (1 + κ_n/|κ − κ_n|), like that of the profile; of r_n below 4·10⁻¹⁵. Largest
+/// errors found for R/a from 1.001 to 10⁷, n ≤ 1000, κR ≤ 10⁶, against multi-precision (`reference::amplitude`):
+/// 3.3·10⁻¹⁶ of that factor, and 8.2·10⁻¹⁶.
 ///
 /// # Cost
-/// In two dimensions 0.8 µs for A, 0.3 to 0.5 µs for r_n, n from 1 to 1000 (`cargo bench --bench reference -- amplitude`, least of
-/// six runs on two shared cores).
+/// See `cargo bench --bench reference -- amplitude`.
 ///
 /// # Example
 /// ```
@@ -48,7 +48,7 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// let annulus = Annulus::new(0.5, 30.0)?;
 /// let amplitude = Amplitude::<2>::new(annulus);
 /// assert_eq!(amplitude.at(0.0)?, 1.0);
-/// // Close to the first pole the residue says it all.
+/// // Close to the first pole the residue determines the amplitude.
 /// let (first, off) = (pole::<2>(annulus, 1), 1e-9);
 /// let expected = amplitude.residue(1) / off;
 /// assert!((amplitude.at(first + off)? / expected - 1.0).abs() < 1e-6);
@@ -85,9 +85,10 @@ impl<const D: usize> Amplitude<D> {
         Ok(self.elastic / rim.value(self.annulus.inner_radius()))
     }
 
-    /// Residue r_n \[1/length\] at pole number `index`, counted from 1; 0 for `index` 0, which is no pole.
+    /// Residue r_n \[1/length\] at pole number `index`, counted from 1; 0 for `index` 0, which is not a pole.
     ///
-    /// At the pole v = c M M sin Φ with Φ = nπ, hence `r_n = (−1)^n v(a; 0) κ_n/(c M(κ_n a) M(κ_n R) Φ°)`, Φ° = κ ∂Φ/∂κ: nothing cancels.
+    /// At the pole v = c M M sin Φ with Φ = nπ, so `r_n = (−1)^n v(a; 0) κ_n/(c M(κ_n a) M(κ_n R) Φ°)`, Φ° = κ ∂Φ/∂κ,
+    /// without cancellation.
     pub fn residue(&self, index: usize) -> f64 {
         if index == 0 {
             return 0.0;

@@ -1,4 +1,4 @@
-//! [`Antiscreened`]: the medium on an elastic foundation, whose field is pulled back everywhere.
+//! [`Antiscreened`]: a medium on an elastic foundation.
 
 use std::sync::OnceLock;
 
@@ -10,7 +10,7 @@ use crate::reference::rim_distance::RimDistance;
 use crate::reference::sensitivity::{Profile, Sensitivity};
 use crate::reference::{Annulus, RadialSolution, ReferenceError};
 
-/// Radial displacement of a medium on an elastic foundation: the screened equation with the sign of κ² turned.
+/// Radial displacement of a medium on an elastic foundation: the screened equation with the opposite sign of κ².
 ///
 /// ```text
 /// d'' + (D−1) d'/r − (D−1) d/r² − κ² d = 0        d(a) = d_0,  d(R) = 0
@@ -19,26 +19,25 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// D = 3:  the same with the spherical i_1 and k_1
 /// ```
 ///
-/// It is what a lattice does whose disks are each held by a spring of positive stiffness Γ per area: κ² = Γ/(λ+2μ). It has no
-/// poles: the displacement falls monotonically, as e^(−κr) far from both ends, and underflows to 0 where it is smaller
-/// than any number. κ = 0 is exactly elastic, and so is κR ≤ 10⁻⁸
-/// ([`ELASTIC_BELOW`]).
+/// It describes a lattice whose disks are each held by a spring, of positive stiffness Γ per area: κ² = Γ/(λ+2μ). It
+/// has no poles. The displacement falls monotonically, as e^(−κr) far from both ends, and may underflow to 0. κ = 0 is
+/// exactly elastic, and so is κR ≤ 10⁻⁸ ([`ELASTIC_BELOW`]).
 ///
 /// # Units
 /// Radii and displacement in lengths, κ in 1/length.
 ///
 /// # Source
-/// The equation: springs of stiffness Γ per area pull with −Γd, so that balance of a radial field, curl-free, reads
+/// The equation: springs of stiffness Γ per area exert a force −Γd, so the balance of a radial, curl-free field is
 /// (λ+2μ) ∇(∇·u) − Γu = 0. Its solutions: Abramowitz & Stegun (1964), 9.6.1 (with ν = 1) and 10.2.1 (with n = 1).
 ///
 /// # Accuracy
-/// Relative error below 3.2·10⁻¹⁵ (1.9·10⁻¹⁵ the largest found) of d and d', for R/a from 1.001 to 10⁷ and κR from 10⁻⁸ to
-/// 10⁶, wherever they exceed 10⁻²⁹⁰; d(a) = d_0 and d(R) = 0 exactly
-/// (`reference::antiscreened::antiscreened_profiles_and_both_derivatives_have_their_digits_in_two_dimensions` and its twin in three).
+/// Relative error of d and d' below 3.2·10⁻¹⁵ (largest found: 1.9·10⁻¹⁵), for R/a from 1.001 to 10⁷ and κR from 10⁻⁸ to
+/// 10⁶, if they exceed 10⁻²⁹⁰; d(a) = d_0 and d(R) = 0 exactly
+/// (`reference::antiscreened::antiscreened_profiles_and_both_derivatives_have_their_digits_in_two_dimensions` and the
+/// same in three).
 ///
 /// # Cost
-/// 1000 radii: 22 to 81 µs in two dimensions, 15 to 40 µs in three; ∂d/∂κ 66 to 175 µs in two
-/// (`cargo bench --bench reference -- antiscreened`, least of four runs on two shared cores).
+/// See `cargo bench --bench reference -- antiscreened`.
 ///
 /// # Example
 /// ```
@@ -46,7 +45,7 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// let annulus = Annulus::new(0.5, 30.0)?;
 /// let medium = Antiscreened::<2>::new(annulus, 0.1, 0.2)?;
 /// assert_eq!((medium.value(0.5), medium.value(30.0)), (0.1, 0.0));
-/// // A stiffer foundation leaves less.
+/// // A stiffer foundation gives a smaller displacement.
 /// let stiffer = Antiscreened::<2>::new(annulus, 0.1, 0.4)?;
 /// assert!(stiffer.value(5.0) < medium.value(5.0) && medium.wavenumber_derivative(5.0) < 0.0);
 /// // κR = 10⁶: nothing overflows.
@@ -101,12 +100,12 @@ impl<const D: usize> Antiscreened<D> {
         self.wavenumber
     }
 
-    /// ∂d/∂κ \[length²\] at `radius` \[length\], NaN outside the annulus: 0 at a and R and at κ = 0, −κ times something positive
-    /// elsewhere.
+    /// ∂d/∂κ \[length²\] at `radius` \[length\], NaN outside the annulus: 0 at a and R and at κ = 0, otherwise −κ times
+    /// a positive number.
     ///
     /// # Accuracy
-    /// Relative error below 3.2·10⁻¹⁵, in the range and by the tests of the profile itself: nothing oscillates, so no digits are
-    /// lost anywhere, as κ → 0, r → a and r → R included.
+    /// Relative error below 3.2·10⁻¹⁵, in the range and by the tests of the profile. Nothing oscillates, so no digits
+    /// are lost, also for κ → 0, r → a and r → R.
     pub fn wavenumber_derivative(&self, radius: f64) -> f64 {
         if !self.annulus.contains(radius) {
             return f64::NAN;
@@ -165,15 +164,15 @@ impl<const D: usize> RadialSolution for Antiscreened<D> {
     }
 }
 
-/// The solution that leaves the rim with slope −1, less its growth e^δ inwards, δ = κ(R − r).
+/// The solution with slope −1 at the rim, divided by its growth e^δ inwards, δ = κ(R − r).
 ///
 /// ```text
 /// D = 2:  v = R [K_1(x) I_1(y) − I_1(x) K_1(y)]
 /// D = 3:  v = [x y sinh δ + δ² i_1(δ)]/(κ x²)
 /// ```
 ///
-/// In two dimensions next to the rim, where the two products are equal, v is a power series ([`LocalSeries`]); elsewhere the
-/// second is less than a seventh of the first.
+/// In two dimensions near the rim, where the two products are nearly equal, v is a power series ([`LocalSeries`]).
+/// Elsewhere the second product is less than a seventh of the first.
 #[derive(Debug, Clone)]
 struct DecayingRim<const D: usize> {
     wavenumber: f64,
@@ -181,7 +180,7 @@ struct DecayingRim<const D: usize> {
     /// `e^(−y) I_1(y)` and `e^y K_1(y)` at y = κR (two dimensions).
     rim_values: (f64, f64),
     series: LocalSeries,
-    /// The radius at which it ends; beyond R in three dimensions, which have no need of it.
+    /// The radius at which the series ends; above R in three dimensions, where it is not needed.
     series_from: f64,
 }
 
@@ -211,7 +210,7 @@ impl<const D: usize> DecayingRim<D> {
         }
         let delta = distance.value();
         let rest = delta * delta * spherical::i1_scaled(delta);
-        // Divided by x twice: x² would underflow long before x does.
+        // Two divisions by x: x² would underflow long before x does.
         (self.wavenumber * self.outer_radius * half_sine(delta) / x + rest / x / x) / self.wavenumber
     }
 
@@ -233,7 +232,7 @@ impl<const D: usize> DecayingRim<D> {
         half_sine(delta) / x - self.outer_radius / radius * half_cosine - rest
     }
 
-    /// `R [k I_1(y) + i K_1(y)]`, less e^δ.
+    /// `R [k I_1(y) + i K_1(y)]`, divided by e^δ.
     fn bracket(&self, k: f64, i: f64, distance: RimDistance) -> f64 {
         let decay = distance.decay();
         self.outer_radius * (k * self.rim_values.0 + i * self.rim_values.1 * decay * decay)

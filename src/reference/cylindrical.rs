@@ -1,15 +1,16 @@
-//! The rim solution in two dimensions: a cross product of Bessel functions that keeps its digits everywhere.
+//! The rim solution in two dimensions: a cross product of Bessel functions without cancellation.
 //!
 //! ```text
 //! v(r) = −(π R / 2) [Y_1(x) J_1(y) − J_1(x) Y_1(y)]        x = κr,  y = κR
 //! ```
 //!
-//! Taken as it stands, the bracket loses everything as r → R (two equal products) and, for large y, as much as the
-//! rounding of κR. Hence three routes, with δ = κ(R − r) the distance from the rim:
+//! A direct evaluation of the bracket loses all digits as r → R (two nearly equal products), and for large y as many as
+//! the rounding of κR. There are therefore three methods, with δ = κ(R − r) the distance from the rim:
 //!
-//! 1. `ln(R/r) ≤ 1` and `δ ≤ 1.2`: power series in ln(R/r) from the differential equation ([`LocalSeries`]), its coefficients kept;
-//! 2. `x ≥ 2`: `v = R √(P(x) P(y) / (x y)) sin(δ + φ(y) − φ(x))`, δ in two terms;
-//! 3. else the bracket, at arguments whose rounding is put back.
+//! 1. `ln(R/r) ≤ 1` and `δ ≤ 1.2`: power series in ln(R/r) from the differential equation ([`LocalSeries`]), with
+//!    stored coefficients;
+//! 2. `x ≥ 2`: `v = R √(P(x) P(y) / (x y)) sin(δ + φ(y) − φ(x))`, with δ as a sum of two numbers;
+//! 3. otherwise the bracket, with arguments corrected for their rounding.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -31,9 +32,9 @@ pub(crate) struct Cylindrical {
     rim_values: (f64, f64),
     /// P and φ at κR.
     rim: ModulusPhase,
-    /// Next to the rim.
+    /// Near the rim.
     series: LocalSeries,
-    /// The radius at which it ends.
+    /// The radius at which the series ends.
     series_from: f64,
 }
 
@@ -74,7 +75,7 @@ impl Cylindrical {
             return self.wave(radius, x).1;
         }
         let (j, y) = first_order(x, x_low);
-        // J_1' = J_0 − J_1/x, and J_0' = −J_1 puts the rounding of the argument back; the same for Y.
+        // J_1' = J_0 − J_1/x, and J_0' = −J_1 corrects the rounding of the argument; the same for Y.
         let (j_zero, y_zero) = (libm::j0(x) - x_low * j, libm::y0(x) - x_low * y);
         self.wavenumber * self.bracket(j_zero, y_zero) - self.bracket(j, y) / radius
     }

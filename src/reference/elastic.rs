@@ -11,19 +11,19 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// D = 3:  d_0 (a/r)² (R³ − r³) / (R³ − a³)
 /// ```
 ///
-/// It does not depend on the elastic moduli. The factor R − r is split off, R^D − r^D = (R − r) Σ r^k R^(D−1−k), so
-/// the way to the rim loses nothing.
+/// It does not depend on the elastic moduli. The factor R − r is separated, R^D − r^D = (R − r) Σ r^k R^(D−1−k), so no
+/// digits are lost near the rim.
 ///
 /// # Units
 /// Radii and displacement in lengths.
 ///
 /// # Source
-/// Love (1927), A Treatise on the Mathematical Theory of Elasticity, §98 and §100, with the displacement given on both
+/// Love (1927), A Treatise on the Mathematical Theory of Elasticity, §98 and §100, with given displacements at both
 /// boundaries.
 ///
 /// # Accuracy
-/// Relative error below 8·2⁻⁵³ for D = 2, 12·2⁻⁵³ for D = 3 (number of roundings), d(a) = d_0 and d(R) = 0 exactly;
-/// 4·10⁻¹⁶ at most over the rows of `fixtures/reference`.
+/// Relative error below 8·2⁻⁵³ for D = 2, 12·2⁻⁵³ for D = 3 (number of roundings), d(a) = d_0 and d(R) = 0 exactly; at
+/// most 4·10⁻¹⁶ for the rows of `fixtures/reference`.
 ///
 /// # Example
 /// ```
@@ -57,7 +57,7 @@ impl<const D: usize> Elastic<D> {
         self.amplitude
     }
 
-    /// The annulus it fills.
+    /// The annulus.
     pub fn annulus(&self) -> Annulus {
         self.annulus
     }

@@ -1,5 +1,5 @@
-//! [`Decay`]: the growing and decaying solutions of order one, I and K, without their exponentials, and how they change
-//! with κ.
+//! [`Decay`]: the growing and decaying solutions of order one, I and K, without their exponentials, and their
+//! dependence on κ.
 //!
 //! ```text
 //! n(x) = −x K'/K − (D−1) = x − ν(x),   ν from 0 to (D−1)/2
@@ -7,14 +7,14 @@
 //! ζ(r) = I(κr) K(κR)/(K(κr) I(κR)) ≤ 1,      κ ∂ζ/∂κ = −ζ [T(κR) − T(κr)]
 //! ```
 //!
-//! n and T grow as x and 2x; differences of them are taken as κ times that of the radii and what is left.
+//! n and T grow as x and 2x. Their differences are κ times that of the radii, plus the differences of the remainders.
 
 use crate::reference::bessel::{modified, modulus_phase, spherical};
 use crate::reference::rim_distance::RimDistance;
 
 use std::f64::consts::FRAC_2_PI;
 
-/// Below this n itself is small, and taken as it is.
+/// Below this x, n itself is small and used directly.
 const SMALL: f64 = 1.0;
 
 /// I and K of one argument x = κr.
@@ -26,7 +26,7 @@ pub(crate) struct Decay {
     pub growing: f64,
     /// `e^x K`.
     pub decaying: f64,
-    /// n(x), meant for small x.
+    /// n(x), for small x.
     decline: f64,
     /// ν(x).
     excess: f64,
@@ -40,7 +40,7 @@ impl Decay {
         if D == 3 {
             let (growing, decaying) = (spherical::i1_scaled(x), FRAC_2_PI * spherical::k1_scaled(x));
             let vanishing = libm::exp(-2.0 * x);
-            // T = 2x³/(x² − 1 + (1+x)² e^(−2x)), beyond small x where its denominator cancels.
+            // T = 2x³/(x² − 1 + (1+x)² e^(−2x)), except for small x, where its denominator cancels.
             let rate_excess = if x < 3.0 {
                 1.0 / (x * growing * decaying) - 2.0 * x
             } else {

@@ -1,4 +1,4 @@
-//! [`LocalSeries`]: a solution and its derivative in κ as power series in ln r about one radius, where it is near.
+//! [`LocalSeries`]: a solution and its derivative with respect to κ near one radius, as power series in ln r.
 //!
 //! With r = r_0 e^t the equation of the profiles has entire coefficients,
 //!
@@ -6,11 +6,11 @@
 //! f_tt + (D−2) f_t − (D−1) f ± x_0² e^(2t) f = 0        x_0 = κ r_0;  + screened, − antiscreened
 //! ```
 //!
-//! so the series of f in t converges everywhere, and next to r_0 a solution that vanishes there does so with all its
-//! digits. The derivative `h = (1/κ) ∂f/∂κ` at fixed f(r_0), f'(r_0) solves the same equation with the right-hand side
-//! `∓2 r_0² e^(2t) f`, and begins with t²: nothing cancels in it as κ → 0 or r → r_0.
+//! so the series of f in t converges everywhere, and a solution that vanishes at r_0 is accurate near it. The
+//! derivative `h = (1/κ) ∂f/∂κ` at fixed f(r_0), f'(r_0) solves the same equation with the right-hand side `∓2 r_0²
+//! e^(2t) f`. It begins with t², without cancellation as κ → 0 or r → r_0.
 
-/// Which sign κ² has in the equation.
+/// The sign of κ² in the equation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Sign {
     /// `+κ²`: oscillating solutions.
@@ -29,25 +29,25 @@ impl Sign {
     }
 }
 
-/// How far the series at the rim reaches, in ln(r/R): to r = R/e, and no further than κ(R − r) = 1.2. There no term exceeds
-/// the sum by more than a factor 3, and none of the solutions has a node.
+/// The range of the series at the rim in ln(r/R): to r = R/e, and at most κ(R − r) = 1.2. Within it no term exceeds the
+/// sum by more than a factor 3, and none of the solutions has a node.
 pub(crate) fn rim_reach(rim_argument: f64) -> f64 {
     const DISTANCE: f64 = 1.2;
     // 1 − 1.2/y = 1/e at y = 1.9.
     if rim_argument < 1.9 { -1.0 } else { libm::log1p(-DISTANCE / rim_argument).max(-1.0) }
 }
 
-/// More coefficients than any series within its reach needs: 62 at κR = 2 and t = −1.
+/// Limit of the number of coefficients; the longest series needs 62, at κR = 2 and t = −1.
 const LENGTH_LIMIT: usize = 80;
 
-/// Below this share of the largest a coefficient changes nothing.
+/// Coefficients below this share of the largest are negligible.
 const NEGLIGIBLE: f64 = 8.673_617_379_884_035e-19; // 2⁻⁶⁰
 
 /// The solution with given value and slope at one radius.
 #[derive(Debug, Clone)]
 pub(crate) struct LocalSeries {
     origin: f64,
-    /// t at the far end, of either sign.
+    /// t at the end of the range, of either sign.
     reach: f64,
     /// `f = Σ F_n (t/reach)^n`.
     value: Vec<f64>,
@@ -65,7 +65,7 @@ impl LocalSeries {
         series
     }
 
-    /// The same with the derivative in κ.
+    /// Like [`LocalSeries::new`], with the derivative with respect to κ.
     pub(crate) fn with_response<const D: usize>(
         sign: Sign,
         argument: f64,
@@ -79,7 +79,7 @@ impl LocalSeries {
         series
     }
 
-    /// The radius at which it ends.
+    /// The radius at which the range ends.
     pub(crate) fn end(&self) -> f64 {
         self.origin * libm::exp(self.reach)
     }
@@ -106,7 +106,7 @@ impl LocalSeries {
         sum(&self.response, self.position(radius))
     }
 
-    /// ∂f/∂κ at the wavenumber it was made for.
+    /// ∂f/∂κ at the given wavenumber of the solution.
     pub(crate) fn response(&self, wavenumber: f64, radius: f64) -> f64 {
         wavenumber * self.origin * self.origin * self.reduced_response(radius)
     }
@@ -121,7 +121,7 @@ struct Recurrence {
     first: f64,
     zeroth: f64,
     oscillation: f64,
-    /// `E_k = (2T)^k/k!` of e^(2t), as many as matter.
+    /// `E_k = (2T)^k/k!` of e^(2t), up to negligible terms.
     exponential: Vec<f64>,
 }
 
@@ -144,7 +144,7 @@ impl Recurrence {
         }
     }
 
-    /// The coefficients, from the first two on; `source` times e^(2t) stands on the other side of the equation.
+    /// The coefficients, from the first two on; `source` times e^(2t) is the right-hand side of the equation.
     fn solve(&self, start: [f64; 2], source: &[f64], factor: f64) -> Vec<f64> {
         let convolution = |terms: &[f64], n: usize| -> f64 {
             let count = self.exponential.len().min(n + 1);
@@ -160,7 +160,7 @@ impl Recurrence {
             let next = right / ((n + 2) * (n + 1)) as f64;
             terms.push(next);
             largest = largest.max(next.abs());
-            // A few in a row: a single one may vanish by chance.
+            // Several in a row: a single one may vanish accidentally.
             small_count = if next.abs() < NEGLIGIBLE * largest { small_count + 1 } else { 0 };
             if small_count >= 4 {
                 break;

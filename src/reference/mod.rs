@@ -1,27 +1,27 @@
-//! Exact solutions a measured displacement field is held against. They know nothing of packings.
+//! Exact solutions for comparison with measured displacement fields. They are independent of packings.
 //!
-//! The medium fills the [`Annulus`] between the inflated disk, radius a, and the rim at R, which is held. The radial
-//! displacement d(r) takes the value d_0 at a and vanishes at R. In between, in D = 2 or 3 dimensions,
+//! The medium fills the [`Annulus`] between the inflated disk, radius a, and the held rim at R. The radial displacement
+//! d(r) is d_0 at a and vanishes at R. In between, in D = 2 or 3 dimensions,
 //!
 //! ```text
 //! d'' + (D−1) d'/r − (D−1) d/r² + κ² d = 0
 //! ```
 //!
-//! With κ = 0 this is the elastic medium, [`Elastic`](elastic::Elastic); with a screening wavenumber κ > 0 it is the
-//! medium whose plastic events screen the elastic field, [`Screened`](screened::Screened). Both implement
-//! [`RadialSolution`]. Start from [`Annulus::new`].
+//! With κ = 0 this is the elastic medium, [`Elastic`](elastic::Elastic). With a screening wavenumber κ > 0 plastic
+//! events screen the elastic field, [`Screened`](screened::Screened). Both implement [`RadialSolution`]. Start from
+//! [`Annulus::new`].
 //!
-//! With the other sign of κ² the medium lies on an elastic foundation, [`Antiscreened`](antiscreened::Antiscreened). All of them
-//! know their derivatives in r and in κ. How strongly a screened medium answers, as a function of κ, is its
-//! [`Amplitude`](amplitude::Amplitude), with [`poles`]; what they are all made of is [`bessel`].
+//! With the opposite sign of κ² the medium lies on an elastic foundation, [`Antiscreened`](antiscreened::Antiscreened).
+//! All have derivatives with respect to r and κ. The amplitude of the response of a screened medium, as a function of
+//! κ, is [`Amplitude`](amplitude::Amplitude), with [`poles`]. All are computed from [`bessel`].
 //!
-//! The screened solution is built on the one that leaves the rim with unit slope, [`RimSolution`](rim::RimSolution):
-//! that one is smooth in κ, while d_0 d/d(a) has a pole wherever the rim solution has a node at r = a.
+//! The screened solution is computed from the one with unit slope at the rim, [`RimSolution`](rim::RimSolution). That
+//! one is smooth in κ, while d_0 d/d(a) has a pole wherever the rim solution has a node at r = a.
 //!
-//! The angular spectrum has its own: a power law with a crossover, [`Lorentzian`](lorentzian::Lorentzian).
+//! The exact angular spectrum is a power law with a crossover, [`Lorentzian`](lorentzian::Lorentzian).
 //!
 //! # Source
-//! Ranges and errors stand at each type, and side by side in the book (`book/src/reference.md`, *What is exact*).
+//! Ranges and errors are given with each type, and together in the book (`book/src/reference.md`, *What is exact*).
 //!
 //! | solution | source |
 //! |---|---|
@@ -60,15 +60,14 @@ use thiserror::Error;
 
 /// A radial displacement field between the inflated disk and the rim.
 pub trait RadialSolution {
-    /// Radial displacement d(r) \[length\] at distance `radius` from the centre \[length\]; NaN outside the annulus,
-    /// where nothing is defined.
+    /// Radial displacement d(r) \[length\] at distance `radius` from the centre \[length\]; NaN outside the annulus.
     fn value(&self, radius: f64) -> f64;
 
     /// Its derivative d'(r) \[1\]; NaN outside the annulus.
     fn derivative(&self, radius: f64) -> f64;
 }
 
-/// What is between two concentric circles (spheres in three dimensions): 0 < a < R < ∞.
+/// The region between two concentric circles (spheres in three dimensions): 0 < a < R < ∞.
 ///
 /// # Example
 /// ```
@@ -89,7 +88,7 @@ impl Annulus {
     /// The annulus between `inner_radius` a and `outer_radius` R \[length\].
     ///
     /// # Errors
-    /// A radius that is not positive and finite, or an outer one that is not the larger.
+    /// A radius that is not positive and finite; an outer radius that is not larger than the inner one.
     pub fn new(inner_radius: f64, outer_radius: f64) -> Result<Self, ReferenceError> {
         if !(inner_radius > 0.0 && inner_radius.is_finite()) {
             return Err(ReferenceError::InnerRadiusNotPositive { inner_radius });
@@ -116,7 +115,7 @@ impl Annulus {
     }
 }
 
-/// Why an exact solution could not be set up.
+/// Why an exact solution could not be computed.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ReferenceError {
@@ -134,13 +133,13 @@ pub enum ReferenceError {
         /// The radius of the rim given \[length\].
         outer_radius: f64,
     },
-    /// The displacement at the inflated disk is not a number.
+    /// The displacement at the inflated disk is not finite.
     #[error("the displacement at the inner radius must be finite, it is {amplitude}")]
     AmplitudeNotFinite {
         /// The displacement given \[length\].
         amplitude: f64,
     },
-    /// The screening wavenumber is negative or not a number, or κR is not.
+    /// The screening wavenumber is negative or not finite, or κR is not finite.
     #[error("the screening wavenumber must be finite and not negative, it is {wavenumber}")]
     WavenumberNegative {
         /// The wavenumber given \[1/length\].
@@ -149,7 +148,7 @@ pub enum ReferenceError {
     /// The wavenumber is a pole to rounding: the displacement has no finite value anywhere in the annulus.
     #[error("the screening wavenumber {wavenumber} is pole number {index}, {pole}, to rounding: no finite solution")]
     AtPole {
-        /// Which pole, counted from 1.
+        /// Number of the pole, counted from 1.
         index: usize,
         /// The wavenumber given \[1/length\].
         wavenumber: f64,

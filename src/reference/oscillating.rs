@@ -1,13 +1,14 @@
-//! [`Wave`]: modulus and phase of the oscillating solutions of order one, in two dimensions and in three, with how both
-//! change with κ.
+//! [`Wave`]: modulus and phase of the oscillating solutions of order one, in two and three dimensions, with their
+//! derivatives with respect to κ.
 //!
 //! ```text
 //! J_1 + i Y_1  or  j_1 + i y_1 = M exp(iθ)            x θ' = 2/(π M²)  or  x³/(1 + x²)
 //! v(r) = c M(κr) M(κR) sin(θ(κR) − θ(κr))              c = π R/2  or  κ R²
 //! ```
 //!
-//! A derivative in κ at fixed radius is x/κ times one in x. It is taken of the logarithm of M and of the phase, so that it
-//! does not cancel where the argument is large; of M'/M only what is left after the power x^(1−D), `m = x M'/M + D − 1`.
+//! A derivative with respect to κ at fixed radius is x/κ times one with respect to x. It is computed for the logarithm
+//! of M and for the phase, which avoids cancellation at large arguments. Of M'/M only the part beyond the power x^(1−D)
+//! is used, `m = x M'/M + D − 1`.
 
 use crate::reference::bessel::modulus_phase::{
     EXPANDED_FROM, modulus_phase, reduced_square_deficit, reduced_square_slope,
@@ -17,7 +18,7 @@ use crate::reference::rim_distance::RimDistance;
 
 use std::f64::consts::FRAC_2_PI;
 
-/// Below this the phase is measured from where it is at x = 0, and is small.
+/// Below this x the phase is relative to its value at x = 0, and small.
 const SMALL: f64 = 1.0;
 
 /// One of the solutions at one argument x = κr.
@@ -31,7 +32,7 @@ pub(crate) struct Wave {
     pub growth: f64,
     /// φ = θ − x + constant.
     shift: f64,
-    /// θ(x) − θ(0), meant for small x.
+    /// θ(x) − θ(0), for small x.
     turned: f64,
     /// x θ'.
     turning: f64,
@@ -39,7 +40,7 @@ pub(crate) struct Wave {
     turning_excess: f64,
 }
 
-/// What a phase does between two radii.
+/// The change of the phase between two radii.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Turn {
     pub sine: f64,
@@ -81,7 +82,7 @@ impl Wave {
         }
         let (j, y) = (cylinder::j1(x), cylinder::y1(x));
         let modulus = libm::hypot(j, y);
-        // M' of M² = J² + Y² with J_1' = J_0 − J_1/x; divided by M one at a time, as M² overflows first.
+        // M' of M² = J² + Y² with J_1' = J_0 − J_1/x; two divisions by M, since M² overflows first.
         let growth = x * (cylinder::j0(x) * (j / modulus) + cylinder::y0(x) * (y / modulus)) / modulus;
         let turning = FRAC_2_PI / modulus / modulus;
         Wave {
@@ -96,7 +97,7 @@ impl Wave {
         }
     }
 
-    /// From here to a larger radius, at the same wavenumber.
+    /// The change to a larger radius, at the same wavenumber.
     pub(crate) fn turn_to(&self, wavenumber: f64, outer: &Wave) -> Turn {
         if outer.argument < SMALL {
             let (sine, cosine) = libm::sincos(outer.turned - self.turned);

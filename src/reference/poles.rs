@@ -1,24 +1,24 @@
 //! The screening wavenumbers κ_n at which the response diverges.
 //!
-//! The rim solution has a node at the inner edge, v(a; κ_n) = 0, so no amplitude there can be prescribed. In two
+//! The rim solution has a node at the inner edge, v(a; κ_n) = 0, so no displacement can be prescribed there. In two
 //! dimensions
 //!
 //! ```text
 //! J_1(aκ) Y_1(Rκ) − Y_1(aκ) J_1(Rκ) = 0    ⇔    θ(κR) − θ(κa) = n π
 //! ```
 //!
-//! with θ the phase of J_1 + i Y_1 ([`bessel`](crate::reference::bessel)); in three the same with j_1 + i y_1. With
-//! θ(x) = x + φ(x) + constant the condition is
+//! with θ the phase of J_1 + i Y_1 ([`bessel`](crate::reference::bessel)); in three dimensions the same with j_1 + i
+//! y_1. With θ(x) = x + φ(x) + constant the condition is
 //!
 //! ```text
 //! F(κ) = κ(R − a) + φ(κR) − φ(κa) = n π
 //! ```
 //!
-//! F grows strictly: κF' = y θ'(y) − x θ'(x) at y = κR > x = κa, and x θ' grows because x M² falls (Watson, A Treatise
-//! on the Theory of Bessel Functions, §13.74; in three dimensions x θ' = x³/(1 + x²)). And φ falls from φ(0) = π/4 (two
-//! dimensions) or π/2 (three) to 0, so `κ_n (R − a)` lies between `n π` and `n π + φ(0)`: one root in a known bracket
-//! for every n ≥ 1, none missed, none counted twice. The poles are *not* n π/R: for a ≪ R they are the zeros of J_1
-//! over R, 3.8317, 7.0156, 10.1735, … .
+//! F is strictly increasing: κF' = y θ'(y) − x θ'(x) at y = κR > x = κa, and x θ' grows because x M² falls (Watson, A
+//! Treatise on the Theory of Bessel Functions, §13.74; in three dimensions x θ' = x³/(1 + x²)). φ falls from φ(0) = π/4
+//! (two dimensions) or π/2 (three) to 0, so `κ_n (R − a)` is between `n π` and `n π + φ(0)`. Every n ≥ 1 therefore has
+//! exactly one root in a known bracket. The poles are *not* n π/R: for a ≪ R they are the zeros of J_1 over R, 3.8317,
+//! 7.0156, 10.1735, … .
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
@@ -26,20 +26,20 @@ use crate::reference::Annulus;
 use crate::reference::bessel::modulus_phase::modulus_phase;
 use crate::reference::rim_distance::RimDistance;
 
-/// Newton's steps needed are 3 to 6; if rounding makes the last ones hop, this ends it.
+/// Limit of Newton steps; 3 to 6 are needed, but rounding may make the last ones alternate.
 const STEP_LIMIT: usize = 40;
 
 /// Pole number `index` \[1/length\] in two (`D = 2`) or three (`D = 3`) dimensions, counted from 1.
 ///
-/// `index` 0 gives 0, where F vanishes too: no pole, but the lower end of the first branch.
+/// `index` 0 gives 0, where F also vanishes: not a pole, but the lower end of the first branch.
 ///
 /// # Accuracy
-/// Relative error below 8·10⁻¹⁶ (F to 1.2·10⁻¹⁵ over κF' > 3, and two roundings of nπ and κ); largest found over the rows of
-/// `fixtures/reference`, n ≤ 20, R/a from 60 to 2·10⁴: 1.8·10⁻¹⁶; for n ≤ 1000 and R/a from 1.001 to 10⁷, against
-/// multi-precision (`reference::precise_poles::poles_lie_between_numbers_of_opposite_sign`): 2.4·10⁻¹⁶.
+/// Relative error below 8·10⁻¹⁶ (F to 1.2·10⁻¹⁵ over κF' > 3, and two roundings of nπ and κ). Largest errors found:
+/// 1.8·10⁻¹⁶ for the rows of `fixtures/reference`, n ≤ 20, R/a from 60 to 2·10⁴; 2.4·10⁻¹⁶ for n ≤ 1000 and R/a from
+/// 1.001 to 10⁷, against multi-precision (`reference::precise_poles::poles_lie_between_numbers_of_opposite_sign`).
 ///
 /// # Cost
-/// 0.1 to 0.4 µs, n from 1 to 1000 (`cargo bench --bench reference -- pole/`, least of six runs on two shared cores).
+/// See `cargo bench --bench reference -- pole/`.
 ///
 /// # Example
 /// ```
@@ -67,7 +67,7 @@ pub fn pole<const D: usize>(annulus: Annulus, index: usize) -> f64 {
         }
         let step = wavenumber * beyond / phase.logarithmic_slope;
         let next = wavenumber - step;
-        // Outside the bracket, or not a number: halve it instead.
+        // Outside the bracket, or NaN: bisect instead.
         let next = if next >= low && next <= high { next } else { 0.5 * (low + high) };
         let moved = (next - wavenumber).abs();
         wavenumber = next;
@@ -78,23 +78,23 @@ pub fn pole<const D: usize>(annulus: Annulus, index: usize) -> f64 {
     wavenumber
 }
 
-/// How many poles lie below `wavenumber` \[1/length\], the number of the branch it is in, counted from 0.
+/// Number of poles below `wavenumber` \[1/length\], which is the number of its branch, counted from 0.
 ///
-/// It is also the number of nodes of the displacement between the inflated disk and the rim. A negative or undefined
-/// wavenumber has none.
+/// It is also the number of nodes of the displacement between the inflated disk and the rim. It is 0 for a negative
+/// wavenumber or NaN.
 pub fn pole_count_below<const D: usize>(annulus: Annulus, wavenumber: f64) -> usize {
     if wavenumber.is_nan() || wavenumber <= 0.0 {
         return 0;
     }
     let phase = Phase::new::<D>(annulus, wavenumber);
     let nearest = phase.nearest_index();
-    // A pole itself is not below itself.
+    // A pole is not below itself.
     if phase.beyond(nearest as f64) > 0.0 { nearest } else { nearest.saturating_sub(1) }
 }
 
-/// The index of the pole `wavenumber` cannot be told from, if there is one.
+/// The index of the pole that equals `wavenumber` to rounding, if there is one.
 ///
-/// Within 4·2⁻⁵² of κ_n, relative: the sum of what rounding does to κ (2⁻⁵³) and to F (6·10⁻¹⁶ of an F' κ above 3).
+/// Within 4·2⁻⁵² of κ_n, relative: the sum of the rounding of κ (2⁻⁵³) and of F (6·10⁻¹⁶ of an F' κ above 3).
 pub(crate) fn pole_at<const D: usize>(annulus: Annulus, wavenumber: f64) -> Option<usize> {
     let phase = Phase::new::<D>(annulus, wavenumber);
     let nearest = phase.nearest_index();
@@ -131,7 +131,7 @@ impl Phase {
 
     /// The integer nearest to F/π.
     fn nearest_index(&self) -> usize {
-        // A float-to-integer cast saturates: beyond 2⁵³ poles the index is no longer exact anyway.
+        // A float-to-integer cast saturates: beyond 2⁵³ poles the index is not exact in any case.
         ((self.distance.value() + self.shift) / PI).round() as usize
     }
 }

@@ -1,4 +1,4 @@
-//! [`RimSolution`]: the solution that leaves the held rim with slope −1, smooth in κ, poles or no poles.
+//! [`RimSolution`]: the solution with slope −1 at the held rim, smooth in κ even at poles.
 
 use std::sync::OnceLock;
 
@@ -8,9 +8,9 @@ use crate::reference::sensitivity::RimResponse;
 use crate::reference::spherical::Spherical;
 use crate::reference::{Annulus, RadialSolution, ReferenceError};
 
-/// Up to this κR the elastic solution stands for the screened one: the relative error is (κR)²/8 ≤ 1.3·10⁻¹⁷ in two
-/// dimensions, (κR)²/10 in three (the next term of J_1(y) = y/2 − y³/16 + …, j_1(y) = y/3 − y³/30 + …, which is what
-/// relates v(a) to v'(R)).
+/// Up to this κR the elastic solution is used instead of the screened one. The relative error is (κR)²/8 ≤ 1.3·10⁻¹⁷ in
+/// two dimensions, (κR)²/10 in three. It is the next term of J_1(y) = y/2 − y³/16 + …, j_1(y) = y/3 − y³/30 + …, which
+/// relates v(a) to v'(R).
 pub const ELASTIC_BELOW: f64 = 1e-8;
 
 /// The solution v of the screened equation with `v(R) = 0` and `v'(R) = −1`.
@@ -23,24 +23,24 @@ pub const ELASTIC_BELOW: f64 = 1e-8;
 /// D = 3:  v = κ R² [j_1(κr) y_1(κR) − y_1(κr) j_1(κR)]
 /// ```
 ///
-/// It is an entire function of κ². The solution with displacement d_0 at a is `d_0 v(r)/v(a)`; the nodes of v(a) in κ
+/// It is an entire function of κ². The solution with displacement d_0 at a is `d_0 v(r)/v(a)`; the zeros of v(a) in κ
 /// are its poles.
 ///
 /// # Units
 /// κ in 1/length, v in lengths.
 ///
 /// # Accuracy
-/// v and v' relative to the local amplitude of the oscillation below 3.2·10⁻¹⁵, wherever r is in the annulus; next to the rim
-/// and for κR < 2 relative to themselves. Largest found for R/a from 1.001 to 10⁷ and κR from 10⁻⁸ to 10⁶: 9·10⁻¹⁶.
+/// v and v' relative to the local amplitude of the oscillation below 3.2·10⁻¹⁵ in the annulus; near the rim and for κR
+/// < 2 relative to themselves. Largest error found for R/a from 1.001 to 10⁷ and κR from 10⁻⁸ to 10⁶: 9·10⁻¹⁶.
 ///
 /// # Cost
-/// That of [`Screened`](crate::reference::screened::Screened), which is a quotient of two values of this.
+/// That of [`Screened`](crate::reference::screened::Screened), a quotient of two values of this.
 #[derive(Debug, Clone)]
 pub struct RimSolution<const D: usize> {
     annulus: Annulus,
     wavenumber: f64,
     form: Form,
-    /// Set up when first asked for.
+    /// Computed at first use.
     response: OnceLock<Box<RimResponse<D>>>,
 }
 
@@ -70,11 +70,12 @@ impl<const D: usize> RimSolution<D> {
         Ok(RimSolution { annulus, wavenumber, form, response: OnceLock::new() })
     }
 
-    /// ∂v/∂κ \[length²\] at `radius` \[length\], NaN outside the annulus; of order κ as κ → 0, and of order (R − r)³ as r → R.
+    /// ∂v/∂κ \[length²\] at `radius` \[length\], NaN outside the annulus; of order κ as κ → 0, and of order (R − r)³ as
+    /// r → R.
     ///
     /// # Accuracy
-    /// Error below 3.2·10⁻¹⁵ of the amplitude of its oscillation in κ, `√((∂v/∂κ)² + (R − r)² v²)`; for κR < 2 and next to the rim
-    /// of itself (1.3·10⁻¹⁵ the largest found).
+    /// Error below 3.2·10⁻¹⁵ of the amplitude of its oscillation in κ, `√((∂v/∂κ)² + (R − r)² v²)`; for κR < 2 and near
+    /// the rim relative to itself (largest found: 1.3·10⁻¹⁵).
     pub fn wavenumber_derivative(&self, radius: f64) -> f64 {
         if !self.annulus.contains(radius) {
             return f64::NAN;
@@ -87,13 +88,13 @@ impl<const D: usize> RimSolution<D> {
         response.at(radius, self.value(radius))
     }
 
-    /// Whether κR is so small that the elastic solution stands for this one.
+    /// Whether κR is so small that the elastic solution is used.
     pub(crate) fn is_elastic(&self) -> bool {
         matches!(self.form, Form::Elastic)
     }
 }
 
-/// κR of a wavenumber that is not negative and finite.
+/// κR of a wavenumber, after checks.
 pub(crate) fn checked_wavenumber(annulus: Annulus, wavenumber: f64) -> Result<f64, ReferenceError> {
     let argument = wavenumber * annulus.outer_radius();
     if wavenumber >= 0.0 && argument.is_finite() {

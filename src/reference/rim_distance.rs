@@ -1,4 +1,4 @@
-//! `RimDistance`: κ(R − r) without rounding, which is what the profiles depend on near the rim and at large κR.
+//! `RimDistance`: κ(R − r) without rounding; profiles depend on it near the rim and at large κR.
 
 use crate::vector::{two_product, two_sum};
 

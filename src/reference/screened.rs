@@ -1,4 +1,4 @@
-//! [`Screened`]: the medium whose elastic field is screened by plastic events.
+//! [`Screened`]: a medium in which plastic events screen the elastic field.
 
 use std::sync::OnceLock;
 
@@ -16,26 +16,25 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// D = 3:  the same with the spherical j_1 and y_1
 /// ```
 ///
-/// As κ → 0 it tends to [`Elastic`] with an error of order κ²; κ = 0 is exactly elastic, and so is κR ≤ 10⁻⁸, where
+/// As κ → 0 it tends to [`Elastic`] with an error of order κ². κ = 0 is exactly elastic, and so is κR ≤ 10⁻⁸, where
 /// that error is below 1.3·10⁻¹⁷ ([`ELASTIC_BELOW`](crate::reference::rim::ELASTIC_BELOW)). It has poles at κ_n
-/// ([`poles`](crate::reference::poles)); between κ_n and κ_(n+1) the displacement changes sign n times.
+/// ([`poles`](crate::reference::poles)). Between κ_n and κ_(n+1) the displacement changes sign n times.
 ///
 /// # Units
 /// Radii and displacement in lengths, κ in 1/length.
 ///
 /// # Source
-/// Lemaître et al. (2021), Phys. Rev. E 104, 024904; in three dimensions Charan et al. (2023), Phys. Rev. E 107, 055005.
+/// Lemaître et al. (2021), Phys. Rev. E 104, 024904; in three dimensions Charan et al. (2023), Phys. Rev. E 107,
+/// 055005.
 ///
 /// # Accuracy
-/// Relative error, next to a node relative to the local envelope, below 3.2·10⁻¹⁵ (1 + κ_n/|κ − κ_n|), the factor being
-/// the condition of the problem in κ; d(a) = d_0 and d(R) = 0 exactly. Largest found over the rows of
+/// Relative error, near a node relative to the local envelope, below 3.2·10⁻¹⁵ (1 + κ_n/|κ − κ_n|), where the factor is
+/// the condition number with respect to κ; d(a) = d_0 and d(R) = 0 exactly. Largest errors found for the rows of
 /// `fixtures/reference`, R/a from 60 to 2·10⁴, κR from 10⁻¹¹ to 10⁵: 3.1·10⁻¹⁶ of that factor in two dimensions,
-/// 4.7·10⁻¹⁶ in three; over random annuli, R/a from 1.001 to 10⁷, κR from 10⁻⁸ to 10⁶: 6·10⁻¹⁶.
+/// 4.7·10⁻¹⁶ in three; for random annuli, R/a from 1.001 to 10⁷, κR from 10⁻⁸ to 10⁶: 6·10⁻¹⁶.
 ///
 /// # Cost
-/// 1000 radii, κR from 10⁻⁴ to 10⁵: 28 to 56 µs in two dimensions, 18 to 21 µs in three (`cargo bench --bench reference -- profile`,
-/// least of six runs on two shared cores); the derivative 41 to 72 µs and 21 to 25 µs (`-- derivative`); 0.5 to 1.3 µs and 0.06 µs to
-/// set up (`-- setup`, both least of four).
+/// See `cargo bench --bench reference -- profile`, `-- derivative` and `-- setup`.
 ///
 /// # Example
 /// ```
@@ -57,7 +56,7 @@ pub struct Screened<const D: usize> {
     amplitude: f64,
     wavenumber: f64,
     form: Form<D>,
-    /// Set up when first asked for.
+    /// Computed at first use.
     sensitivity: OnceLock<Box<Sensitivity<D>>>,
 }
 
@@ -104,19 +103,21 @@ impl<const D: usize> Screened<D> {
     /// ∂d/∂κ \[length²\] at `radius` \[length\], NaN outside the annulus: 0 at a, at R and at κ = 0.
     ///
     /// # Accuracy
-    /// Error below 2 · 3.2·10⁻¹⁵ (1 + κ_n/|κ − κ_n|), twice the condition of d since its poles are of second order, relative to
+    /// Error below 2 · 3.2·10⁻¹⁵ (1 + κ_n/|κ − κ_n|), twice the condition number of d since its poles are of second
+    /// order, relative to
     ///
-    /// - itself, for κR < 2 (so as κ → 0, where it is of order κ) and next to a, where it vanishes as r − a;
-    /// - `√((∂d/∂κ)² + (R − a)² d²)`, its amplitude as κ changes, within half of 1/κ of the rim, where it vanishes as R − r;
+    /// - itself, for κR < 2 (also for κ → 0, where it is of order κ) and near a, where it vanishes as r − a;
+    /// - `√((∂d/∂κ)² + (R − a)² d²)`, its amplitude as κ changes, within half of 1/κ of the rim, where it vanishes as R
+    ///   − r;
     /// - the local amplitude of its oscillation in r elsewhere.
     ///
     /// Tested for R/a from 1.001 to 10⁷, κR from 10⁻⁸ to 10⁶
-    /// (`reference::wavenumber_derivative::screened_profiles_and_both_derivatives_have_their_digits_in_two_dimensions` and its
-    /// twin in three); largest found: 5·10⁻¹⁶ of twice the condition.
+    /// (`reference::wavenumber_derivative::screened_profiles_and_both_derivatives_have_their_digits_in_two_dimensions`
+    /// and the same in three); largest error found: 5·10⁻¹⁶ of twice the condition number.
     ///
     /// # Cost
-    /// Set up when first asked for, 2 to 5 µs in two dimensions (`cargo bench --bench reference -- setup`); then two to six times a
-    /// value, 0.07 to 0.15 µs (`-- derivative`; least of four runs on two shared cores).
+    /// A setup at first use (`cargo bench --bench reference -- setup`); then two to six times that of a value (`--
+    /// derivative`).
     pub fn wavenumber_derivative(&self, radius: f64) -> f64 {
         if !self.annulus.contains(radius) {
             return f64::NAN;

@@ -1,26 +1,28 @@
-//! [`Sensitivity`]: how a profile changes with κ, without the cancellations of the formula one would write down.
+//! [`Sensitivity`]: the derivative of a profile with respect to κ, without the cancellations of the direct formula.
 //!
 //! ```text
 //! κ ∂d/∂κ = r d' − a d'(a) d/d_0 − R d'(R) w(r)        w(a) = 0, w(R) = 1
 //! ```
 //!
-//! follows from the scaling of the equation, and loses everything as κ → 0 (the left side is of order κ², each term on the right
-//! is not), as κa → 0, as r → a and as r → R. Hence three routes, and two numbers that join them:
+//! follows from the scaling of the equation. It loses all digits as κ → 0 (the left side is of order κ², each term on
+//! the right is not), as κa → 0, as r → a and as r → R. There are therefore three methods, connected by two numbers:
 //!
-//! 1. Next to a: `∂(d/d_0)/∂κ = u(r) ∂β/∂κ + h(r)` with β = d'(a)/d_0, u(a) = 0, u'(a) = 1, and h = ∂f/∂κ at fixed β, which
-//!    begins as (r − a)²; both by [`LocalSeries`].
-//! 2. Next to R: `(d/d_0) [∂ ln v(r)/∂κ − Λ]` with Λ = ∂ ln v(a)/∂κ, the first of which begins as (R − r)², by [`LocalSeries`].
-//! 3. Between: for small κR power series in κ² ([`Pair`]); else modulus and phase ([`Wave`]), or I and K ([`Decay`]).
+//! 1. Near a: `∂(d/d_0)/∂κ = u(r) ∂β/∂κ + h(r)` with β = d'(a)/d_0, u(a) = 0, u'(a) = 1, and h = ∂f/∂κ at fixed β,
+//!    which begins as (r − a)²; both by [`LocalSeries`].
+//! 2. Near R: `(d/d_0) [∂ ln v(r)/∂κ − Λ]` with Λ = ∂ ln v(a)/∂κ; the first term begins as (R − r)², by
+//!    [`LocalSeries`].
+//! 3. Between: for small κR power series in κ² ([`Pair`]); otherwise modulus and phase ([`Wave`]), or I and K
+//!    ([`Decay`]).
 //!
-//! ∂β/∂κ, and Λ where the rim is far, are read off where two routes meet.
+//! ∂β/∂κ, and Λ if the rim is far, are determined where two methods overlap.
 //!
-//! With Φ(r) the phase from r to R, Φ° = κ ∂Φ/∂κ and m as in [`Wave`], route 3 is
+//! With Φ(r) the phase from r to R, Φ° = κ ∂Φ/∂κ and m as in [`Wave`], method 3 is
 //!
 //! ```text
 //! κ ∂(d/d_0)/∂κ = [m(r) − m(a)] d/d_0 + (M(κr)/M(κa)) [Φ°(a) sin(Φ(a) − Φ(r)) − (Φ°(a) − Φ°(r)) cos Φ(r) sin Φ(a)] / sin² Φ(a)
 //! ```
 //!
-//! where 1/r of the singular solution, the largest term for r ≪ R, has dropped out of m.
+//! where 1/r of the singular solution, the largest term for r ≪ R, cancels analytically in m.
 
 use crate::reference::Annulus;
 use crate::reference::exponential::Decay;
@@ -57,7 +59,7 @@ impl<const D: usize> RimResponse<D> {
         RimResponse { wavenumber, outer_radius, series_from: series.end(), series, far }
     }
 
-    /// ∂v/∂κ at `radius`, where the rim solution itself is `value`.
+    /// ∂v/∂κ at `radius`; `value` is the rim solution there.
     pub(crate) fn at(&self, radius: f64, value: f64) -> f64 {
         if radius >= self.series_from {
             return self.series.response(self.wavenumber, radius);
@@ -83,7 +85,7 @@ fn rim_series<const D: usize>(sign: Sign, outer_radius: f64, wavenumber: f64) ->
     LocalSeries::with_response::<D>(sign, argument, outer_radius, rim_reach(argument), (0.0, -1.0))
 }
 
-/// The solution whose sensitivity is asked for: d/d_0, its slope at a, and which equation it solves.
+/// The solution to differentiate: d/d_0, its slope at a, and its equation.
 pub(crate) struct Profile<F: Fn(f64) -> f64> {
     pub sign: Sign,
     pub annulus: Annulus,
@@ -99,13 +101,13 @@ pub(crate) struct Profile<F: Fn(f64) -> f64> {
 pub(crate) struct Sensitivity<const D: usize> {
     annulus: Annulus,
     wavenumber: f64,
-    /// f and h, and u, next to a.
+    /// f and h, and u, near a.
     profile: LocalSeries,
     rise: LocalSeries,
     near_inner_until: f64,
     /// ∂β/∂κ.
     slope_response: f64,
-    /// v and ∂v/∂κ next to R.
+    /// v and ∂v/∂κ near R.
     rim: LocalSeries,
     near_rim_from: f64,
     /// Λ.
@@ -121,7 +123,7 @@ enum Between {
 }
 
 impl<const D: usize> Sensitivity<D> {
-    /// At κ > 0 that is no pole.
+    /// For κ > 0 that is not a pole.
     pub(crate) fn new<F: Fn(f64) -> f64>(solution: &Profile<F>) -> Self {
         let (sign, annulus, wavenumber) = (solution.sign, solution.annulus, solution.wavenumber);
         let (inner_radius, outer_radius) = (annulus.inner_radius(), annulus.outer_radius());
@@ -160,7 +162,7 @@ impl<const D: usize> Sensitivity<D> {
         sensitivity
     }
 
-    /// ∂(d/d_0)/∂κ at `radius`, where d/d_0 is `ratio`.
+    /// ∂(d/d_0)/∂κ at `radius`; `ratio` is d/d_0 there.
     pub(crate) fn at(&self, radius: f64, ratio: f64) -> f64 {
         if radius <= self.near_inner_until {
             let response = self.profile.response(self.wavenumber, radius);
@@ -169,7 +171,7 @@ impl<const D: usize> Sensitivity<D> {
         self.outside(radius, ratio)
     }
 
-    /// Routes 2 and 3.
+    /// Methods 2 and 3.
     fn outside(&self, radius: f64, ratio: f64) -> f64 {
         if radius >= self.annulus.outer_radius() {
             return 0.0;
@@ -180,7 +182,7 @@ impl<const D: usize> Sensitivity<D> {
         self.between(radius, ratio)
     }
 
-    /// ∂ ln v/∂κ next to the rim.
+    /// ∂ ln v/∂κ near the rim.
     fn near_rim_logarithm(&self, radius: f64) -> f64 {
         self.rim.response(self.wavenumber, radius) / self.rim.value(radius)
     }
@@ -196,7 +198,7 @@ impl<const D: usize> Sensitivity<D> {
             let response = inner.rim_solution_response::<D>(rim, outer_radius);
             return self.wavenumber * response / inner.rim_solution::<D>(rim, outer_radius);
         }
-        // Far from a the antiscreened d/d_0 may have underflowed; its logarithm has not.
+        // Far from a the antiscreened d/d_0 may underflow, but not its logarithm.
         let between = match &self.between {
             Between::Decay { inner, rim } => self.decay_logarithm(inner, rim, meeting),
             _ => self.between(meeting, ratio(meeting)) / ratio(meeting),
@@ -214,7 +216,7 @@ impl<const D: usize> Sensitivity<D> {
             Between::Wave { inner, rim, across } => {
                 let here = Wave::new::<D>(wavenumber, radius);
                 let (from_inner, to_rim) = (inner.turn_to(wavenumber, &here), here.turn_to(wavenumber, rim));
-                // The same number in two forms; each keeps its digits at its end.
+                // The same number in two forms, each accurate at its end.
                 let swing = if from_inner.rate < to_rim.rate {
                     across.rate * from_inner.sine - from_inner.rate * to_rim.cosine * across.sine
                 } else {
@@ -235,7 +237,7 @@ impl<const D: usize> Sensitivity<D> {
     }
 }
 
-/// How far the series next to a reaches, in ln(r/a): to 2a, and no further than a radian, or half a decay length.
+/// Range of the series near a in ln(r/a): to 2a, and at most one radian, or half a decay length.
 fn inner_reach(sign: Sign, argument: f64) -> f64 {
     let distance = match sign {
         Sign::Screened => 1.0,

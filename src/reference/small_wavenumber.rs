@@ -1,4 +1,4 @@
-//! [`Pair`]: the regular and the singular solution as power series in κ², for κr of order one.
+//! [`Pair`]: the regular and the singular solution as power series in κ², for κr of order one or less.
 //!
 //! ```text
 //! D = 2:  M = r Σ q^k/(k! (k+1)!)                              q = ∓(κr)²/4
@@ -9,9 +9,9 @@
 //! v = (R^(D−1)/D) [N(r) M(R) − M(r) N(R)]
 //! ```
 //!
-//! M is 2 J_1(κr)/κ or 3 j_1(κr)/κ, N is −(π κ/2) Y_1 less its logarithm of κ, times M, or −κ² y_1. Upper signs: screened; lower:
-//! antiscreened. The derivatives `(1/κ) ∂/∂κ` are series too, with nothing of order κ⁰ left to cancel; and in the profile
-//! they are combined so that what is common to r and a has dropped out:
+//! M is 2 J_1(κr)/κ or 3 j_1(κr)/κ. N is −(π κ/2) Y_1 without the term of M with the logarithm of κ, or −κ² y_1. Upper
+//! signs: screened; lower: antiscreened. The derivatives `(1/κ) ∂/∂κ` are also series, without terms of order κ⁰ that
+//! would cancel. In the profile they are combined so that common terms of r and a cancel analytically:
 //!
 //! ```text
 //! (1/κ) ∂(d/d_0)/∂κ = {[N°N_a − N N°_a] − ρ [M°N_a − M N°_a + N°M_a − N M°_a] + ρ² [M°M_a − M M°_a] − ρ° [M N_a − N M_a]}
@@ -24,10 +24,10 @@
 use crate::reference::bessel::polynomial::polynomial;
 use crate::reference::local_series::Sign;
 
-/// 1/14!² = 10⁻²² at κr = 2.
+/// Number of terms: 1/14!² = 10⁻²² at κr = 2.
 const LENGTH: usize = 14;
 
-/// Up to this κR the pair is used: below the first pole, 3.83, and no term exceeds the first.
+/// Up to this κR the pair is used: it is below the first pole, 3.83, and no term exceeds the first.
 pub(crate) const SMALL_BELOW: f64 = 2.0;
 
 /// 1/(k! (k+n)!).
@@ -122,7 +122,7 @@ impl Pair {
             };
         }
         let q = -0.25 * sign * x * x;
-        // ln(R/r): the first form has its digits as r → R, the second as r/R → 0.
+        // ln(R/r): the first form is accurate as r → R, the second as r/R → 0.
         let logarithm = if radius > 0.5 * outer_radius {
             -libm::log1p((radius - outer_radius) / outer_radius)
         } else {
@@ -140,20 +140,20 @@ impl Pair {
         }
     }
 
-    /// v here, `rim` being the pair at R.
+    /// v at this radius; `rim` is the pair at R.
     pub(crate) fn rim_solution<const D: usize>(&self, rim: &Pair, outer_radius: f64) -> f64 {
         let bracket = self.singular * rim.regular - self.regular * rim.singular;
         outer_radius.powi(D as i32 - 1) / D as f64 * bracket
     }
 
-    /// `(1/κ) ∂v/∂κ` here, `rim` being the pair at R.
+    /// `(1/κ) ∂v/∂κ` at this radius; `rim` is the pair at R.
     pub(crate) fn rim_solution_response<const D: usize>(&self, rim: &Pair, outer_radius: f64) -> f64 {
         let bracket = (self.singular_response * rim.regular - self.regular * rim.singular_response)
             + (self.singular * rim.regular_response - self.regular_response * rim.singular);
         outer_radius.powi(D as i32 - 1) / D as f64 * bracket
     }
 
-    /// `(1/κ) ∂(d/d_0)/∂κ` here, `inner` and `rim` being the pairs at a and R.
+    /// `(1/κ) ∂(d/d_0)/∂κ` at this radius; `inner` and `rim` are the pairs at a and R.
     pub(crate) fn profile_response(&self, inner: &Pair, rim: &Pair) -> f64 {
         let ratio = rim.singular / rim.regular;
         let ratio_response = (rim.singular_response - ratio * rim.regular_response) / rim.regular;

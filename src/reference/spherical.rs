@@ -5,8 +5,8 @@
 //! v(r) = [x y sin δ + δ² j_1(δ)] / (κ x²)        x = κr,  y = κR
 //! ```
 //!
-//! Both terms have one sign for δ < π, so nothing cancels on the way to the rim or as κ → 0. The phase of j_1 + i y_1
-//! is x − π + φ with φ = arctan(1/x) exactly.
+//! Both terms have the same sign for δ < π, so there is no cancellation near the rim or as κ → 0. The phase of j_1 + i
+//! y_1 is x − π + φ with φ = arctan(1/x) exactly.
 
 use crate::reference::rim_distance::RimDistance;
 
@@ -41,7 +41,7 @@ impl Spherical {
         let x = self.wavenumber * radius;
         let delta = distance.value();
         let rest = if delta < 1.0 { squared_times_order_one(delta) } else { sine - delta * cosine };
-        // Divided by x twice: x² would underflow long before x does.
+        // Two divisions by x: x² would underflow long before x does.
         (self.wavenumber * self.outer_radius * sine / x + rest / x / x) / self.wavenumber
     }
 }

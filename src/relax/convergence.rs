@@ -175,7 +175,8 @@ impl Monitor {
         assembly.law().has_sites() && assembly.longest_displacement_from_site() >= self.farthest
     }
 
-    /// Determines the backbone and its residual. Without a backbone, all disks count if there are forces. Returns the criterion met.
+    /// Determines the backbone and its residual. Without a backbone, all disks count if there are forces. Returns the
+    /// criterion met.
     fn refresh<const D: usize, L: PairLaw>(
         &mut self,
         assembly: &Assembly<D, L>,
@@ -195,7 +196,8 @@ impl Monitor {
         let row = &mut self.row;
         self.floor = floor_of(assembly, members, mean, assembly.longest_displacement(), row);
         self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
-        // Rounding counts if it is within a factor 20 of the residual and new anchors would lower it by more than a factor 4.
+        // Rounding counts if it is within a factor 20 of the residual and new anchors would lower it by more than a
+        // factor 4.
         self.needs_anchors =
             self.floor > 0.05 * self.last.relative() && self.floor > 4.0 * floor_of(assembly, members, mean, 0.0, row);
         let stop = match self.limit {

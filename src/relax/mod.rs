@@ -1,8 +1,8 @@
 //! Bringing a packing to rest: [`Relaxer`], its [`Outcome`], and [`Relaxed`], which only a converged outcome can make.
 //!
 //! The residual is the largest net force on a mobile disk of the backbone over the mean contact force of the backbone.
-//! Without a backbone, as in a chain of pressed disks, all mobile disks count. Held disks never count. Rattlers only have to
-//! meet the square root of the limit: their contacts open algebraically slowly, without touching the backbone.
+//! Without a backbone, as in a chain of pressed disks, all mobile disks count. Held disks never count. Rattlers only
+//! have to meet the square root of the limit: their contacts open algebraically slowly, without touching the backbone.
 
 mod choice;
 mod column_operations;

@@ -80,7 +80,8 @@ pub struct Outcome<T> {
     pub stop: Stop,
     /// The residual reached.
     pub residual: Residual,
-    /// The rounding floor of the relative residual, estimated by [`rounding_floor`](crate::relax::rounding_floor()) \[1\].
+    /// The rounding floor of the relative residual, estimated by [`rounding_floor`](crate::relax::rounding_floor())
+    /// \[1\].
     pub rounding_floor: f64,
     /// The cost.
     pub cost: Cost,

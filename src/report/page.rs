@@ -171,7 +171,7 @@ fn section(report: &Report, sample: &SampleReport) -> Result<String, FigureError
                 "<section class=\"sample failed\" aria-label=\"Sample {name}\">\n<h2>{name}: failed</h2>\n\
                  <p class=\"reason\">{}</p>\n<p>Asked for: {}.</p>\n</section>\n",
                 escaped(reason),
-                escaped(&asked(report, sample))
+                escaped(&requests(report, sample))
             ));
         }
     };
@@ -190,7 +190,7 @@ fn section(report: &Report, sample: &SampleReport) -> Result<String, FigureError
 }
 
 /// The requests of the scene for a sample.
-fn asked(report: &Report, sample: &SampleReport) -> String {
+fn requests(report: &Report, sample: &SampleReport) -> String {
     match settings(report, &sample.name).map(|sample| &sample.source) {
         Some(Source::PackingFraction(value)) => format!("packing fraction {value}"),
         Some(Source::Pressure(value)) => format!("pressure {value}"),

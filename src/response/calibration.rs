@@ -172,10 +172,10 @@ impl Calibration {
         let alike = |it: &&CalibratedEnsemble| {
             (it.law.as_str(), it.relaxer.as_str(), it.increase) == (of.law, of.relaxer, of.increase)
         };
-        let size = |it: &CalibratedEnsemble| apart(it.disk_count as f64, of.disk_count as f64);
+        let size = |it: &CalibratedEnsemble| ratio(it.disk_count as f64, of.disk_count as f64);
         let ensembles = self.ensembles.iter().filter(alike);
         let ensemble = ensembles.min_by(|a, b| size(a).total_cmp(&size(b)))?;
-        let distance = |cell: &CalibratedCell| apart(cell.reduced_pressure, of.reduced_pressure);
+        let distance = |cell: &CalibratedCell| ratio(cell.reduced_pressure, of.reduced_pressure);
         let cell = ensemble.cells.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
         if size(ensemble) > LARGEST_SIZE_RATIO
             || distance(cell) > LARGEST_PRESSURE_RATIO
@@ -196,7 +196,7 @@ impl Calibration {
 }
 
 /// The larger of two numbers over the smaller; infinite if one is not positive.
-fn apart(a: f64, b: f64) -> f64 {
+fn ratio(a: f64, b: f64) -> f64 {
     if a > 0.0 && b > 0.0 { (a / b).max(b / a) } else { f64::INFINITY }
 }
 

@@ -1,123 +1,41 @@
 //! [`run`]: from a [`Scene`] to a [`Report`], one line per stage. The only file that uses all stages.
 
+mod error;
 #[cfg(feature = "linear")]
 mod plastic_summary;
+mod progress;
 mod report_data;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::certificate::Certificate;
 use crate::displacement::DisplacementField;
 use crate::inflation::{Boundary, Inflated, Inflation, InflationError, Rest, inflate_with};
-use crate::io::{ReadError, read_packing};
+use crate::io::read_packing;
 use crate::law::pair_law::PairLaw;
 use crate::memory::Memory;
 use crate::network::ContactNetwork;
 use crate::observe::PressureChange;
 use crate::observe::state::State;
 use crate::packing::{Packing, PackingError};
-use crate::preparation::{Preparation, PreparationError, Target, prepare_with};
+use crate::preparation::{Preparation, Target, prepare_with};
 use crate::processor::Processor;
 #[cfg(feature = "linear")]
 use crate::protocol::{Compared, Protocol, ProtocolSensitivity, ProtocolSettings, ProtocolSummary, chosen};
-use crate::relax::{Check, Criterion, Outcome, Relaxer, RelaxerChoice, Stop, Trace};
+use crate::relax::{Criterion, Outcome, Relaxer, RelaxerChoice, Stop, Trace};
 use crate::response::{Calibration, Conditions, PhaseFrequency, Response, Subject};
+use crate::run::progress::Watch;
 use crate::scene::reduced_pressure::reduction;
 use crate::scene::{Sample, Scene, SceneError, Source};
 use crate::verdict::{Place, RestVerdict};
 
+pub use error::RunError;
+pub use progress::Progress;
 #[cfg(feature = "linear")]
 pub use report_data::PlasticSummary;
 pub use report_data::{
     InflationSummary, PackingSummary, Report, RestSummary, SampleOutcome, SampleReport, SampleResult, StateSummary,
 };
-
-/// Why a run, or one sample of it, has no result.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum RunError {
-    /// The scene is invalid.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// A packing could not be read.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// A packing could not be prepared.
-    #[error("preparation: {0}")]
-    Preparation(#[from] PreparationError),
-    /// A packing is invalid.
-    #[error("packing: {0}")]
-    Packing(#[from] PackingError),
-    /// A packing from a file is invalid.
-    #[error("{}: {source}", path.display())]
-    PackingOfFile {
-        /// The file.
-        path: PathBuf,
-        /// The problem.
-        source: PackingError,
-    },
-    /// A packing from a file did not come to rest.
-    #[error("{}: the relaxation stopped with {stop:?} after {step_count} steps, residual {residual:e}", path.display())]
-    NotAtRest {
-        /// The file.
-        path: PathBuf,
-        /// Why it stopped.
-        stop: Stop,
-        /// Steps taken.
-        step_count: usize,
-        /// Relative residual reached.
-        residual: f64,
-    },
-    /// The inflation failed.
-    #[error("inflation: {0}")]
-    Inflation(#[from] InflationError),
-}
-
-/// Progress of a run; `()` ignores it.
-pub trait Progress: Sync {
-    /// A sample begins a relaxation of a stage, with `limit` as the target of the residual.
-    fn stage(&self, sample: usize, stage: &'static str, limit: f64) {
-        let _ = (sample, stage, limit);
-    }
-    /// The residual of the stage, from time to time.
-    fn residual(&self, sample: usize, residual: f64) {
-        let _ = (sample, residual);
-    }
-    /// Whether to end the sample as failed; called at every check of the residual.
-    fn interrupted(&self, sample: usize) -> bool {
-        let _ = sample;
-        false
-    }
-    /// The sample is done, with or without failure.
-    fn done(&self, sample: usize, failure: Option<&str>) {
-        let _ = (sample, failure);
-    }
-}
-
-impl Progress for () {}
-
-/// Reports the residual of one sample.
-struct Watch<'a> {
-    progress: &'a dyn Progress,
-    sample: usize,
-    stage: &'static str,
-    limit: f64,
-}
-
-impl Trace for Watch<'_> {
-    fn checked(&mut self, check: &Check) {
-        if check.step_count == 0 {
-            self.progress.stage(self.sample, self.stage, self.limit);
-        }
-        if !check.restart {
-            self.progress.residual(self.sample, check.residual);
-        }
-    }
-
-    fn interrupted(&mut self) -> bool {
-        self.progress.interrupted(self.sample)
-    }
-}
 
 /// Runs a scene. Samples are independent; with the feature `parallel` each has a thread, and results do not depend on
 /// it.

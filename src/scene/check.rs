@@ -8,7 +8,7 @@ use crate::packing::PackingError;
 use crate::relax::implicit::Finish;
 use crate::relax::{ForceLimit, RelaxerChoice, TimeStep};
 use crate::scene::definition::{Sample, Scene};
-use crate::scene::finite_numbers::NotWritable;
+use crate::scene::finite_numbers::{self, NotWritable};
 use crate::scene::observables::Observables;
 use crate::scene::size::{BYTES_A_DISK, DISK_INDEX};
 use crate::scene::source::Source;

@@ -66,8 +66,8 @@ pub struct Sample {
 impl Default for Scene {
     /// The three phases at the study's smallest size: unjammed, plastic and quasielastic.
     ///
-    /// The transition is at p_c = p̂_c N^(−3/2) with p̂_c from 8·10⁷ to 3·10⁸ and N = 4016 disks in the circle: 300 to
-    /// 1200. As in the study, FIRE relaxes the unjammed packing and damped dynamics with viscoelastic damping the
+    /// The transition is at p_c = p̂_c N^(−3/2), from 300 to 1200: p̂_c is from 8·10⁷ to 3·10⁸, and N = 4016 disks are in
+    /// the circle. As in the study, FIRE relaxes the unjammed packing and damped dynamics with viscoelastic damping the
     /// others.
     ///
     /// Samples of this size differ strongly (`book/studies/plastic_seeds.toml`).

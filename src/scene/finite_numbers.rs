@@ -54,22 +54,22 @@ pub fn check<T: Serialize + ?Sized>(value: &T) -> Result<(), NotWritable> {
 
 /// Like [`check()`], for a value that is itself the field `name`.
 pub(crate) fn check_at<T: Serialize + ?Sized>(name: &str, value: &T) -> Result<(), NotWritable> {
-    Walk { path: String::new() }.go(name.into(), value)
+    Checker { path: String::new() }.check_value(name.into(), value)
 }
 
 /// The current position in the value.
-struct Walk {
+struct Checker {
     path: String,
 }
 
-impl Walk {
+impl Checker {
     fn number(self, value: f64) -> Result<(), NotWritable> {
         if value.is_finite() { Ok(()) } else { Err(NotWritable::NotFinite { field: self.path, value }) }
     }
 
     /// Checks a field below this position.
     fn field<T: Serialize + ?Sized>(&self, name: &str, value: &T) -> Result<(), NotWritable> {
-        self.go(self.below(name), value)
+        self.check_value(self.below(name), value)
     }
 
     /// The path of a field or variant below this position.
@@ -79,11 +79,11 @@ impl Walk {
 
     /// Checks an element of a list at this position.
     fn element<T: Serialize + ?Sized>(&self, index: usize, value: &T) -> Result<(), NotWritable> {
-        self.go(format!("{}[{index}]", self.path), value)
+        self.check_value(format!("{}[{index}]", self.path), value)
     }
 
-    fn go<T: Serialize + ?Sized>(&self, path: String, value: &T) -> Result<(), NotWritable> {
-        value.serialize(Walk { path: path.clone() }).map_err(|error| match error {
+    fn check_value<T: Serialize + ?Sized>(&self, path: String, value: &T) -> Result<(), NotWritable> {
+        value.serialize(Checker { path: path.clone() }).map_err(|error| match error {
             // The error does not contain the path yet.
             NotWritable::NoForm { field, reason } if field.is_empty() => NotWritable::NoForm { field: path, reason },
             error => error,
@@ -97,7 +97,7 @@ impl Walk {
 
 /// A list, a tuple or a map.
 struct List {
-    at: Walk,
+    at: Checker,
     index: usize,
 }
 
@@ -108,7 +108,7 @@ impl List {
     }
 }
 
-impl Serializer for Walk {
+impl Serializer for Checker {
     type Ok = ();
     type Error = NotWritable;
     type SerializeSeq = List;
@@ -116,8 +116,8 @@ impl Serializer for Walk {
     type SerializeTupleStruct = List;
     type SerializeTupleVariant = List;
     type SerializeMap = List;
-    type SerializeStruct = Walk;
-    type SerializeStructVariant = Walk;
+    type SerializeStruct = Checker;
+    type SerializeStructVariant = Checker;
 
     fn serialize_f32(self, value: f32) -> Result<(), NotWritable> {
         self.number(f64::from(value))
@@ -205,12 +205,12 @@ impl Serializer for Walk {
         variant: &'static str,
         _: usize,
     ) -> Result<List, NotWritable> {
-        Ok(Walk { path: self.below(variant) }.list())
+        Ok(Checker { path: self.below(variant) }.list())
     }
     fn serialize_map(self, _: Option<usize>) -> Result<List, NotWritable> {
         Ok(self.list())
     }
-    fn serialize_struct(self, _: &'static str, _: usize) -> Result<Walk, NotWritable> {
+    fn serialize_struct(self, _: &'static str, _: usize) -> Result<Checker, NotWritable> {
         Ok(self)
     }
     fn serialize_struct_variant(
@@ -219,8 +219,8 @@ impl Serializer for Walk {
         _: u32,
         variant: &'static str,
         _: usize,
-    ) -> Result<Walk, NotWritable> {
-        Ok(Walk { path: self.below(variant) })
+    ) -> Result<Checker, NotWritable> {
+        Ok(Checker { path: self.below(variant) })
     }
 }
 
@@ -283,7 +283,7 @@ impl ser::SerializeMap for List {
     }
 }
 
-impl ser::SerializeStruct for Walk {
+impl ser::SerializeStruct for Checker {
     type Ok = ();
     type Error = NotWritable;
     fn serialize_field<T: Serialize + ?Sized>(&mut self, name: &'static str, value: &T) -> Result<(), NotWritable> {
@@ -294,7 +294,7 @@ impl ser::SerializeStruct for Walk {
     }
 }
 
-impl ser::SerializeStructVariant for Walk {
+impl ser::SerializeStructVariant for Checker {
     type Ok = ();
     type Error = NotWritable;
     fn serialize_field<T: Serialize + ?Sized>(&mut self, name: &'static str, value: &T) -> Result<(), NotWritable> {

@@ -42,7 +42,7 @@ use std::path::Path;
 
 /// The wall time of the samples of a task \[s\], if the folder contains a valid file of it.
 pub fn measured_seconds(folder: &Path, task: &Task) -> Option<f64> {
-    match store::Store::there(folder).state(task) {
+    match store::Store::existing(folder).state(task) {
         store::TaskState::Finished(_, seconds, _) => Some(seconds),
         store::TaskState::Missing | store::TaskState::Damaged(_) => None,
     }

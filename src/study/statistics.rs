@@ -1,4 +1,5 @@
-//! [`CellStatistics`]: mean, standard error, quartiles and bootstrap intervals of every number over the samples of a cell.
+//! [`CellStatistics`]: mean, standard error, quartiles and bootstrap intervals of every number over the samples of a
+//! cell.
 
 use std::collections::BTreeMap;
 

@@ -109,7 +109,7 @@ impl Store {
     /// Whether the folder contains this study; false if it contains none or one that may be replaced.
     fn has(&self, study: &Study, replace: bool) -> Result<bool, StoreError> {
         match self.study() {
-            Ok(there) if there == *study => Ok(true),
+            Ok(found) if found == *study => Ok(true),
             Ok(_) if !replace => Err(StoreError::OtherStudy { path: self.study_path() }),
             Err(error @ StoreError::Unreadable { .. }) if !replace => Err(error),
             Err(error @ StoreError::Io { .. }) => Err(error),
@@ -156,7 +156,7 @@ impl Store {
 
     /// Opens an existing folder: the store, its study and the lock.
     pub(super) fn held(folder: &Path) -> Result<(Self, Study, StudyLock), StoreError> {
-        let store = Store::there(folder);
+        let store = Store::existing(folder);
         // No lock is created in a folder without a study.
         store.study()?;
         let lock = StudyLock::shared(folder)?;
@@ -165,7 +165,7 @@ impl Store {
     }
 
     /// The store of an existing folder, whatever its study.
-    pub(super) fn there(folder: &Path) -> Self {
+    pub(super) fn existing(folder: &Path) -> Self {
         Store { folder: folder.into() }
     }
 

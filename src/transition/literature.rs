@@ -5,8 +5,8 @@
 //!
 //! 1. There is an interval.
 //! 2. Every cell behind the number has at least 8 samples.
-//! 3. An interval that contains the published value is not too wide. For a pressure, its ends are at most a factor of 10
-//!    apart. For any other number, it is no wider than the published value, or than 0.1 if that is larger.
+//! 3. An interval that contains the published value is not too wide. For a pressure, its ends are at most a factor of
+//!    10 apart. For any other number, it is no wider than the published value, or than 0.1 if that is larger.
 //!
 //! The interval of a p̂_c must also lie within the measured cells and within a factor of 10 of the best value.
 //!
@@ -99,7 +99,7 @@ impl Subject<'_> {
         }
     }
 
-    fn judged(&self, interval: Option<[f64; 2]>, sample_count: usize) -> Result<Verdict, CannotTell> {
+    fn verdict_by_interval(&self, interval: Option<[f64; 2]>, sample_count: usize) -> Result<Verdict, CannotTell> {
         let interval = interval.ok_or(CannotTell::NoInterval)?;
         if sample_count < LEAST_SAMPLES {
             return Err(CannotTell::FewSamples);
@@ -113,7 +113,7 @@ impl Subject<'_> {
     }
 
     fn interval(&self, value: f64, interval: Option<[f64; 2]>, sample_count: usize) -> Comparison {
-        let verdict = self.judged(interval, sample_count);
+        let verdict = self.verdict_by_interval(interval, sample_count);
         Comparison { value: Some(value), interval, ..self.comparison(sample_count, verdict) }
     }
 
@@ -137,7 +137,7 @@ impl Subject<'_> {
             TransitionPressure::Found(found) => {
                 let verdict = match estimate.measured.and_then(|measured| unsound(&found, measured)) {
                     Some(reason) => Err(reason),
-                    None => self.judged(found.interval, sample_count),
+                    None => self.verdict_by_interval(found.interval, sample_count),
                 };
                 Comparison { value: Some(found.best), interval: found.interval, ..bound(verdict) }
             }

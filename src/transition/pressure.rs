@@ -120,7 +120,7 @@ impl TransitionPressure {
         }
     }
 
-    /// Its interval \[force / length\]; one-sided for a bound.
+    /// Its interval \[force / length\], if there is one; a bound has none.
     pub fn interval(self) -> Option<[f64; 2]> {
         match self {
             TransitionPressure::Found(found) => found.interval,

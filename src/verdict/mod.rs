@@ -31,7 +31,8 @@ pub const LARGEST_RESIDUAL: f64 = 1e-2;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct VerdictSettings {
-    /// ε, the largest net force on the backbone over the mean contact force at rest, at most [`LARGEST_RESIDUAL`] \[1\].
+    /// ε, the largest net force on the backbone over the mean contact force at rest, at most [`LARGEST_RESIDUAL`]
+    /// \[1\].
     pub residual_limit: f64,
     /// What to do with states above the limit.
     pub above_limit: AboveLimit,

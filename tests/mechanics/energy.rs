@@ -36,7 +36,7 @@ fn blow(name: &str) -> (f64, Packing<2>) {
 /// Total energy at every check, and how the relaxation ended.
 fn watched(relaxer: &impl Relaxer, start: Packing<2>) -> (Vec<(f64, f64)>, Outcome<Packing<2>>) {
     let mut energies = Vec::new();
-    let mut trace = |look: &Check| energies.push((check.energy, check.kinetic_energy));
+    let mut trace = |check: &Check| energies.push((check.energy, check.kinetic_energy));
     let outcome = relaxer.relax(start, &Hertzian::default(), &mut trace).expect("no coincidence");
     (energies, outcome)
 }

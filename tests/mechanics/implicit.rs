@@ -319,7 +319,7 @@ fn the_end_does_not_depend_on_who_finishes() {
 fn gradient_flow_goes_downhill_at_every_step() {
     let start = inflated("hertz_N1000_p100", 1);
     let mut last = f64::INFINITY;
-    let mut check = |look: &Check| {
+    let mut check = |check: &Check| {
         // A step that is accepted has an error of two hundredths of an overlap at most: energy may rise by that of one disk.
         assert!(check.energy <= last * (1.0 + 1e-6), "{} after {last}", check.energy);
         last = check.energy;

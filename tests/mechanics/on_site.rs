@@ -116,7 +116,7 @@ fn a_packing_without_enough_stiffness_runs_away_and_a_tied_one_does_not() {
         let law = OnSite { law, coupling };
         assert_eq!(fire(1e-8).relax(grown(), &law, &mut ()).expect("apart").stop, Stop::NoMinimum);
         assert_eq!(damped(1e-8).relax(grown(), &law, &mut ()).expect("apart").stop, Stop::NoMinimum);
-        // Without damping steps are longest, and disks go farthest between two looks.
+        // Without damping steps are longest, and disks go farthest between two checks.
         let damping = DampingChoice::Constant(ConstantDamping { rate: 0.0 });
         let free = DampedDynamics { damping, ..damped(1e-8) };
         assert_eq!(free.relax(grown(), &law, &mut ()).expect("apart").stop, Stop::NoMinimum);
@@ -214,11 +214,11 @@ fn energies_at_the_restarts_of_fire_never_increase_below_zero_either() {
         first.with_corrections(moved.clone()).expect("valid")
     };
     let packing = site(cross(0.0));
-    let mut looks: Vec<Check> = Vec::new();
-    let outcome = fire(1e-12).relax(packing, &law, &mut |look: &Check| looks.push(*check)).expect("apart");
+    let mut checks: Vec<Check> = Vec::new();
+    let outcome = fire(1e-12).relax(packing, &law, &mut |check: &Check| checks.push(*check)).expect("apart");
     assert!(matches!(outcome.stop, Stop::Converged(_)), "{:?}", outcome.stop);
-    let restarts: Vec<f64> = looks.iter().filter(|look| check.restart).map(|look| check.energy).collect();
-    assert!(restarts.len() > 3 && looks.iter().all(|look| check.energy < 0.0), "{restarts:?}");
+    let restarts: Vec<f64> = checks.iter().filter(|check| check.restart).map(|check| check.energy).collect();
+    assert!(restarts.len() > 3 && checks.iter().all(|check| check.energy < 0.0), "{restarts:?}");
     // Rounding of contact and site energy added up, each below 5·10³.
     assert!(restarts.is_sorted_by(|&before, &after| after <= before + 2e-13 * 1e4), "{restarts:?}");
     let damped = damped(1e-12).relax(site(cross(0.0)), &law, &mut ()).expect("apart");

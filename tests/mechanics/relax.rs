@@ -99,12 +99,13 @@ fn hertzian_disks_keep_their_energy_without_damping_to_second_order() {
 fn energies_at_the_restarts_of_fire_never_increase() {
     for (seed, law) in [(1, Hertzian { stiffness: 2e5 }), (2, Hertzian { stiffness: 1.0 })] {
         let packing = points(200, 0.9, seed);
-        let mut looks: Vec<Check> = Vec::new();
+        let mut checks: Vec<Check> = Vec::new();
         let start = ContactNetwork::new(&packing, &law).expect("no coincidence").energy();
-        let outcome = fire(1e-8).relax(packing, &law, &mut |look: &Check| looks.push(*check)).expect("no coincidence");
+        let outcome =
+            fire(1e-8).relax(packing, &law, &mut |check: &Check| checks.push(*check)).expect("no coincidence");
         let packing = at_rest(outcome);
         let end = ContactNetwork::new(&packing, &law).expect("no coincidence").energy();
-        let restarts: Vec<f64> = looks.iter().filter(|look| check.restart).map(|look| check.energy).collect();
+        let restarts: Vec<f64> = checks.iter().filter(|check| check.restart).map(|check| check.energy).collect();
         assert!(restarts.len() > 3, "{} restarts", restarts.len());
         // Rounding of a sum over contacts, as the relaxer claims.
         let rounding = 1.0 + 1e-13;
@@ -122,7 +123,7 @@ fn fire_comes_back_from_a_time_step_far_too_long() {
     let start = ContactNetwork::new(&packing, &law).expect("no coincidence").energy();
     let settings = Fire { time_step_fraction: 40.0, step_limit: 400, ..fire(1e-10) };
     let mut restarts = Vec::new();
-    let mut trace = |look: &Check| {
+    let mut trace = |check: &Check| {
         if check.restart {
             restarts.push(check.energy)
         }
@@ -149,10 +150,10 @@ fn damped_dynamics_only_loses_energy() {
             ..damped(1e-6)
         };
         let mut totals: Vec<f64> = Vec::new();
-        let mut trace = |look: &Check| totals.push(check.energy + check.kinetic_energy);
+        let mut trace = |check: &Check| totals.push(check.energy + check.kinetic_energy);
         let outcome = settings.relax(packing, &law, &mut trace).expect("no coincidence");
         assert!(matches!(outcome.stop, Stop::Converged(_)), "{:?}", outcome.stop);
-        assert!(totals.len() > 100, "{} looks", totals.len());
+        assert!(totals.len() > 100, "{} checks", totals.len());
         let least = totals.iter().copied().fold(f64::INFINITY, f64::min);
         for pair in totals.windows(2) {
             let allowed = 4.0 / 3.0 * share * share * (pair[0] - least) + 1e-13 * pair[0];
@@ -406,24 +407,24 @@ fn a_relaxation_in_other_units_takes_the_same_steps_to_the_same_bits() {
 #[test]
 fn looks_are_rare_until_forces_are_small() {
     let limit = 1e-8;
-    let mut looks: Vec<Check> = Vec::new();
-    let mut trace = |look: &Check| looks.push(*check);
+    let mut checks: Vec<Check> = Vec::new();
+    let mut trace = |check: &Check| checks.push(*check);
     let packing = points(256, 0.95, 16);
     let outcome = fire(limit).relax(packing, &Hertzian::default(), &mut trace).expect("no coincidence");
     assert!(matches!(outcome.stop, Stop::Converged(_)));
-    looks.retain(|look| !check.restart);
+    checks.retain(|check| !check.restart);
     // "Small" is 30 times the limit, by the largest component of any disk a step before.
-    let far = looks.iter().filter(|look| check.residual > 100.0 * limit);
+    let far = checks.iter().filter(|check| check.residual > 100.0 * limit);
     assert!(far.clone().count() > 3);
-    assert!(far.clone().all(|look| check.step_count % 80 == 0), "{:?}", far.collect::<Vec<_>>());
+    assert!(far.clone().all(|check| check.step_count % 80 == 0), "{:?}", far.collect::<Vec<_>>());
     let near: Vec<usize> =
-        looks.iter().skip_while(|look| check.residual > 10.0 * limit).map(|look| check.step_count).collect();
+        checks.iter().skip_while(|check| check.residual > 10.0 * limit).map(|check| check.step_count).collect();
     assert!(near.len() > 1 && near.windows(2).all(|pair| pair[1] == pair[0] + 20), "{near:?}");
 }
 
 #[test]
 fn a_damped_motion_cut_short_tells_the_residual_where_it_is() {
-    // Between two looks, of which the last was 17 steps before.
+    // Between two checks, of which the last was 17 steps before.
     let cut = DampedDynamics { step_limit: 37, ..damped(1e-12) };
     let law = Hertzian::default();
     let outcome = relax(&cut, points(64, 0.95, 16), &law);

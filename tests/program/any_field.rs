@@ -6,7 +6,7 @@ use jamscope::law::{Hertzian, LawChoice, PowerLaw};
 use jamscope::observe::angular::{CorrelationEstimator, FrequencyLimit, SpectrumEstimator};
 use jamscope::observe::isostatic::{IsostaticRule, Normalisation};
 use jamscope::relax::{DampedDynamics, Fire, NonlinearConjugateGradients, QuasiNewton, RelaxerChoice, TimeStep};
-use jamscope::scene::{NotWritable, Observables, Sample, Scene, SceneError, Source, finite};
+use jamscope::scene::{NotWritable, Observables, Sample, Scene, SceneError, Source, finite_numbers};
 use jamscope::study::{Part, Seeds, Study, Target};
 use proptest::prelude::*;
 use serde::Serialize;
@@ -151,7 +151,7 @@ fn nan_and_infinity_are_refused_in_every_field_of_scene_and_study() {
             let said = scene.check().expect_err(path).to_string();
             assert!(said.contains("NaN") || said.contains("inf"), "{path}: {said}");
             // The check of all fields alone names the very field.
-            match finite::check(&scene) {
+            match finite_numbers::check(&scene) {
                 Err(NotWritable::NotFinite { field, .. }) => assert_eq!(field, *path),
                 other => panic!("{path}: {other:?}"),
             }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -41,6 +41,15 @@ fn whole(study: &Path, out: &Path) -> String {
     String::from_utf8(output.stdout).expect("Unicode")
 }
 
+/// Packings whose file is there.
+fn packings_done(out: &Path) -> usize {
+    let whole =
+        |name: &std::ffi::OsStr| name.to_string_lossy().ends_with(".jsonl") && !name.to_string_lossy().starts_with('.');
+    std::fs::read_dir(out.join("samples")).map_or(0, |entries| {
+        entries.filter(|entry| entry.as_ref().is_ok_and(|entry| whole(&entry.file_name()))).count()
+    })
+}
+
 #[test]
 fn killed_twenty_times_and_resumed_it_gives_the_same_bytes() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -51,7 +60,7 @@ fn killed_twenty_times_and_resumed_it_gives_the_same_bytes() {
     let mut random = Pcg64::seed_from_u64(20);
     // Packings done after each kill.
     let mut done = Vec::new();
-    for _ in 0..20 {
+    for kill in 0..20 {
         let mut running = program()
             .args(["study", "--threads", "1"])
             .arg(&study)
@@ -61,16 +70,15 @@ fn killed_twenty_times_and_resumed_it_gives_the_same_bytes() {
             .stderr(Stdio::null())
             .spawn()
             .expect("the program starts");
-        std::thread::sleep(Duration::from_millis(random.random_range(2..80)));
+        // Half of the kills come at a random time, half after another packing is done, however busy the machine is.
+        let (before, start) = (packings_done(&out), Instant::now());
+        while kill % 2 == 1 && packings_done(&out) <= before.min(22) && start.elapsed() < Duration::from_secs(60) {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        std::thread::sleep(Duration::from_millis(random.random_range(2..80) / (1 + 7 * (kill % 2))));
         running.kill().expect("it is killed, or done");
         running.wait().expect("it is gone");
-        let files = std::fs::read_dir(out.join("samples")).map_or(0, |entries| {
-            let whole = |name: &std::ffi::OsStr| {
-                name.to_string_lossy().ends_with(".jsonl") && !name.to_string_lossy().starts_with('.')
-            };
-            entries.filter(|entry| entry.as_ref().is_ok_and(|entry| whole(&entry.file_name()))).count()
-        });
-        done.push(files);
+        done.push(packings_done(&out));
     }
     println!("packings done after each kill: {done:?}");
     assert!(done.iter().any(|&count| 0 < count && count < 24), "no kill came in the middle: {done:?}");

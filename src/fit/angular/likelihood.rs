@@ -16,8 +16,8 @@ const SOURCES_PER_DISK: usize = 2;
 /// Rise of −2 ln L at two standard errors.
 const RISE: f64 = 4.0;
 
-/// Bartlett's correction times the number of independent powers. Source: Lawley (1956), Biometrika 43, 295, for exponential
-/// variates whose logarithms lie on a line in ln f: 0.36 to 0.41 from 3 to 250 powers
+/// Bartlett's correction times the number of independent powers. Source: Lawley (1956), Biometrika 43, 295, for
+/// exponential variates whose logarithms lie on a line in ln f: 0.36 to 0.41 from 3 to 250 powers
 /// (`likelihood::tests::the_correction_of_few_powers_is_that_of_lawley`).
 const SMALL_COUNT: f64 = 0.4;
 

@@ -1,4 +1,5 @@
-//! The slope of an angular power spectrum and its crossover frequency f†, by maximum likelihood: [`fit_slope`], [`fit_crossover`].
+//! The slope of an angular power spectrum and its crossover frequency f†, by maximum likelihood: [`fit_slope`],
+//! [`fit_crossover`].
 //!
 //! ```text
 //! power law     S(f) = A f^(−s)
@@ -21,7 +22,8 @@
 //! same scatter: at few irregular angles the leakage of low frequencies is common to all
 //! ([`dependence`](crate::observe::angular::power_dependence)). The standard error is a fourth of the interval.
 //!
-//! Source: Whittle (1953), Ark. Mat. 2, 423; Sykulski et al. (2019), Biometrika 106, 251; Lawley (1956), Biometrika 43, 295.
+//! Source: Whittle (1953), Ark. Mat. 2, 423; Sykulski et al. (2019), Biometrika 106, 251; Lawley (1956), Biometrika 43,
+//! 295.
 
 mod crossover;
 mod error;

@@ -3,7 +3,8 @@
 //! Every group of samples (a cell of a study) is resampled with replacement within itself. The measured parameters and
 //! their numbers of samples stay the same. Percentile method.
 //!
-//! Source: Efron (1979), Ann. Stat. 7, 1; Davison, Hinkley (1997), Bootstrap Methods and their Application, §3.2 (strata), §5.3.
+//! Source: Efron (1979), Ann. Stat. 7, 1; Davison, Hinkley (1997), Bootstrap Methods and their Application, §3.2
+//! (strata), §5.3.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;

@@ -48,7 +48,8 @@ impl CollapseQuality {
 /// Y''/8, where h is their distance in u. Curves with smaller errors therefore appear different even if they are not.
 ///
 /// # Errors
-/// Fewer than two curves with points, or none with two; an x or error that is not positive, a number that is not finite.
+/// Fewer than two curves with points, or none with two; an x or error that is not positive, a number that is not
+/// finite.
 ///
 /// # Source
 /// Houdayer, Hartmann (2004), Phys. Rev. B 70, 014418, appendix; based on Kawashima, Ito (1993), J. Phys. Soc. Jpn. 62,

@@ -103,7 +103,8 @@ impl LikelihoodSlope {
 /// the spectrum up to 0.42 n and the window to n/16 (`cargo test ensemble_fits::rings -- --nocapture`).
 ///
 /// # Errors
-/// No sample, samples of different lengths, a power that is not finite, a window of fewer than three powers or beyond them.
+/// No sample, samples of different lengths, a power that is not finite, a window of fewer than three powers or beyond
+/// them.
 ///
 /// # Cost
 /// Samples × powers, then powers × evaluations of a one-dimensional search.

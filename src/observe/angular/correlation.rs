@@ -144,7 +144,8 @@ impl AngularCorrelation {
         });
         let (disk_count, anticorrelation) = (spectrum.disk_count, -values[steps]);
         let outcome = CorrelationOutcome::Found;
-        Ok(AngularCorrelation { estimator, disk_count, outcome, angles, values, anticorrelation, crossings }.judged())
+        Ok(AngularCorrelation { estimator, disk_count, outcome, angles, values, anticorrelation, crossings }
+            .with_outcome())
     }
 
     fn of_pairs(ring: &RingSample, bin_count: usize, settings: &CorrelationSettings) -> Self {
@@ -158,11 +159,11 @@ impl AngularCorrelation {
         let anticorrelation = -values[bin_count];
         let (estimator, disk_count) = (settings.estimator, ring.disk_count());
         let outcome = CorrelationOutcome::Found;
-        AngularCorrelation { estimator, disk_count, outcome, angles, values, anticorrelation, crossings }.judged()
+        AngularCorrelation { estimator, disk_count, outcome, angles, values, anticorrelation, crossings }.with_outcome()
     }
 
     /// Sets the outcome, and removes the values if there is no correlation function.
-    fn judged(mut self) -> Self {
+    fn with_outcome(mut self) -> Self {
         if self.values[0].is_nan() {
             return AngularCorrelation { outcome: CorrelationOutcome::NoVariance, ..self };
         }

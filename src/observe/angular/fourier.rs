@@ -2,8 +2,9 @@
 //!
 //! **Direct.** e^(−ifθ) by one rotation per frequency, evaluated exactly every 64 frequencies.
 //!
-//! **Fast.** The strengths are spread as Gaussians on an even grid, transformed, and divided by the transform of the Gaussian
-//! (Dutt, Rokhlin (1993), SIAM J. Sci. Comput. 14, 1368; parameters of Greengard, Lee (2004), SIAM Rev. 46, 443).
+//! **Fast.** The strengths are spread as Gaussians on an even grid, transformed, and divided by the transform of the
+//! Gaussian (Dutt, Rokhlin (1993), SIAM J. Sci. Comput. 14, 1368; parameters of Greengard, Lee (2004), SIAM Rev. 46,
+//! 443).
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,5 @@
-//! Angular correlations of the radial displacement in a ring: [`RingSample`], [`PowerSpectrum`], [`AngularCorrelation`].
+//! Angular correlations of the radial displacement in a ring: [`RingSample`], [`PowerSpectrum`],
+//! [`AngularCorrelation`].
 //!
 //! ```text
 //! δd_r = d_r − ⟨d_r⟩       S(f) ∝ |∫ δd_r e^(−ifθ) dθ|²,  S(1) = 1       G(θ) = ⟨δd_r(θ_0) δd_r(θ_0 + θ)⟩/⟨δd_r²⟩

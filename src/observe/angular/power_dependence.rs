@@ -4,7 +4,8 @@
 //! D = (1/m) Σ_(f,f' ≤ m) cov(P_f, P_f')/(⟨P_f⟩⟨P_f'⟩)        m/D: number of independent powers with the same scatter
 //! ```
 //!
-//! The sums F_f = Σ_k v_fk x_k, v_fk = w_k (e^(−ifθ_k) − W̄(f)), of a Gaussian field are Gaussian, and P_f = 2|F_f|², so
+//! The sums F_f = Σ_k v_fk x_k, v_fk = w_k (e^(−ifθ_k) − W̄(f)), of a Gaussian field are Gaussian, and P_f = 2|F_f|²,
+//! so
 //!
 //! ```text
 //! cov(P_f, P_f') = 4 (|Γ|² + |C|²)      Γ = ⟨F_f F̄_f'⟩ = ½ Σ_g S_g (A_fg Ā_f'g + B_fg B̄_f'g)      C = ⟨F_f F_f'⟩, the same without bars

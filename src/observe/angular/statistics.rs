@@ -76,7 +76,7 @@ pub struct SpectrumStatistics {
 /// # Errors
 /// No sample; samples whose angles or thresholds differ from those of the first.
 pub fn correlation_statistics(samples: &[AngularCorrelation]) -> Result<CorrelationStatistics, AngularError> {
-    let first = alike(samples, |a, b| {
+    let first = first_if_consistent(samples, |a, b| {
         if a.angles != b.angles {
             return Some("angles");
         }
@@ -117,7 +117,7 @@ pub fn correlation_statistics(samples: &[AngularCorrelation]) -> Result<Correlat
 /// No sample; samples with other frequencies than the first, or without variance; a mean power at f = 1 that is not
 /// positive.
 pub fn spectrum_statistics(samples: &[PowerSpectrum]) -> Result<SpectrumStatistics, AngularError> {
-    let first = alike(samples, |a, b| {
+    let first = first_if_consistent(samples, |a, b| {
         if a.power.len() != b.power.len() {
             return Some("frequencies");
         }
@@ -139,7 +139,10 @@ pub fn spectrum_statistics(samples: &[PowerSpectrum]) -> Result<SpectrumStatisti
 }
 
 /// The first sample; an error if there is none or another one differs from it.
-fn alike<T>(samples: &[T], difference: impl Fn(&T, &T) -> Option<&'static str>) -> Result<&T, AngularError> {
+fn first_if_consistent<T>(
+    samples: &[T],
+    difference: impl Fn(&T, &T) -> Option<&'static str>,
+) -> Result<&T, AngularError> {
     let sample_count = samples.len();
     let none = AngularError::SamplesDiffer { sample: 0, sample_count, reason: "there is none" };
     let first = samples.first().ok_or(none)?;

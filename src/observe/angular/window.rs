@@ -10,8 +10,9 @@
 //! ```
 //!
 //! At evenly spaced angles K is the identity below n/2. K − 1 and N describe the leakage. The angles are arbitrary.
-//! Source: for even spacing with gaps, Sykulski, Olhede, Guillaumin, Lilly, Early (2019), Biometrika 106, 251 (the debiased
-//! Whittle likelihood); for the sphere, Hivon et al. (2002), Astrophys. J. 567, 2 (K is their coupling matrix).
+//! Source: for even spacing with gaps, Sykulski, Olhede, Guillaumin, Lilly, Early (2019), Biometrika 106, 251 (the
+//! debiased Whittle likelihood); for the sphere, Hivon et al. (2002), Astrophys. J. 567, 2 (K is their coupling
+//! matrix).
 
 use num_complex::Complex64;
 

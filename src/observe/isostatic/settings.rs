@@ -50,7 +50,8 @@ pub enum Scale {
     /// x = r ΔZ, as in the study.
     #[default]
     Excess,
-    /// x = r √ΔZ. Source of the power: Lerner, DeGiuli, Düring, Wyart (2014), Soft Matter 10, 5085, for responses to a force dipole.
+    /// x = r √ΔZ. Source of the power: Lerner, DeGiuli, Düring, Wyart (2014), Soft Matter 10, 5085, for responses to a
+    /// force dipole.
     RootExcess,
 }
 

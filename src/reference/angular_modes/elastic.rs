@@ -14,9 +14,9 @@ use crate::vector::two_product;
 /// U(a) = U_a,  V(a) = V_a,  U(R) = V(R) = 0
 /// ```
 ///
-/// n = 0: U and V each as [`Elastic`]: inflation and torsion. n ≥ 1: Michell's powers r^(±n±1), a logarithm among them
-/// for n = 1, in the combinations s = U + iV and d = U − iV, which see only one power of each sign. With x = r/R,
-/// α = a/R, t = ln(R/r), τ = ln(R/a), ε = (1 − ν)/2 and E_m(t) = (1 − x^m)/m,
+/// n = 0: U and V each as [`Elastic`]: inflation and torsion. n ≥ 1: Michell's powers r^(±n±1), for n = 1 with a
+/// logarithm. The combinations s = U + iV and d = U − iV each contain only one power of each sign. With x = r/R, α =
+/// a/R, t = ln(R/r), τ = ln(R/a), ε = (1 − ν)/2 and E_m(t) = (1 − x^m)/m,
 ///
 /// ```text
 /// s = (a/r)^(n+1) [4ε E_q(τ) E_p(t) + (1−ε)² (E_q(τ) E_p(t) − α^q E_2(τ) E_2(t))]/Δ · s_a
@@ -26,25 +26,24 @@ use crate::vector::two_product;
 /// Δ = 4ε E_p(τ) E_q(τ) + (1−ε)² (E_p(τ) E_q(τ) − α^q E_2(τ)²) > 0        p = 2n+2,  q = 2n−2
 /// ```
 ///
-/// No power exceeds 1, so nothing overflows whatever n and R/a, and the differences are taken where the terms have not
-/// been rounded yet, so a thin annulus loses nothing either.
+/// No power exceeds 1, so nothing overflows for any n and R/a. Differences are computed from exact terms, so a thin
+/// annulus loses no digits.
 ///
 /// # Units
 /// Radii and amplitudes in lengths.
 ///
 /// # Source
-/// Michell (1899), Proc. Lond. Math. Soc. 31, 100; Timoshenko & Goodier (1970), Theory of Elasticity, §43; here in the
-/// displacement, solved for both boundaries.
+/// Michell (1899), Proc. Lond. Math. Soc. 31, 100; Timoshenko & Goodier (1970), Theory of Elasticity, §43; here for the
+/// displacement, with both boundary conditions.
 ///
 /// # Accuracy
-/// Relative to |u| + ℓ|u'|, ℓ the length over which u changes, and u' times ℓ to the same: below 7.5·10⁻¹⁵. Largest found
-/// against 160 bits: 1.2·10⁻¹⁵, n from 0 to 1000, R/a from 1 + 10⁻⁷ to 10⁷, ν from −0.99999 to 1 − 10⁻¹⁰. Beyond n = 1000 it
-/// agrees with the other route, [`ScreenedMode`](crate::reference::angular_modes::screened::ScreenedMode) without
-/// screening, as tested to n = 5000.
+/// Relative to |u| + ℓ|u'|, where ℓ is the length over which u changes, and u' times ℓ relative to the same: below
+/// 7.5·10⁻¹⁵. Largest error found against 160 bits: 1.2·10⁻¹⁵, for n from 0 to 1000, R/a from 1 + 10⁻⁷ to 10⁷, ν from
+/// −0.99999 to 1 − 10⁻¹⁰. Beyond n = 1000 it agrees with
+/// [`ScreenedMode`](crate::reference::angular_modes::screened::ScreenedMode) without screening, tested to n = 5000.
 ///
 /// # Cost
-/// One radius, value and derivative: 0.2 µs for n = 1 to 0.5 µs for n = 100, 6 ns for n = 0 (`cargo bench --bench
-/// reference_modes`, least of four runs on two shared cores).
+/// See `cargo bench --bench reference_modes`.
 ///
 /// # Example
 /// ```
@@ -54,7 +53,7 @@ use crate::vector::two_product;
 /// let boundary = ModeAmplitudes::in_phase(0.1, -0.1);
 /// let mode = ElasticMode::new(Annulus::new(0.5, 170.0)?, 0.3, 1, boundary)?;
 /// assert_eq!(mode.displacement(0.5, 0.0), [0.1, 0.0]);
-/// // The medium follows with the logarithm of the distance: at 17 = R/10 still by more than a quarter.
+/// // The displacement falls with the logarithm of the distance: at 17 = R/10 it is still more than a quarter.
 /// assert!(mode.displacement(17.0, 0.0)[0] > 0.025);
 /// assert_eq!(mode.displacement(170.0, 1.0), [0.0, 0.0]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -70,7 +69,7 @@ pub struct ElasticMode {
     depth: f64,
 }
 
-/// What multiplies s_a and d_a in s and d, all over Δ, and the same for t-derivatives of the brackets.
+/// The factors of s_a and d_a in s and d, all over Δ, and the t-derivatives of the brackets.
 struct Kernels {
     value: [[f64; 2]; 2],
     derivative: [[f64; 2]; 2],
@@ -93,14 +92,14 @@ impl ElasticMode {
         Ok(ElasticMode { annulus, mode, boundary, compliance_ratio, depth })
     }
 
-    /// The annulus it fills.
+    /// The annulus.
     pub fn annulus(&self) -> Annulus {
         self.annulus
     }
 
-    /// n = 0: inflation and torsion are the same function of the radius, whatever ν.
+    /// n = 0: inflation and torsion are the same function of the radius for any ν.
     fn axisymmetric(&self, radius: f64) -> ModeState {
-        // An amplitude of 1 is finite: the only error cannot occur.
+        // An amplitude of 1 is finite, so the error cannot occur.
         let Ok(profile) = Elastic::<2>::new(self.annulus, 1.0) else {
             return ModeState::undefined();
         };
@@ -115,7 +114,7 @@ impl ElasticMode {
         let (inner, outer) = (self.annulus.inner_radius(), self.annulus.outer_radius());
         let n = f64::from(self.mode);
         let (p, q) = (2.0 * n + 2.0, 2.0 * n - 2.0);
-        let (t, tau, way) = (log_ratio(outer, radius), self.depth, log_ratio(radius, inner));
+        let (t, tau, eta) = (log_ratio(outer, radius), self.depth, log_ratio(radius, inner));
         let epsilon = self.compliance_ratio;
         let (soft, stiff, mixed) = (4.0 * epsilon, (1.0 - epsilon).powi(2), (1.0 - epsilon) * (1.0 + epsilon));
 
@@ -132,8 +131,8 @@ impl ElasticMode {
         let flat = ratio_power(inner, radius, n - 1.0) / determinant;
         let share = (radius / outer).powi(2);
         // [E_2(τ) E_p(t) − E_p(τ) E_2(t)]/x² = E_2(η) E_p(t) − x^(2n) E_p(η) E_2(t) with η = ln(r/a) = τ − t.
-        let [way_p, way_2] = [p, 2.0].map(|m| Gap::integral(m, way));
-        let from_inner = product_difference([way_2, here_p], [way_p.times_power(2.0 * n, t), here_2]);
+        let [inner_p, inner_2] = [p, 2.0].map(|m| Gap::integral(m, eta));
+        let from_inner = product_difference([inner_2, here_p], [inner_p.times_power(2.0 * n, t), here_2]);
         let value = [
             [steep * both([whole_q, here_p], [whole_2_q, here_2]), flat * mixed * from_inner],
             [
@@ -184,7 +183,7 @@ impl AngularSolution for ElasticMode {
     }
 }
 
-/// ln(larger/smaller) to rounding, next to 1 too.
+/// ln(larger/smaller) to rounding, also if the ratio is near 1.
 pub(super) fn log_ratio(larger: f64, smaller: f64) -> f64 {
     let ratio = larger / smaller;
     if smaller > 0.5 * larger {
@@ -196,12 +195,12 @@ pub(super) fn log_ratio(larger: f64, smaller: f64) -> f64 {
     }
 }
 
-/// (a/b)^power for a ≤ b, what rounding took from a/b put back: it would count `power` times.
+/// (a/b)^power for a ≤ b, corrected for the rounding of a/b, which would be multiplied by `power`.
 fn ratio_power(a: f64, b: f64, power: f64) -> f64 {
     let ratio = a / b;
     let value = libm::pow(ratio, power);
     let (product, rest) = two_product(ratio, b);
     let lost = ((a - product) - rest) / a;
-    // Not a number where the product would overflow (b > 2⁹⁹⁵), of no use where a/b is subnormal: radii beyond 10²⁹⁹.
+    // NaN if the product overflows (b > 2⁹⁹⁵), and not needed if a/b is subnormal: radii beyond 10²⁹⁹.
     if lost.abs() < f64::EPSILON { value * (1.0 + power * lost) } else { value }
 }

@@ -1,14 +1,15 @@
-//! `Gap`: integrals of exponentials from the rim, and differences of their products that keep their digits.
+//! `Gap`: integrals of exponentials from the rim, and differences of their products without cancellation.
 //!
-//! The powers of the radius in an elastic mode become, with t = ln(R/r), integrals that vanish at the rim:
+//! With t = ln(R/r), the powers of the radius in an elastic mode become integrals that vanish at the rim:
 //!
 //! ```text
 //! E_m(t) = ∫_0^t e^(−m s) ds = (1 − e^(−mt))/m = t e^(−mt/2) shc(mt/2)        shc z = sinh z / z
 //! ```
 //!
-//! A thin annulus makes them all equal to t, and what is wanted is how they differ: the second form says so.
+//! In a thin annulus all of them are nearly equal to t, and only their differences matter; the second form resolves
+//! these.
 
-/// Up to this size of the arguments the differences are taken between exponents and between shc − 1.
+/// Up to this size of the arguments, differences are computed from those of the exponents and of shc − 1.
 const NEAR: f64 = 1.0;
 
 /// `width · e^exponent · shc(argument)`.
@@ -44,12 +45,12 @@ impl Gap {
     }
 }
 
-/// `a_1 a_2 − b_1 b_2`, the widths of both products being the same.
+/// `a_1 a_2 − b_1 b_2`, where both products have equal widths.
 ///
 /// # Accuracy
-/// Small arguments: with A = shc·shc of the first product, B of the second and δ half the difference of their
-/// exponents, `e^δ A − e^(−δ) B = (A − B) cosh δ + (A + B) sinh δ`, where A − B is of second order in the arguments, δ of
-/// first. Otherwise the two products as they stand.
+/// Small arguments: let A = shc·shc of the first product, B of the second, and δ half the difference of their
+/// exponents. Then `e^δ A − e^(−δ) B = (A − B) cosh δ + (A + B) sinh δ`, where A − B is of second order in the
+/// arguments and δ of first. Otherwise the two products are subtracted directly.
 pub(super) fn product_difference(a: [Gap; 2], b: [Gap; 2]) -> f64 {
     let reach = a.iter().chain(&b).map(|gap| gap.exponent.abs().max(gap.argument)).sum::<f64>();
     if reach > 4.0 * NEAR {
@@ -89,7 +90,8 @@ mod tests {
 
     #[test]
     fn both_ways_to_take_a_difference_meet() {
-        // E_2(τ) E_8(t) − E_8(τ) E_2(t) on either side of the seam: the plain form loses a factor of about 10 there.
+        // E_2(τ) E_8(t) − E_8(τ) E_2(t) on either side of the threshold: the plain form loses a factor of about 10
+        // there.
         for (tau, t) in [(0.3, 0.1), (0.4, 0.25), (0.5, 0.49), (0.35, 0.2)] {
             let gaps = |m: f64, t: f64| Gap::integral(m, t);
             let careful = product_difference([gaps(2.0, tau), gaps(8.0, t)], [gaps(8.0, tau), gaps(2.0, t)]);

@@ -1,4 +1,4 @@
-//! `System`: the screened equation as four of first order, and their solution by power series from a radius to another.
+//! `System`: the screened equation as four first-order equations, and their solution by power series between two radii.
 //!
 //! With v = iV, ε = μ/(λ+2μ), the dilation and the rotation in the forms P = (r/ε) ∇·u and W = r ∇×u, and D = r d/dr,
 //! the equation of mode n is
@@ -8,11 +8,11 @@
 //! D v =   W − v − n U            D W = W + n P − r² (Γ_e v + iΓ_o U)
 //! ```
 //!
-//! and d = U − v is carried as well, `D d = (n−1) d + ε P − W`: where the displacement falls as r^(−n−1), U and v are equal
-//! but for a far smaller d, and it is d that is left farther out.
+//! and d = U − v is also integrated, `D d = (n−1) d + ε P − W`. Where the displacement falls as r^(−n−1), U and v are
+//! equal up to a much smaller d, which dominates farther out.
 //!
-//! The system is regular for every ε, Γ and n, and entire in Γ: the elastic limit is nothing special, as it is for the Bessel
-//! functions of the two potentials, which become equal there and have to be subtracted.
+//! The system is regular for every ε, Γ and n, and entire in Γ. The elastic limit is therefore not special, unlike for
+//! the Bessel functions of the two potentials, which become equal there and must be subtracted.
 
 use std::ops::Range;
 
@@ -21,13 +21,14 @@ use crate::reference::angular_modes::{Complex, times_i};
 /// `[U, v, d, P, W]`, all \[length\].
 pub(super) type State = [Complex<f64>; 5];
 
-/// Largest |z| a series is used for: its singularity, r = 0, is at 1.
+/// Largest |z| for a series; its singularity, r = 0, is at 1.
 const LARGEST_SHARE: f64 = 0.25;
 
-/// A term below this share of the sum ends the series, if the next one is too.
+/// The series ends at two successive terms below this share of the sum.
 const NEGLIGIBLE: f64 = 0.25 * f64::EPSILON;
 
-/// Terms of 0.25^k/k^0 fall below 2⁻⁵⁴ of the first by k = 27; a sum that nearly vanishes needs more, up to 2⁻¹⁰⁸.
+/// Limit of the number of terms. Terms of 0.25^k are below 2⁻⁵⁴ of the first at k = 27; a sum that nearly vanishes
+/// needs more, up to 2⁻¹⁰⁸.
 const TERM_LIMIT: u32 = 100;
 
 /// The coefficients of the equation.
@@ -44,17 +45,17 @@ pub(super) struct System {
 }
 
 impl System {
-    /// √|Γ|, no smaller than any wavenumber of the medium \[1/length\].
+    /// √|Γ|, an upper bound of the wavenumbers of the medium \[1/length\].
     pub(super) fn wavenumber(&self) -> f64 {
         libm::sqrt(libm::hypot(self.even, self.odd))
     }
 
-    /// max(1, n, √|Γ| r): how many times faster than r the solution may change.
+    /// max(1, n, √|Γ| r): the rate of change of the solution relative to r.
     pub(super) fn rate(&self, radius: f64) -> f64 {
         self.mode.max(self.wavenumber() * radius).max(1.0)
     }
 
-    /// The share of `radius` a series about it is used for: no term then exceeds the first by more than e.
+    /// The share of `radius` within which a series is used; no term then exceeds the first by more than a factor e.
     pub(super) fn reach(&self, radius: f64) -> f64 {
         LARGEST_SHARE.min(1.0 / self.rate(radius))
     }
@@ -65,11 +66,11 @@ impl System {
     /// the constant and the screening part of the equation.
     pub(super) fn advance(&self, radius: f64, z: f64, start: State) -> State {
         let (n, epsilon) = (self.mode, self.compliance_ratio);
-        // One radius at a time: Γ ρ² is moderate where ρ² may not be.
+        // One radius factor at a time: Γ ρ² is moderate even if ρ² overflows.
         let (even, odd) = (self.even * radius * radius, self.odd * radius * radius);
         let mut sum = start;
         let mut term = start;
-        // The last three of U and v, each with its power of z.
+        // The last three coefficients of U and v, each with its power of z.
         let zero = Complex::new(0.0, 0.0);
         let mut before = [[zero; 2]; 2];
         let mut small_before = false;
@@ -89,7 +90,7 @@ impl System {
             for i in 0..next.len() {
                 sum[i] += next[i];
             }
-            // Displacement and strain apart: next to the rim the one is far smaller than the other.
+            // Displacement and strain separately: near the rim one is much smaller than the other.
             let total = |state: &State, range: Range<usize>| state[range].iter().map(|&z| size(z)).sum::<f64>();
             let small = [0..2, 2..3, 3..5]
                 .into_iter()

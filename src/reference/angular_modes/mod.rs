@@ -1,4 +1,5 @@
-//! Angular modes of the annulus in two dimensions: what the medium does when the inner circle moves as cos nθ.
+//! Angular modes of the annulus in two dimensions: the response of the medium to a displacement cos nθ of the inner
+//! circle.
 //!
 //! A mode n = 0, 1, 2, … has two complex amplitudes, one along the radius and one along the circle,
 //!
@@ -6,23 +7,23 @@
 //! u_r(r, θ) = Re[U(r) e^(inθ)]        u_θ(r, θ) = Re[V(r) e^(inθ)]
 //! ```
 //!
-//! given at the inner circle, zero at the held rim: U(a) = U_a, V(a) = V_a, U(R) = V(R) = 0. Their phases turn the
-//! pattern: `c cos nθ + s sin nθ` has the amplitude c − is, and [`ModeAmplitudes::in_phase`] makes the common pair
-//! `u_r ∝ cos nθ, u_θ ∝ sin nθ`. Between the circles, divided by the shear modulus μ,
+//! They are given at the inner circle and zero at the held rim: U(a) = U_a, V(a) = V_a, U(R) = V(R) = 0. Their phases
+//! rotate the pattern: `c cos nθ + s sin nθ` has the amplitude c − is. [`ModeAmplitudes::in_phase`] makes the common
+//! pair `u_r ∝ cos nθ, u_θ ∝ sin nθ`. Between the circles, divided by the shear modulus μ,
 //!
 //! ```text
 //! Δu + (λ+μ)/μ ∇(∇·u) + Γ u = 0        Γ = [[Γ_e, −Γ_o], [Γ_o, Γ_e]]
 //! ```
 //!
-//! [`ElasticMode`](elastic::ElasticMode) has Γ = 0 in closed form, [`PointForce`](point_force::PointForce) that mode of n = 1 which a force
-//! in the middle makes; [`ScreenedMode`](screened::ScreenedMode) has any
-//! even and odd screening, the latter turning radial inflation (n = 0) into radial and transverse displacement. All
-//! implement [`AngularSolution`], which knows how bonds are stretched as well. Start from [`ElasticMode::new`](elastic::ElasticMode::new).
+//! [`ElasticMode`](elastic::ElasticMode) is the closed form for Γ = 0. [`PointForce`](point_force::PointForce) is the n
+//! = 1 mode of a force at the centre. [`ScreenedMode`](screened::ScreenedMode) allows any even and odd screening; odd
+//! screening turns radial inflation (n = 0) into radial and transverse displacement. All implement [`AngularSolution`],
+//! which also gives the stretch of bonds. Start from [`ElasticMode::new`](elastic::ElasticMode::new).
 //!
 //! # Poisson's ratio
 //!
-//! In two dimensions ν = λ/(λ+2μ), between −1 and 1. A slab in plane stress has the ν of its material; in plane strain,
-//! with ν₃ of the material, ν = ν₃/(1 − ν₃), so that ν₃ = 1/2 is ν = 1. What enters is ε = μ/(λ+2μ) = (1 − ν)/2.
+//! In two dimensions ν = λ/(λ+2μ), between −1 and 1. A slab in plane stress has the ν of its material. In plane strain,
+//! with ν₃ of the material, ν = ν₃/(1 − ν₃), so ν₃ = 1/2 is ν = 1. The equations contain only ε = μ/(λ+2μ) = (1 − ν)/2.
 //!
 //! # Source
 //! Michell (1899), Proc. Lond. Math. Soc. 31, 100, for the elastic modes; Lemaître et al. (2021), Phys. Rev. E 104,
@@ -50,25 +51,26 @@ pub struct ModeAmplitudes {
 }
 
 impl ModeAmplitudes {
-    /// `u_r = radial · cos nθ`, `u_θ = transverse · sin nθ`: mirror images of each other above and below θ = 0.
+    /// `u_r = radial · cos nθ`, `u_θ = transverse · sin nθ`: mirror-symmetric about θ = 0.
     pub fn in_phase(radial: f64, transverse: f64) -> Self {
         // Re[−i e^(inθ)] = sin nθ.
         ModeAmplitudes { radial: Complex::new(radial, 0.0), transverse: Complex::new(0.0, -transverse) }
     }
 
-    /// The radial and the transverse component at `angle` θ, `[Re(U e^(inθ)), Re(V e^(inθ))]`, for mode n = `mode` \[length\].
+    /// The radial and the transverse component at `angle` θ, `[Re(U e^(inθ)), Re(V e^(inθ))]`, for mode n = `mode`
+    /// \[length\].
     pub fn at_angle(&self, mode: u32, angle: f64) -> [f64; 2] {
         let wave = phase_factor(mode, angle);
         [(self.radial * wave).re, (self.transverse * wave).re]
     }
 
-    /// The same pattern turned counterclockwise by `angle`: both amplitudes times `e^(−in·angle)`.
+    /// The same pattern rotated counterclockwise by `angle`: both amplitudes times `e^(−in·angle)`.
     pub fn rotated(&self, mode: u32, angle: f64) -> Self {
         let turn = phase_factor(mode, angle).conj();
         ModeAmplitudes { radial: self.radial * turn, transverse: self.transverse * turn }
     }
 
-    /// Both times a real factor.
+    /// Both amplitudes times a real factor.
     fn times(&self, factor: f64) -> Self {
         ModeAmplitudes { radial: self.radial * factor, transverse: self.transverse * factor }
     }
@@ -93,12 +95,12 @@ impl ModeAmplitudes {
     }
 }
 
-/// i times a number, without rounding.
+/// i times a number, exactly.
 fn times_i(z: Complex<f64>) -> Complex<f64> {
     Complex::new(-z.im, z.re)
 }
 
-/// `e^(inθ)`, the rounding of nθ put back.
+/// `e^(inθ)`, corrected for the rounding of nθ.
 fn phase_factor(mode: u32, angle: f64) -> Complex<f64> {
     let (high, low) = two_product(f64::from(mode), angle);
     let (sine, cosine) = libm::sincos(high);
@@ -125,8 +127,7 @@ pub trait AngularSolution {
     /// n, the number of periods around the circle.
     fn mode(&self) -> u32;
 
-    /// The amplitudes and their derivatives at distance `radius` from the centre \[length\]; NaN outside the annulus,
-    /// where nothing is defined.
+    /// The amplitudes and their derivatives at distance `radius` from the centre \[length\]; NaN outside the annulus.
     fn at(&self, radius: f64) -> ModeState;
 
     /// The displacement `[u_r, u_θ]` \[length\] at `radius` \[length\] and `angle`.
@@ -134,8 +135,8 @@ pub trait AngularSolution {
         self.at(radius).value.at_angle(self.mode(), angle)
     }
 
-    /// How much the stretching of short bonds of all directions varies around the circle at `radius`, over their length \[1\]: for
-    /// bonds of length s, [h_∥](crate::observe::fluctuations) = s times this.
+    /// Standard deviation of the stretch of short bonds of all directions around the circle at `radius`, over their
+    /// length \[1\]. For bonds of length s, [h_∥](crate::observe::fluctuations) is s times this.
     ///
     /// ```text
     /// n·ε·n = ε_rr cos²φ + ε_θθ sin²φ + 2 ε_rθ sin φ cos φ        φ: from the radius to the bond
@@ -144,14 +145,14 @@ pub trait AngularSolution {
     /// E_rr = U'        E_θθ = (U + inV)/r        2 E_rθ = V' + (inU − V)/r
     /// ```
     ///
-    /// Modes of different n add up in squares.
+    /// The squares of modes with different n add up.
     fn stretch_fluctuation(&self, radius: f64) -> f64 {
         let ModeState { value, derivative } = self.at(radius);
         let n = f64::from(self.mode());
         let [radial, around] = [derivative.radial, (value.radial + times_i(value.transverse) * n) / radius];
         let twice_shear = derivative.transverse + (times_i(value.radial) * n - value.transverse) / radius;
         let variance = if self.mode() == 0 {
-            // At angle 0 it is as everywhere.
+            // The value at angle 0 is that at all angles.
             ((radial.re - around.re).powi(2) + twice_shear.re.powi(2)) / 8.0
         } else {
             let both = (radial * around.conj()).re;
@@ -171,7 +172,7 @@ pub enum AngularModeError {
         /// The ratio given.
         poisson_ratio: f64,
     },
-    /// An amplitude at the inner circle is not a number.
+    /// An amplitude at the inner circle is not finite.
     #[error("the amplitudes at the inner radius must be finite, they are {radial} and {transverse}")]
     AmplitudeNotFinite {
         /// U_a given \[length\].
@@ -179,13 +180,13 @@ pub enum AngularModeError {
         /// V_a given \[length\].
         transverse: Complex<f64>,
     },
-    /// A force is not a number.
+    /// A force is not finite.
     #[error("the force over the shear modulus must be finite, it is {force_over_shear}")]
     ForceNotFinite {
         /// F/μ given \[length\].
         force_over_shear: f64,
     },
-    /// A screening coefficient is not a number.
+    /// A screening coefficient is not finite.
     #[error("the screening must be finite, it is {even} (even) and {odd} (odd)")]
     ScreeningNotFinite {
         /// Γ_e given \[1/length²\].
@@ -193,17 +194,17 @@ pub enum AngularModeError {
         /// Γ_o given \[1/length²\].
         odd: f64,
     },
-    /// n ln(R/a) + √|Γ| R is too large: the solution would need more nodes than are kept.
+    /// n ln(R/a) + √|Γ| R is too large: the solution would need more nodes than allowed.
     #[error("mode {mode} would need about {node_estimate:.0} nodes between the circles, more than {node_limit}")]
     TooManyNodes {
         /// n.
         mode: u32,
         /// n ln(R/a) + 4 ln(R/a) + √|Γ| (R − a).
         node_estimate: f64,
-        /// The largest number allowed.
+        /// The limit.
         node_limit: usize,
     },
-    /// √|Γ| R is so large that a wave is shorter than the spacing of numbers near R.
+    /// √|Γ| R is so large that a wavelength is shorter than the spacing of numbers near R.
     #[error("the screening {even} (even), {odd} (odd) is too large for an outer radius of {outer_radius}")]
     ScreeningTooLarge {
         /// Γ_e given \[1/length²\].
@@ -222,7 +223,7 @@ pub enum AngularModeError {
         even: f64,
         /// Γ_o given \[1/length²\].
         odd: f64,
-        /// What [`ScreenedMode::condition`](screened::ScreenedMode::condition) would be: no digit is left.
+        /// The value of [`ScreenedMode::condition`](screened::ScreenedMode::condition), at which no digit is left.
         condition: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! [`PointForce`]: what a force on the middle of a held circle does to an elastic medium.
+//! [`PointForce`]: the response of an elastic medium to a force at the centre of a held circle.
 
 use crate::reference::Annulus;
 use crate::reference::angular_modes::elastic::log_ratio;
@@ -6,7 +6,7 @@ use crate::reference::angular_modes::{
     AngularModeError, AngularSolution, ModeAmplitudes, ModeState, compliance_ratio, finite_force,
 };
 
-/// The displacement of an isotropic elastic medium in a held circle, pushed in its middle by a force along θ = 0.
+/// The displacement of an isotropic elastic medium in a held circle, due to a force along θ = 0 at its centre.
 ///
 /// ```text
 /// μ Δu + (λ+μ) ∇(∇·u) + F x̂ δ(r) = 0        u(R) = 0        n = 1
@@ -14,20 +14,21 @@ use crate::reference::angular_modes::{
 /// c = F/(2πμ (1+k))        k = (λ+3μ)/(λ+μ) = (3−ν)/(1+ν)        A = (2−k)/(2k)        x = r/R
 /// ```
 ///
-/// Kelvin's solution and what the rim adds to it. The strain falls as 1/r; that of a disk that grows, whose forces add up to
-/// nothing, falls as 1/r². A disk that grows and is held in its place does both: its neighbours, which are not the
-/// same on all sides, push it with a force that goes through the medium to the rim.
+/// The sum of Kelvin's solution and the correction for the rim. The strain falls as 1/r. That of a growing disk, whose
+/// forces add up to zero, falls as 1/r². A growing disk that is held at its position causes both: its neighbours are
+/// not symmetric and push it with a force, which the medium transmits to the rim.
 ///
 /// # Units
 /// Radii in lengths; the force over μ, a length in two dimensions.
 ///
 /// # Source
-/// Timoshenko & Goodier (1970), Theory of Elasticity, ch. 4, for the force; what the rim adds is derived here: a translation and
-/// the solution ∝ r² of mode 1.
+/// Timoshenko & Goodier (1970), Theory of Elasticity, ch. 4, for the force. The correction for the rim is derived here:
+/// a translation and the solution ∝ r² of mode 1.
 ///
 /// # Accuracy
-/// U and V relative to |U| + |V| + r |U'| + r |V'|, the derivatives times r to the same: below 10⁻¹⁴ against
-/// [`ElasticMode`](super::elastic::ElasticMode), of which up to 7.5·10⁻¹⁵ may be its own; 3·10⁻¹⁵ found.
+/// U and V relative to |U| + |V| + r |U'| + r |V'|, and the derivatives times r relative to the same: below 10⁻¹⁴
+/// against [`ElasticMode`](super::elastic::ElasticMode), whose own error may be 7.5·10⁻¹⁵; largest difference found:
+/// 3·10⁻¹⁵.
 ///
 /// # Example
 /// ```
@@ -49,8 +50,8 @@ pub struct PointForce {
 }
 
 impl PointForce {
-    /// A force F along θ = 0, given as F/μ \[length\], in a circle whose rim is held; ν of two dimensions. The inner radius only says where the solution
-    /// is of use: nearer it is not defined.
+    /// A force F along θ = 0, given as F/μ \[length\], in a circle with a held rim; ν in two dimensions. The solution
+    /// is defined outside the inner radius only.
     ///
     /// # Errors
     /// A Poisson's ratio that is not between −1 and 1; a force that is not finite.
@@ -62,7 +63,7 @@ impl PointForce {
         Ok(PointForce { annulus, kelvin: (1.0 + epsilon) / (1.0 - epsilon), size })
     }
 
-    /// The circle it is in.
+    /// The annulus in which it is defined.
     pub fn annulus(&self) -> Annulus {
         self.annulus
     }

@@ -1,4 +1,4 @@
-//! [`ScreenedMode`]: an angular mode of the screened annulus, even and odd screening, any sign.
+//! [`ScreenedMode`]: an angular mode of the screened annulus, for even and odd screening of any sign.
 
 use crate::reference::Annulus;
 use crate::reference::angular_modes::first_order_system::{State, System};
@@ -8,7 +8,7 @@ use crate::reference::angular_modes::{
 };
 use crate::vector::larger;
 
-/// Most nodes kept of a solution: 18 MB, and 58 MB while it is made.
+/// Largest number of nodes of a solution: 18 MB, and 58 MB during its computation.
 pub const NODE_LIMIT: usize = 200_000;
 
 /// The screening of a medium, over its shear modulus.
@@ -16,7 +16,7 @@ pub const NODE_LIMIT: usize = 200_000;
 pub struct Screening {
     /// Γ_e \[1/length²\]: positive gives waves (Bessel functions J, Y), negative decay (I, K).
     pub even: f64,
-    /// Γ_o \[1/length²\]: turns the force on a displacement by a right angle, counterclockwise if positive.
+    /// Γ_o \[1/length²\]: a force perpendicular to the displacement, counterclockwise if positive.
     pub odd: f64,
 }
 
@@ -38,29 +38,29 @@ impl Screening {
 /// Γ_o = 0: u is a gradient and a curl of Bessel functions of order n with `k_L² = Γ_e μ/(λ+2μ)` and `k_T² = Γ_e`. Odd
 /// screening mixes the two; their squared wavenumbers then solve `((λ+2μ)/μ k² − Γ_e)(k² − Γ_e) + Γ_o² = 0`.
 ///
-/// The solution is kept at nodes, each a power series' reach from the next: no closer than r/4, r/n or 1/√|Γ| ask for.
-/// Two solutions that vanish at the rim are carried inward and kept apart, combined to the displacement at a, and the
-/// combination carried outward, the way it decays. Between nodes the series about the nearest one gives U, V and their
-/// derivatives. This is exact to rounding as the Bessel functions are, and keeps the digits that those lose where κr is
-/// small: four of them there become two, and the displacement is in their difference. With κR = 4 and n = 2 the four as
-/// they stand err by 3·10⁻¹² at R/a = 340 and by 4·10⁻⁷ at R/a = 10⁵.
+/// The solution is stored at nodes, whose distances are within the reach of a power series, set by r/4, r/n and 1/√|Γ|.
+/// Two solutions that vanish at the rim are integrated inward and kept orthogonal. They are combined to match the
+/// displacement at a, and the combination is evaluated outward, in the direction of its decay. Between nodes the series
+/// about the nearest one gives U, V and their derivatives. This is accurate to rounding, like the Bessel functions, but
+/// has no cancellation for small κr. There the four Bessel functions become pairwise equal, and the displacement is in
+/// their difference. For κR = 4 and n = 2 the direct formula has errors of 3·10⁻¹² at R/a = 340 and of 4·10⁻⁷ at R/a =
+/// 10⁵.
 ///
 /// # Units
 /// Radii and amplitudes in lengths.
 ///
 /// # Source
 /// Lemaître et al. (2021), Phys. Rev. E 104, 024904; with odd screening Cohen, Schiller, Wang, Dijksman, Moshe (2023),
-/// arXiv:2310.09942. The way inward and outward: Conte (1966), SIAM Rev. 8, 309.
+/// arXiv:2310.09942. The integration inward and outward: Conte (1966), SIAM Rev. 8, 309.
 ///
 /// # Accuracy
-/// Relative to |u| + ℓ|u'|, ℓ the length over which u changes, and u' times ℓ to the same: below
-/// `2⁻⁵² (8 + node_count) · condition`. Largest found against 160 bits: 1.1·10⁻¹⁴, a third of that bound; n
-/// to 1000, R/a from 1 + 10⁻⁷ to 10⁷, Γ R² from −6400 to 6400, either parity, next to no pole. Amplitudes with U = iV (which have
-/// no r^(−n+1)) in a nearly incompressible medium, ν → 1, lose up to Γ R² times as much.
+/// Relative to |u| + ℓ|u'|, where ℓ is the length over which u changes, and u' times ℓ relative to the same: below
+/// `2⁻⁵² (8 + node_count) · condition`. Largest error found against 160 bits: 1.1·10⁻¹⁴, a third of that bound, for n
+/// to 1000, R/a from 1 + 10⁻⁷ to 10⁷, Γ R² from −6400 to 6400, either parity, away from poles. Amplitudes with U = iV
+/// (which have no r^(−n+1)) in a nearly incompressible medium, ν → 1, have errors up to Γ R² times larger.
 ///
 /// # Cost
-/// 1.0 to 1.3 µs a node to set up, 30 to 32 µs for R/a = 340, κR = 5 and n ≤ 2; a radius 0.12 to 0.19 µs, value and derivative
-/// (`cargo bench --bench reference_modes`, least of four runs on two shared cores).
+/// Proportional to the number of nodes for the setup; constant per radius (`cargo bench --bench reference_modes`).
 ///
 /// # Example
 /// ```
@@ -68,7 +68,7 @@ impl Screening {
 /// use jamscope::reference::angular_modes::screened::{ScreenedMode, Screening};
 /// use jamscope::reference::angular_modes::{AngularSolution, ModeAmplitudes};
 /// let annulus = Annulus::new(0.5, 170.0)?;
-/// // Radial inflation by 0.1, κ = 0.02, and odd screening a third of the even one: the medium turns, too.
+/// // Radial inflation by 0.1, κ = 0.02, and odd screening a third of the even one: the medium also rotates.
 /// let even = Screening::from_wavenumber(0.02, 0.3);
 /// let screening = Screening { odd: even.even / 3.0, ..even };
 /// let mode = ScreenedMode::new(annulus, 0.3, screening, 0, ModeAmplitudes::in_phase(0.1, 0.0))?;
@@ -126,7 +126,7 @@ impl ScreenedMode {
             triangles.push(triangle);
         }
 
-        // At the inner circle: the one with its displacement.
+        // At the inner circle: the combination with its displacement.
         let quarter = times_i(boundary.transverse);
         let edge = [boundary.radial, quarter, boundary.radial - quarter];
         let (inner, outer) = (annulus.inner_radius(), annulus.outer_radius());
@@ -134,12 +134,12 @@ impl ScreenedMode {
         let (mut coefficients, edge_condition) =
             frames[frames.len() - 1].with_displacement(&system, [edge[0], edge[2]], relative_length);
         let condition = edge_condition * closeness(&system, &radii, &frames);
-        // Every node rounds its frame by a few 2⁻⁵²: with less than this left the determinant may be zero.
+        // Every node adds a rounding of some 2⁻⁵². With less than this left, the determinant may be zero.
         if condition.is_nan() || condition * 4.0 * f64::EPSILON * radii.len() as f64 >= 1.0 {
             return Err(AngularModeError::AtPole { mode, even, odd, condition });
         }
 
-        // Outward: its state at every node.
+        // Outward: the solution at every node.
         let mut nodes = Vec::with_capacity(radii.len());
         for index in (0..radii.len()).rev() {
             if index + 1 < radii.len() {
@@ -154,28 +154,28 @@ impl ScreenedMode {
         Ok(ScreenedMode { annulus, mode, system, nodes, condition })
     }
 
-    /// The annulus it fills.
+    /// The annulus.
     pub fn annulus(&self) -> Annulus {
         self.annulus
     }
 
-    /// About how many times larger a relative error of the screening comes out in the displacement: of order one away from
-    /// the poles of the mode, and growing as Γ/|Γ − pole| towards one (to a factor of three at the first pole of n = 0).
+    /// Approximate ratio of the relative errors of the displacement and of the screening: of order one away from the
+    /// poles of the mode, and growing as Γ/|Γ − pole| towards one (to a factor of three at the first pole of n = 0).
     ///
-    /// It is one over the sine of the angle between the solutions that vanish at the rim and those that vanish at a,
-    /// where it is smallest, times the cancellation in the determinant of the displacement at a.
+    /// It is the inverse of the smallest sine of the angle between the solutions that vanish at the rim and those that
+    /// vanish at a, times the cancellation in the determinant of the displacement at a.
     pub fn condition(&self) -> f64 {
         self.condition
     }
 
-    /// How many nodes the solution is kept at.
+    /// Number of nodes at which the solution is stored.
     pub fn node_count(&self) -> usize {
         self.nodes.len()
     }
 
     /// The node nearest to `radius`.
     fn nearest(&self, radius: f64) -> &Node {
-        // At least two nodes, R and a; the search gives the first not outside of `radius`.
+        // There are at least two nodes, R and a; the search finds the first one not outside `radius`.
         let inside = self.nodes.partition_point(|node| node.radius > radius).clamp(1, self.nodes.len() - 1);
         let (outer, inner) = (&self.nodes[inside - 1], &self.nodes[inside]);
         if outer.radius - radius < radius - inner.radius { outer } else { inner }
@@ -201,8 +201,8 @@ impl AngularSolution for ScreenedMode {
     }
 }
 
-/// How much closer the solutions that vanish at the rim come to those that vanish at a, anywhere between, than they are
-/// at a: at a pole one solution is both.
+/// The sine of the angle between the solutions that vanish at the rim and those that vanish at a: its value at a over
+/// its smallest value anywhere between. At a pole one solution vanishes at both.
 fn closeness(system: &System, radii: &[f64], frames: &[Frame]) -> f64 {
     let mut inner = Frame::held(system, radii[radii.len() - 1]);
     let mut sines = Vec::with_capacity(radii.len());
@@ -215,7 +215,7 @@ fn closeness(system: &System, radii: &[f64], frames: &[Frame]) -> f64 {
     sines.iter().fold(1.0, |largest, sine| larger(largest, sines[0] / sine))
 }
 
-/// From R inward to a, each within the reach of the series about the one before.
+/// From R inward to a, each within the reach of the series about the previous one.
 fn node_radii(annulus: Annulus, system: &System, mode: u32) -> Result<Vec<f64>, AngularModeError> {
     let (inner, outer) = (annulus.inner_radius(), annulus.outer_radius());
     let node_estimate = (4.0 + system.mode) * libm::log(outer / inner) + system.wavenumber() * (outer - inner);

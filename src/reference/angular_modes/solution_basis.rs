@@ -1,8 +1,8 @@
-//! `Frame`: the two solutions that vanish at the rim, carried inward without becoming parallel.
+//! `Frame`: the two solutions that vanish at the rim, integrated inward without becoming parallel.
 //!
-//! Towards the centre every solution grows like r^(−n−1) or r^(−n+1), so two of them carried side by side would soon be
-//! told apart by rounding only. At every node they are made orthogonal again, and what was done is remembered: the way
-//! back outward, where the solution decays, undoes it without growth of errors.
+//! Towards the centre every solution grows like r^(−n−1) or r^(−n+1). Two solutions integrated independently would soon
+//! differ only by rounding. They are therefore orthogonalised at every node, and the transformation is stored. On the
+//! way back outward, where the solution decays, the transformation is undone without growth of errors.
 //!
 //! # Source
 //! Conte (1966), SIAM Rev. 8, 309 (after Godunov).
@@ -11,13 +11,13 @@ use crate::reference::angular_modes::Complex;
 use crate::reference::angular_modes::first_order_system::{State, System, size};
 use crate::vector::larger;
 
-/// Two solutions, orthonormal in U, v, P and W, the last two divided by the rate.
+/// Two solutions, orthonormal in U, v, P and W; the last two are divided by the rate.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
     pub(super) columns: [State; 2],
 }
 
-/// The upper triangle that turns coefficients in the new frame into those in the old: `old = new · triangle`.
+/// The upper triangular matrix from coefficients in the new frame to those in the old: `old = new · triangle`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Triangle {
     first: f64,
@@ -26,13 +26,13 @@ pub(super) struct Triangle {
 }
 
 impl Frame {
-    /// On a circle of this radius that is held: no displacement; dilation alone, rotation alone.
+    /// On a held circle of this radius: no displacement; pure dilation and pure rotation.
     pub(super) fn held(system: &System, radius: f64) -> Self {
         let (zero, one) = (Complex::new(0.0, 0.0), Complex::new(system.rate(radius), 0.0));
         Frame { columns: [[zero, zero, zero, one, zero], [zero, zero, zero, zero, one]] }
     }
 
-    /// The frame at `radius` (1 − z), orthonormal, and the triangle back to the one carried there.
+    /// The frame at `radius` (1 − z), orthonormal, and the triangle that relates it to the integrated one.
     pub(super) fn advance(&self, system: &System, radius: f64, z: f64) -> (Self, Triangle) {
         let [mut first, mut second] = self.columns.map(|column| system.advance(radius, z, column));
         let scale = 1.0 / system.rate(radius * (1.0 - z));
@@ -48,9 +48,9 @@ impl Frame {
         (Frame { columns: [first, second] }, Triangle { first: length, across, second: rest })
     }
 
-    /// The sine of the smaller angle between the solutions of this frame and of another one at `radius`: 0 if they share
-    /// a solution. Both sines' product is the volume they span, which is right however small; the larger one squared is
-    /// an eigenvalue of what the projection on the other frame leaves.
+    /// The sine of the smaller angle between the solutions of this frame and of another one at `radius`: 0 if they
+    /// share a solution. The product of both sines is the volume that they span, which is accurate even if it is small.
+    /// The square of the larger sine is an eigenvalue of the complement of the projection on the other frame.
     pub(super) fn smallest_sine(&self, frame: &Frame, system: &System, radius: f64) -> f64 {
         let scale = 1.0 / system.rate(radius);
         let minor = |frame: &Frame, i: usize, j: usize| {
@@ -82,9 +82,9 @@ impl Frame {
         std::array::from_fn(|i| self.columns[0][i] * coefficients[0] + self.columns[1][i] * coefficients[1])
     }
 
-    /// The coefficients of the solution with this U and d, and the condition of their equation: the products in its
-    /// determinant, each factor replaced by the amplitude of the oscillation it is a point of, the larger of |U| and
-    /// length |U'|, over the determinant.
+    /// The coefficients of the solution with given U and d, and the condition number of their equation. It is the sum
+    /// of the products in the determinant, over the determinant; each factor is replaced by the amplitude of its
+    /// oscillation, the larger of |U| and length |U'|.
     pub(super) fn with_displacement(
         &self,
         system: &System,
@@ -106,7 +106,7 @@ impl Frame {
 }
 
 impl Triangle {
-    /// The coefficients in the frame before from those in the frame after.
+    /// The coefficients in the previous frame from those in this one.
     pub(super) fn undo(&self, [first, second]: [Complex<f64>; 2]) -> [Complex<f64>; 2] {
         let second = second / self.second;
         [(first - self.across * second) / self.first, second]
@@ -118,7 +118,7 @@ fn modulus(a: Complex<f64>) -> f64 {
     libm::hypot(a.re, a.im)
 }
 
-/// `Σ conj(a_i) b_i` over U, v, P, W, the last two with `weight`; d is not a component of its own.
+/// `Σ conj(a_i) b_i` over U, v, P, W, the last two with `weight`; d is not an independent component.
 fn product(a: &State, b: &State, weight: f64) -> Complex<f64> {
     a[0].conj() * b[0] + a[1].conj() * b[1] + (a[3].conj() * b[3] + a[4].conj() * b[4]) * weight
 }

@@ -6,22 +6,21 @@
 //! J_0' = −J_1,  J_1' = J_0 − J_1/x,  the same for Y        J_1 Y_0 − J_0 Y_1 = 2/(π x)
 //! ```
 //!
-//! They are those of the crate `libm`, which of the libraries compared came out the most accurate and is the only one that
-//! keeps its phase at any argument: it reduces x itself, where the others reduce a rounded x − 3π/4. What this module adds
-//! is what is known of them.
+//! They are those of the crate `libm`, the most accurate of the libraries compared. Only `libm` keeps the phase at any
+//! argument: it reduces x itself, where the others reduce a rounded x − 3π/4. This module documents their accuracy and
+//! limits.
 //!
 //! # Accuracy
-//! Error below 10⁻¹⁵ of the modulus √(J_n² + Y_n²), of any x from the smallest subnormal number to 10³⁰⁰ (5·10⁻¹⁶ the
-//! largest found); hence relative, except next to a zero. The test
-//! `reference::bessel_functions::cylinder_functions_have_their_digits_at_any_argument` holds it.
+//! Error below 10⁻¹⁵ of the modulus √(J_n² + Y_n²), for any x from the smallest subnormal number to 10³⁰⁰ (largest
+//! found: 5·10⁻¹⁶). This is a relative error except near a zero. Tested by
+//! `reference::bessel_functions::cylinder_functions_have_their_digits_at_any_argument`.
 //!
 //! # Limits
 //! Y_n(0) = −∞ and Y_n(x) is NaN for x < 0. Y_1(x) = −2/(πx) overflows to −∞ for x < 3.55·10⁻³⁰⁹. J_n(∞) = Y_n(∞) = 0.
 //! NaN gives NaN.
 //!
 //! # Cost
-//! 3 to 31 ns, the more the larger x (`cargo bench --bench reference -- bessel`, least of four runs on two shared
-//! cores).
+//! See `cargo bench --bench reference -- bessel`.
 //!
 //! # Source
 //! Abramowitz & Stegun (1964), 9.1; DLMF §10.2. The approximations are those of Sun Microsystems' fdlibm (1993).
@@ -29,7 +28,7 @@
 //! # Example
 //! ```
 //! use jamscope::reference::bessel::cylinder::{j0, j1, y0, y1};
-//! // The Wronskian, far out.
+//! // The Wronskian at a large argument.
 //! let x = 1e6;
 //! assert!(((j1(x) * y0(x) - j0(x) * y1(x)) * x * std::f64::consts::FRAC_PI_2 - 1.0).abs() < 1e-15);
 //! ```

@@ -1,4 +1,4 @@
-//! I_0, I_1, K_0, K_1: the modified Bessel functions, plain and without their exponential.
+//! I_0, I_1, K_0, K_1: the modified Bessel functions, plain and scaled by an exponential.
 //!
 //! ```text
 //! f'' + f'/x − (1 + n²/x²) f = 0,   n = 0, 1        I_n ~ e^x/√(2πx),  K_n ~ e^(−x) √(π/(2x))
@@ -6,25 +6,25 @@
 //! I_0' = I_1,  I_1' = I_0 − I_1/x,  K_0' = −K_1,  K_1' = −K_0 − K_1/x        I_1 K_0 + I_0 K_1 = 1/x
 //! ```
 //!
-//! The plain ones leave the range of an `f64` at x = 713 (I) and 742 (K); `*_scaled` are `e^(−|x|) I_n` and `e^x K_n`, which never
-//! do.
+//! The plain ones overflow at x = 713 (I) and underflow at 742 (K); `*_scaled` are `e^(−|x|) I_n` and `e^x K_n`, which
+//! do not.
 //!
-//! | range | route |
+//! | range | method |
 //! |---|---|
 //! | x < 1 | power series, A&S 9.6.10, 9.6.11 and 9.6.13: every sum has terms of one sign |
 //! | 1 ≤ x < 25 | polynomials in 1/x for `√x e^(−x) I_n` and `√x e^x K_n` |
 //! | x ≥ 25 | asymptotic expansion, A&S 9.7.1 and 9.7.2 |
 //!
 //! # Accuracy
-//! Relative error below 10⁻¹⁵ for any x > 0, subnormal numbers and 10³⁰⁰ included (6·10⁻¹⁶ the largest
-//! found; `reference::bessel_functions::modified_functions_have_their_digits_at_any_argument`). For the plain ones of x > 30 the error of `exp` comes on top, an ulp.
+//! Relative error below 10⁻¹⁵ for any x > 0, including subnormal numbers and 10³⁰⁰ (largest found: 6·10⁻¹⁶;
+//! `reference::bessel_functions::modified_functions_have_their_digits_at_any_argument`). For the plain functions at x >
+//! 30 the error of `exp`, one ulp, is added.
 //!
 //! # Limits
 //! K_n(0) = ∞, K_n(x) is NaN for x < 0. K_1(x) = 1/x overflows for x < 5.6·10⁻³⁰⁹. NaN gives NaN.
 //!
 //! # Cost
-//! 5 to 20 ns (`cargo bench --bench reference -- bessel`, least of four runs on two shared
-//! cores).
+//! See `cargo bench --bench reference -- bessel`.
 //!
 //! # Source
 //! Abramowitz & Stegun (1964), 9.6 and 9.7; DLMF §10.25. The polynomials: `fixtures/reference/make_modified_tables.py`.
@@ -109,7 +109,7 @@ const EXCESS: [f64; TERM_COUNT - 1] = {
     terms
 };
 
-/// How many terms of the asymptotic expansion reach 2⁻⁵⁶ of the sum (a unit test holds it).
+/// Number of terms of the asymptotic expansion for 2⁻⁵⁶ of the sum (checked by a unit test).
 fn term_count(x: f64) -> usize {
     match x {
         x if x < 60.0 => 25,
@@ -119,7 +119,7 @@ fn term_count(x: f64) -> usize {
     }
 }
 
-/// The range of the tables x is in, 1 ≤ x < 25, and where in it.
+/// The range of the tables that contains x, 1 ≤ x < 25, and the position in it.
 fn range(x: f64) -> (&'static Range, f64) {
     let index = RANGES.iter().take_while(|range| x >= range.below).count();
     let range = &RANGES[index.min(RANGES.len() - 1)];
@@ -162,7 +162,7 @@ fn second_kind_series(order: usize, x: f64) -> f64 {
     if order == 0 { sum - logarithm } else { 1.0 / x + (logarithm - 0.5 * half * sum) }
 }
 
-/// x (1 − K_0(x)/K_1(x)), from 0 at x = 0 to 1/2 at infinity: what makes differences of K_0/K_1 keep their digits.
+/// x (1 − K_0(x)/K_1(x)), from 0 at x = 0 to 1/2 at infinity: avoids cancellation in differences of K_0/K_1.
 pub(crate) fn second_kind_excess(x: f64) -> f64 {
     if x < SERIES_BELOW {
         return x - x * (second_kind_series(0, x) / second_kind_series(1, x));
@@ -222,7 +222,7 @@ fn first_kind(order: usize, x: f64) -> f64 {
     if x == f64::INFINITY {
         return x;
     }
-    // In two halves: e^x alone overflows at 710, I_n at 714.
+    // In two factors: e^x alone overflows at 710, I_n at 714.
     let half = libm::exp(0.5 * x);
     first_kind_scaled(order, x) * half * half
 }

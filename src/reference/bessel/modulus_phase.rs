@@ -1,14 +1,14 @@
-//! Bessel functions of order one as a modulus and a phase, the form in which differences of them lose no digits.
+//! Bessel functions of order one as a modulus and a phase, which avoids cancellation in their differences.
 //!
 //! ```text
 //! J_1(x) + i Y_1(x) = M(x) exp(i θ(x)),      θ(x) = x − 3π/4 + φ(x)
 //! ```
 //!
 //! The phase shift φ falls monotonically from π/4 at x = 0 to 0 at infinity, as 3/(8x). The rest of θ is known exactly,
-//! so a difference of two phases needs only the difference of the arguments and two small numbers.
+//! so a difference of two phases only needs the difference of the arguments and two small numbers.
 //!
-//! For x ≥ [`ASYMPTOTIC_FROM`] both come from the asymptotic expansion; from [`EXPANDED_FROM`] on from polynomials in x^(−2) for
-//! `(P − 1) x²` and `φ x`, which are as smooth; below it from J_1 and Y_1 of the crate `libm`.
+//! For x ≥ [`ASYMPTOTIC_FROM`] both come from the asymptotic expansion. From [`EXPANDED_FROM`] on they come from
+//! polynomials in x^(−2) for `(P − 1) x²` and `φ x`, and below it from J_1 and Y_1 of the crate `libm`.
 //!
 //! # Source
 //! Abramowitz & Stegun (1964), 9.2.28 and 9.2.29; DLMF §10.18.
@@ -24,7 +24,7 @@ pub const ASYMPTOTIC_FROM: f64 = 25.0;
 /// From here on polynomials are used \[1\]: the lower end of their tables.
 pub const EXPANDED_FROM: f64 = 2.0;
 
-/// Terms kept of the expansions. The terms shrink until their index is about x, so 13 are safe at 25.
+/// Number of terms of the expansions. The terms decrease until their index is about x, so 13 are safe at 25.
 const TERM_COUNT: usize = 14;
 
 /// `m_k` of `(π x / 2) M² = Σ m_k x^(−2k)`: `m_k / m_(k−1) = (2k−1)/(2k) · (4 − (2k−1)²)/4`, A&S 9.2.28 with μ = 4.
@@ -39,7 +39,7 @@ const MODULUS: [f64; TERM_COUNT] = {
     terms
 };
 
-/// `g_k` of `θ' = Σ g_k x^(−2k)`, the reciprocal of the series of the modulus: the Wronskian says `θ' = 2/(π x M²)`.
+/// `g_k` of `θ' = Σ g_k x^(−2k)`, the reciprocal of the series of the modulus: from the Wronskian `θ' = 2/(π x M²)`.
 const PHASE_SLOPE: [f64; TERM_COUNT] = {
     let mut terms = [1.0; TERM_COUNT];
     let mut k = 1;
@@ -67,7 +67,7 @@ const PHASE: [f64; TERM_COUNT - 1] = {
     terms
 };
 
-/// How many terms reach rounding at `x`: the first one left out is below 2⁻⁵⁶ of the sum (a unit test holds it).
+/// Number of terms needed at `x`: the first one left out is below 2⁻⁵⁶ of the sum (checked by a unit test).
 fn term_count(x: f64) -> usize {
     match x {
         x if x < 60.0 => 13,
@@ -88,12 +88,11 @@ pub struct ModulusPhase {
 /// Modulus and phase of `J_1 + i Y_1` at x > 0.
 ///
 /// # Accuracy
-/// For x ≥ 2 the relative error of P and the absolute one of φ are below 3·10⁻¹⁶; below it they are those of `libm`, 10⁻¹⁵ and
-/// 6·10⁻¹⁶ (in units of the modulus).
+/// For x ≥ 2 the relative error of P and the absolute one of φ are below 3·10⁻¹⁶. For smaller x they are those of
+/// `libm`, 10⁻¹⁵ and 6·10⁻¹⁶ (in units of the modulus).
 ///
 /// # Cost
-/// 11 to 22 ns for x ≥ 2, 42 ns below (`cargo bench --bench reference -- bessel`, least of four runs on two shared
-/// cores).
+/// See `cargo bench --bench reference -- bessel`.
 pub fn modulus_phase(x: f64) -> ModulusPhase {
     if x >= EXPANDED_FROM {
         let shift = if x >= ASYMPTOTIC_FROM {
@@ -106,7 +105,7 @@ pub fn modulus_phase(x: f64) -> ModulusPhase {
         return ModulusPhase { reduced_square: 1.0 - reduced_square_deficit(x), shift };
     }
     let (j, y) = (libm::j1(x), libm::y1(x));
-    // J_1 and Y_1 turned back by x − 3π/4, whose cosine and sine are (sin x − cos x)/√2 and −(sin x + cos x)/√2.
+    // J_1 and Y_1 rotated by −(x − 3π/4), whose cosine and sine are (sin x − cos x)/√2 and −(sin x + cos x)/√2.
     let (sine, cosine) = libm::sincos(x);
     let (turn_cosine, turn_sine) = ((sine - cosine) * FRAC_1_SQRT_2, -(sine + cosine) * FRAC_1_SQRT_2);
     ModulusPhase {
@@ -115,7 +114,7 @@ pub fn modulus_phase(x: f64) -> ModulusPhase {
     }
 }
 
-/// The range of the tables x is in, 2 ≤ x < 25, and where in it.
+/// The range of the tables that contains x, 2 ≤ x < 25, and the position in it.
 fn range(x: f64) -> (&'static Range, f64) {
     let index = RANGES.iter().take_while(|range| x >= range.below).count();
     let range = &RANGES[index.min(RANGES.len() - 1)];
@@ -148,8 +147,8 @@ pub(crate) fn reduced_square_slope(x: f64) -> f64 {
     -2.0 * t * inverse * (value + t * slope / range.half_width)
 }
 
-/// `1 − 2x I_1(x) K_1(x)` for x ≥ [`EXPANDED_FROM`], relative accuracy: what P − 1 is for imaginary argument (A&S 9.7.5 has the
-/// coefficients of the modulus with alternating signs).
+/// `1 − 2x I_1(x) K_1(x)` for x ≥ [`EXPANDED_FROM`], relative accuracy: the analogue of P − 1 for imaginary argument
+/// (A&S 9.7.5 has the coefficients of the modulus with alternating signs).
 pub(crate) fn modified_product_deficit(x: f64) -> f64 {
     let inverse = 1.0 / x;
     let t = inverse * inverse;
@@ -160,9 +159,9 @@ pub(crate) fn modified_product_deficit(x: f64) -> f64 {
     t * polynomial(&range.product, u)
 }
 
-/// J_1 and Y_1 at `x + x_low`, where `x_low` is what rounding took from x (at most half an ulp).
+/// J_1 and Y_1 at `x + x_low`, where `x_low` is the rounding error of x (at most half an ulp).
 ///
-/// The phase is moved by `x_low θ'`; the modulus would move by less than its own rounding.
+/// The phase changes by `x_low θ'`; the change of the modulus is below its own rounding.
 pub(crate) fn first_order(x: f64, x_low: f64) -> (f64, f64) {
     let (j, y) = (libm::j1(x), libm::y1(x));
     let turn = x_low * FRAC_2_PI / (x * (j * j + y * y));
@@ -178,7 +177,8 @@ mod tests {
         for x in [25.0, 59.9, 60.0, 199.0, 200.0, 1e6] {
             let count = term_count(x);
             assert!(MODULUS[count].abs() * f64::powi(x, -2 * count as i32) < f64::exp2(-56.0), "modulus at {x}");
-            // The expansion of the phase is odd, hence one power more; PHASE has one term less, p_13 is bounded by p_12.
+            // The expansion of the phase is odd, so one power more; PHASE has one term less, and p_13 is bounded by
+            // p_12.
             let next = PHASE[count.min(PHASE.len() - 1)].abs() * f64::powi(x, -2 * count as i32 - 1);
             assert!(next < f64::exp2(-56.0), "phase at {x}");
         }

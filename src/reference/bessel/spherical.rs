@@ -1,27 +1,26 @@
-//! The spherical Bessel functions of orders zero and one, of real and of imaginary argument: elementary functions, and yet
-//! their textbook forms lose everything at small argument.
+//! The spherical Bessel functions of orders zero and one, of real and of imaginary argument. They are elementary
+//! functions, but their textbook forms suffer from cancellation at small argument.
 //!
 //! ```text
 //! j_0 = sin x/x      j_1 = (sin x/x − cos x)/x         y_0 = −cos x/x        y_1 = −(cos x/x + sin x)/x
 //! i_0 = sinh x/x     i_1 = (cosh x − sinh x/x)/x       k_0 = (π/2) e^(−x)/x  k_1 = (π/2) e^(−x) (1 + 1/x)/x
 //! ```
 //!
-//! i_n and k_n are DLMF's i_n^(1) and k_n, factor π/2 included: `i_n = √(π/(2x)) I_(n+1/2)`, `k_n = √(π/(2x)) K_(n+1/2)`. j_1 and i_1
-//! are power series up to x = 2 (j_1) and 3 (i_1), where the difference of their two terms begins to lose no more than a bit or
-//! two.
+//! i_n and k_n are DLMF's i_n^(1) and k_n, including the factor π/2: `i_n = √(π/(2x)) I_(n+1/2)`, `k_n = √(π/(2x))
+//! K_(n+1/2)`. j_1 and i_1 are power series up to x = 2 (j_1) and 3 (i_1); beyond, the difference of their two terms
+//! loses at most a bit or two.
 //!
 //! # Accuracy
-//! Relative error of j_0, y_0, i_n, k_n below 10⁻¹⁵; of j_1, y_1 below 10⁻¹⁵ of the modulus √(j_1² + y_1²) and, for j_1 of
-//! x < 2, of j_1 itself (5·10⁻¹⁶
-//! the largest found; `reference::bessel_functions::spherical_functions_have_their_digits_at_any_argument`).
+//! Relative error of j_0, y_0, i_n, k_n below 10⁻¹⁵. Error of j_1, y_1 below 10⁻¹⁵ of the modulus √(j_1² + y_1²), and
+//! for x < 2 of j_1 itself. Largest found: 5·10⁻¹⁶
+//! (`reference::bessel_functions::spherical_functions_have_their_digits_at_any_argument`).
 //!
 //! # Limits
-//! j_n and i_n take any x; i_n overflows to ∞ at 718. y_0, y_1, k_0, k_1 at 0 are ∓∞ and ∞; NaN for x < 0. y_1 and k_1, of order 1/x²,
-//! overflow for x < 10⁻¹⁵⁴.
+//! j_n and i_n take any x; i_n overflows to ∞ at 718. y_0, y_1, k_0, k_1 at 0 are ∓∞ and ∞; NaN for x < 0. y_1 and k_1,
+//! of order 1/x², overflow for x < 10⁻¹⁵⁴.
 //!
 //! # Cost
-//! 2 to 11 ns for order one (`cargo bench --bench reference -- bessel`, least of four runs on two shared
-//! cores).
+//! See `cargo bench --bench reference -- bessel`.
 //!
 //! # Source
 //! Abramowitz & Stegun (1964), 10.1 and 10.2; DLMF §10.49 (closed forms) and §10.53 (series).
@@ -37,10 +36,10 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::reference::bessel::polynomial::polynomial;
 
-/// Below this j_1 is its series \[1\].
+/// Below this argument j_1 is computed by its series \[1\].
 const ALTERNATING_BELOW: f64 = 2.0;
 
-/// Below this i_1 is its series \[1\].
+/// Below this argument i_1 is computed by its series \[1\].
 const POSITIVE_BELOW: f64 = 3.0;
 
 /// 4.5^15 · 3/(15! 33!!) = 10⁻²¹.
@@ -87,7 +86,7 @@ pub fn y1(x: f64) -> f64 {
 
 /// i_0(x), even in x, i_0(0) = 1.
 pub fn i0(x: f64) -> f64 {
-    // In two halves, as sinh overflows before sinh x/x does.
+    // In two factors, since sinh overflows before sinh x/x does.
     let x = x.abs();
     if x < 1.0 { if x == 0.0 { 1.0 } else { libm::sinh(x) / x } } else { grown(i0_scaled(x), x) }
 }
@@ -132,7 +131,7 @@ pub fn k1_scaled(x: f64) -> f64 {
     if x < 0.0 { f64::NAN } else { FRAC_PI_2 * (1.0 + 1.0 / x.abs()) / x.abs() }
 }
 
-/// `scaled · e^x`, in two halves as e^x overflows first.
+/// `scaled · e^x`, in two factors since e^x overflows first.
 fn grown(scaled: f64, x: f64) -> f64 {
     if x == f64::INFINITY {
         return x.copysign(scaled);

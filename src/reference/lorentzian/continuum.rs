@@ -1,16 +1,16 @@
 //! [`ContinuumLorentzian`]: the limit f† → ∞, a function of f†θ.
 
-use crate::reference::lorentzian::complex::Complex;
+use crate::reference::lorentzian::complex::{Complex, power, reciprocal};
 use crate::reference::lorentzian::contour::{Contour, DECAY_LIMIT, Kind, ray_angle};
 use crate::reference::lorentzian::crossing::{Crossing, SCAN_STEP, first_crossing, only_crossing, scan_end};
 use crate::reference::lorentzian::cusp::{CUSP_BELOW, Cusp};
 use crate::reference::lorentzian::error::{LorentzianError, check_exponent, check_threshold};
 use crate::reference::lorentzian::tail_integral;
 
-/// First panel of the contour: u^s bends there, which costs less than 2^(−24(1+s)).
+/// First panel of the contour: u^s is singular there, with an error below 2^(−24(1+s)).
 const FIRST_PANEL: f64 = 1.0 / 16_777_216.0;
 
-/// From here on the asymptotic series, whose third term is below (4·10⁶)^(−4) of the first.
+/// From here on the asymptotic series is used; its third term is below (4·10⁶)^(−4) of the first.
 const ASYMPTOTIC_FROM: f64 = 4_194_304.0;
 
 /// The correlation function of the generalised Lorentzian in the limit f† → ∞, where it depends on x = f†θ alone.
@@ -22,11 +22,11 @@ const ASYMPTOTIC_FROM: f64 = 4_194_304.0;
 /// ```
 ///
 /// # Accuracy
-/// As [`Lorentzian`](super::Lorentzian), with x for θ: absolute error of g below 6.7·10⁻¹⁵ at s = 1.5; found 3.3·10⁻¹⁶ over the
-/// rows of `fixtures/reference/lorentzian.json`.
+/// Like [`Lorentzian`](super::Lorentzian), with x for θ: absolute error of g below 6.7·10⁻¹⁵ at s = 1.5; largest found
+/// for the rows of `fixtures/reference/lorentzian.json`: 3.3·10⁻¹⁶.
 ///
 /// # Cost
-/// As [`Lorentzian`](super::Lorentzian).
+/// Like [`Lorentzian`](super::Lorentzian).
 ///
 /// # Example
 /// ```
@@ -67,12 +67,12 @@ impl ContinuumLorentzian {
         self.area
     }
 
-    /// g(x) \[1\] at any x = f†θ \[1\]; even. NaN where x is not finite.
+    /// g(x) \[1\] at any x = f†θ \[1\]; even. NaN if x is not finite.
     pub fn correlation(&self, reduced_angle: f64) -> f64 {
         self.evaluate::<false>(reduced_angle).0
     }
 
-    /// g'(x) \[1\], odd. At x = 0 it is NaN for s ≤ 2, where there is a cusp or a kink.
+    /// g'(x) \[1\], odd. NaN at x = 0 for s ≤ 2, where there is a cusp or a kink.
     pub fn derivative(&self, reduced_angle: f64) -> f64 {
         self.evaluate::<true>(reduced_angle).1
     }
@@ -85,7 +85,7 @@ impl ContinuumLorentzian {
         check_threshold(threshold)?;
         let curve = |x: f64| self.evaluate::<true>(x);
         if self.exponent > 2.0 {
-            // Beyond the end there is only the algebraic tail, which comes from below 0 or has been below it.
+            // Beyond the end only the algebraic tail is left, which approaches 0 from below or has been below it.
             let grid = (1_u32..).map(|n| f64::from(n) * SCAN_STEP).take_while(|&x| x < scan_end(self.exponent));
             return Ok(first_crossing(&curve, threshold, grid));
         }
@@ -118,11 +118,11 @@ impl ContinuumLorentzian {
 
 /// `1/(1 + w^s)`.
 fn spectrum(w: Complex, exponent: f64) -> Complex {
-    (Complex::new(1.0, 0.0) + w.power(exponent)).reciprocal()
+    reciprocal(Complex::new(1.0, 0.0) + power(w, exponent))
 }
 
-/// Where the panels may end, in frequencies, for a crossover: where the exponential has died at the smallest angle the
-/// contour is used for, or where S has (2^(−57) left of ∫ f S df).
+/// End of the panels, in frequencies, for a crossover: where the exponential is negligible at the smallest angle of the
+/// contour, or where S is (2^(−57) left of ∫ f S df).
 pub(super) fn last_panel(exponent: f64, scale: f64) -> f64 {
     let exponential = DECAY_LIMIT / (libm::sin(ray_angle(exponent)) * CUSP_BELOW);
     let algebraic = if exponent > 2.0 { libm::exp2(57.0 / (exponent - 2.0)) } else { f64::INFINITY };

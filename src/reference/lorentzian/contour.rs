@@ -1,6 +1,6 @@
 //! `Contour`: Σ S(f) cos fθ as an integral along a ray in the complex plane, for many θ.
 //!
-//! For S analytic between the real axis and the ray `w = a + t e^(iα)`, a half an odd number, and 0 ≤ θ ≤ 2π,
+//! For S analytic between the real axis and the ray `w = a + t e^(iα)`, a half-integer, and 0 ≤ θ ≤ 2π,
 //!
 //! ```text
 //! Σ_(f > a) S(f) cos fθ = Re ∫ S(w) [e^(iwθ) + e^(iw(2π−θ))] / (1 − e^(2πiw)) dw
@@ -10,63 +10,47 @@
 //! one). On the ray nothing oscillates faster than it decays. Without the denominator and the second exponential, and
 //! with a = 0, it is the integral ∫ S(u) cos uθ du.
 //!
-//! The poles of `S = A/(1 + (w/f†)^s)` begin at arg w = π/s. The ray has half that angle, so that no singularity is seen
-//! from a within an angle α of it, whatever f† is.
+//! The poles of `S = A/(1 + (w/f†)^s)` begin at arg w = π/s. The ray has half that angle, so that seen from a all
+//! singularities are at least an angle α away from it, for any f†.
 //!
 //! # Quadrature
 //! One panel [0, t_0], then panels \[t, 2t\], each with the same Gauss–Legendre nodes. So the exponentials of one panel
-//! are the squares of those of the panel before. Panels that end below tθ = 0.4 are summed for all θ at once, as
-//! the moments of a power series in θ. The cost of a θ depends neither on θ nor on f†.
+//! are the squares of those of the previous panel. Panels that end below tθ = 0.4 are summed for all θ at once, as the
+//! moments of a power series in θ. The cost for a θ depends neither on θ nor on f†.
 //!
-//! # What is left out
-//! Gauss–Legendre with p nodes on a panel of length L errs by at most
+//! # Errors
+//! Gauss–Legendre with p nodes on a panel of length L has an error of at most
 //!
 //! ```text
 //! (32/15) L M ρ^(−2(p−1)) / (1 − ρ^(−2))        ρ + 1/ρ = 2 √(5 − 4 cos 2β)
 //! ```
 //!
 //! where M bounds the integrand in the ellipse of that ρ around the panel (Trefethen (2008), SIAM Rev. 50, 67, theorem
-//! 4.5). The ellipse of a panel \[t, 2t\] touches the rays at angle β from the contour: with β < α no singularity is
-//! inside, and there `|1 + (w/f†)^s| ≥ cos(πβ/2α)`, `|1 − e^(2πiw)| ≥ 1 − exp(−π tan(α − β))`, `|e^(iwθ)| ≤ 1`.
-//! p is chosen from this bound ([`node_count`]); a unit test sums it over the panels with the true maxima M and finds less
-//! than 2⁻⁵⁹ Σ S for exponents from 1.01 to 100 and f† from 0 to 10⁶.
-//! The series of moments is cut where the next term is below 0.4^15/15! = 10⁻¹⁸, that of the exponentials below
-//! 0.8^18/18! = 3·10⁻¹⁸; panels beyond tθ sin α = 40 are left out, e^(−40) = 4·10⁻¹⁸.
+//! 4.5). The ellipse of a panel \[t, 2t\] touches the rays at angle β from the contour. For β < α it contains no
+//! singularity, and there `|1 + (w/f†)^s| ≥ cos(πβ/2α)`, `|1 − e^(2πiw)| ≥ 1 − exp(−π tan(α − β))`, `|e^(iwθ)| ≤ 1`. p
+//! is chosen from this bound ([`node_count`]). A unit test sums it over the panels with the true maxima M and finds
+//! less than 2⁻⁵⁹ Σ S for exponents from 1.01 to 100 and f† from 0 to 10⁶. The series of moments is truncated where the
+//! next term is below 0.4^15/15! = 10⁻¹⁸, that of the exponentials below 0.8^18/18! = 3·10⁻¹⁸. Panels beyond tθ sin α =
+//! 40 are left out, e^(−40) = 4·10⁻¹⁸.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::reference::lorentzian::complex::Complex;
+use crate::reference::lorentzian::complex::{Complex, exponential, polar, reciprocal};
 use crate::reference::lorentzian::gauss::gauss_legendre;
-
-/// Nodes handled together, so that the compiler can use wide registers.
-const LANES: usize = 4;
+use crate::reference::lorentzian::lanes::{
+    INVERSE_FACTORIALS, LANES, Lanes, accumulate, exponentials, product, reciprocals,
+};
 
 /// Panels that end below this tθ are summed by moments.
 const MOMENT_REACH: f64 = 0.4;
 
-/// Moments kept: 0.4^15/15! = 8·10⁻¹⁹.
+/// Number of moments: 0.4^15/15! = 8·10⁻¹⁹.
 const MOMENT_COUNT: usize = 15;
-
-/// Terms of e^z for |z| ≤ 0.8 beyond the constant: 0.8^18/18! = 3·10⁻¹⁸.
-const EXPONENTIAL_DEGREE: usize = 17;
 
 /// Exponentials below e^(−40) = 4·10⁻¹⁸ are left out.
 pub(super) const DECAY_LIMIT: f64 = 40.0;
 
-/// 1/n!.
-const INVERSE_FACTORIALS: [f64; EXPONENTIAL_DEGREE + 1] = {
-    let mut values = [1.0; EXPONENTIAL_DEGREE + 1];
-    let (mut n, mut factorial) = (1, 1.0);
-    while n <= EXPONENTIAL_DEGREE {
-        // Exact up to 18! < 2⁵³.
-        factorial *= n as f64;
-        values[n] = 1.0 / factorial;
-        n += 1;
-    }
-    values
-};
-
-/// β/α of the ellipses the number of nodes is derived from.
+/// β/α of the ellipses from which the number of nodes is derived.
 const ELLIPSE_SHARE: f64 = 0.85;
 
 /// Half the angle of the first pole.
@@ -78,11 +62,12 @@ pub(super) fn ray_angle(exponent: f64) -> f64 {
 fn ellipse(exponent: f64) -> (f64, f64) {
     let beta = ELLIPSE_SHARE * ray_angle(exponent);
     let half_sum = (5.0 - 4.0 * libm::cos(2.0 * beta)).sqrt();
-    // ρ + 1/ρ = 2 half_sum; 2 half_sum ≥ 2, and half_sum² − 1 = 8 sin²β keeps its digits.
+    // ρ + 1/ρ = 2 half_sum; 2 half_sum ≥ 2, and half_sum² − 1 = 8 sin²β without cancellation.
     (beta, half_sum + 8.0_f64.sqrt() * libm::sin(beta))
 }
 
-/// Nodes a panel so that the bound of the module text, for the panels where S is about its largest, is below 2⁻⁵⁴.
+/// Number of nodes per panel for which the bound of the module documentation, for the panels with the largest S, is
+/// below 2⁻⁵⁴.
 fn node_count(exponent: f64) -> usize {
     let (beta, rho) = ellipse(exponent);
     let spectrum = 1.0 / libm::cos(FRAC_PI_2 * ELLIPSE_SHARE);
@@ -93,13 +78,6 @@ fn node_count(exponent: f64) -> usize {
     (count.ceil() as usize).next_multiple_of(LANES)
 }
 
-/// Real and imaginary parts of a few nodes.
-#[derive(Debug, Clone, Copy, Default)]
-struct Lanes {
-    re: [f64; LANES],
-    im: [f64; LANES],
-}
-
 /// `Σ weight (±τ/t_top)^n / n!`, τ = i e^(iα) t, over all panels up to one that ends at t_top, for both exponentials.
 #[derive(Debug, Clone, Copy)]
 struct Moments {
@@ -107,10 +85,10 @@ struct Moments {
     image: [Complex; MOMENT_COUNT],
 }
 
-/// Which integral is taken.
+/// Type of the integral.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Kind {
-    /// The sum over the integers above `start`, half an odd number.
+    /// The sum over the integers above `start`, a half-integer.
     Sum {
         /// a.
         start: f64,
@@ -128,22 +106,22 @@ pub(super) struct Contour {
     direction: Complex,
     /// t_0, the end of the first panel.
     first: f64,
-    /// Nodes in [1, 2], those of a panel in units of where it begins.
+    /// Nodes in [1, 2], in units of the start of a panel.
     units: Vec<[f64; LANES]>,
-    /// Weights of e^(iwθ), panel after panel, without the first.
+    /// Weights of e^(iwθ), panel after panel, except the first.
     direct: Vec<Lanes>,
     /// Weights of e^(iw(2π−θ)) e^(−2πiw), for the first panels of `direct`.
     image: Vec<Lanes>,
-    /// One for every panel, the first included.
+    /// One for every panel, including the first.
     moments: Vec<Moments>,
 }
 
 impl Contour {
-    /// The contour of `spectrum`, whose poles begin at arg w = π/`exponent`, with a first panel up to `first` and further
-    /// ones at least up to `last`.
+    /// The contour of `spectrum`, whose poles begin at arg w = π/`exponent`, with a first panel up to `first` and
+    /// further ones to at least `last`.
     pub(super) fn new(kind: Kind, exponent: f64, first: f64, last: f64, spectrum: impl Fn(Complex) -> Complex) -> Self {
         let angle = ray_angle(exponent);
-        let direction = Complex::polar(1.0, angle);
+        let direction = polar(1.0, angle);
         let start = match kind {
             Kind::Sum { start } => start,
             Kind::Integral => 0.0,
@@ -151,8 +129,8 @@ impl Contour {
         let (nodes, gauss_weights) = gauss_legendre(node_count(exponent));
         // Weights of both exponentials at the point t, for a quadrature weight dt.
         let weights = |t: f64, dt: f64| {
-            let w = Complex::new(start, 0.0) + direction.scaled(t);
-            let plain = spectrum(w) * direction.scaled(dt);
+            let w = Complex::new(start, 0.0) + direction.scale(t);
+            let plain = spectrum(w) * direction.scale(dt);
             match kind {
                 Kind::Integral => (plain, Complex::default()),
                 Kind::Sum { .. } => {
@@ -161,9 +139,9 @@ impl Contour {
                     if decay > 2.0 * DECAY_LIMIT {
                         return (plain, Complex::default());
                     }
-                    let turn = Complex::new(-decay, 2.0 * PI * direction.re * t).exponential();
-                    let direct = plain * (Complex::new(1.0, 0.0) + turn).reciprocal();
-                    (direct, direct * turn.scaled(-1.0))
+                    let turn = exponential(Complex::new(-decay, 2.0 * PI * direction.re * t));
+                    let direct = plain * reciprocal(Complex::new(1.0, 0.0) + turn);
+                    (direct, direct * turn.scale(-1.0))
                 }
             }
         };
@@ -214,13 +192,13 @@ impl Contour {
         Contour { start, direction, first, units, direct, image, moments }
     }
 
-    /// Twice the real part of ∫ S e^(2πiw)/(1 − e^(2πiw)) dw: what the sum over S has more than the integral.
+    /// Twice the real part of ∫ S e^(2πiw)/(1 − e^(2πiw)) dw: the difference between the sum over S and the integral.
     pub(super) fn sum_minus_integral(&self) -> f64 {
         // Beyond the panels of `image` the exponential is below e^(−80).
         2.0 * self.moments.last().expect("there is a first panel").image[0].re
     }
 
-    /// The largest θ the moments of the first panel are good for.
+    /// The largest θ for which the moments of the first panel are valid.
     pub(super) fn largest_angle(&self) -> f64 {
         MOMENT_REACH / self.first
     }
@@ -234,19 +212,19 @@ impl Contour {
         let (mut direct, mut direct_slope) = polynomial::<SLOPE>(&moments.direct, step);
         let (mut image, mut image_slope) = polynomial::<SLOPE>(&moments.image, step);
         let far = self.beyond::<SLOPE>(doublings, step);
-        direct = direct + far.direct;
-        image = image + far.image;
-        let phase = Complex::polar(1.0, self.start * angle);
-        let value = (phase * direct).re + (phase.conjugate() * image).re;
+        direct += far.direct;
+        image += far.image;
+        let phase = polar(1.0, self.start * angle);
+        let value = (phase * direct).re + (phase.conj() * image).re;
         if !SLOPE {
             return (value, 0.0);
         }
         // d/dθ e^(τθ) = τ e^(τθ), τ = i e^(iα) t, and −τ for the image.
-        let turned = Complex::new(-self.direction.im, self.direction.re).scaled(top);
-        direct_slope = direct_slope.scaled(top) + turned * far.direct_slope + Complex::new(0.0, self.start) * direct;
+        let turned = Complex::new(-self.direction.im, self.direction.re).scale(top);
+        direct_slope = direct_slope.scale(top) + turned * far.direct_slope + Complex::new(0.0, self.start) * direct;
         image_slope =
-            image_slope.scaled(top) + turned.scaled(-1.0) * far.image_slope + Complex::new(0.0, -self.start) * image;
-        (value, (phase * direct_slope).re + (phase.conjugate() * image_slope).re)
+            image_slope.scale(top) + turned.scale(-1.0) * far.image_slope + Complex::new(0.0, -self.start) * image;
+        (value, (phase * direct_slope).re + (phase.conj() * image_slope).re)
     }
 
     /// The panels after number `doublings`, the first of which begins at tθ = `step`.
@@ -263,13 +241,13 @@ impl Contour {
             for panel in doublings..doublings + panel_count {
                 let weight = &self.direct[panel * chunk_count + chunk];
                 let distance: [f64; LANES] = std::array::from_fn(|lane| scale * unit[lane]);
-                let product = product(weight, &exponential);
-                accumulate::<SLOPE>(&mut sums, 0, &product, &distance);
+                let weighted = product(weight, &exponential);
+                accumulate::<SLOPE>(&mut sums, 0, &weighted, &distance);
                 if let Some(weight) = self.image.get(panel * chunk_count + chunk) {
-                    let product = self::product(weight, &reciprocals(&exponential));
-                    accumulate::<SLOPE>(&mut sums, 2, &product, &distance);
+                    let weighted = product(weight, &reciprocals(&exponential));
+                    accumulate::<SLOPE>(&mut sums, 2, &weighted, &distance);
                 }
-                exponential = self::product(&exponential, &exponential);
+                exponential = product(&exponential, &exponential);
                 scale *= 2.0;
             }
         }
@@ -280,7 +258,7 @@ impl Contour {
     }
 }
 
-/// What the panels beyond the moments give.
+/// The contribution of the panels beyond the moments.
 struct Beyond {
     direct: Complex,
     direct_slope: Complex,
@@ -289,11 +267,11 @@ struct Beyond {
 }
 
 impl Moments {
-    /// Adds a node at t = `place` t_top, as if τ were t: [`turned`](Self::turned) puts that right.
+    /// Adds a node at t = `place` t_top, as if τ were t; [`turned`](Self::turned) corrects this.
     fn add(&mut self, direct: Complex, image: Complex, place: f64) {
         let mut power = 1.0;
         for n in 0..MOMENT_COUNT {
-            self.direct[n] = self.direct[n] + direct.scaled(power * INVERSE_FACTORIALS[n]);
+            self.direct[n] += direct.scale(power * INVERSE_FACTORIALS[n]);
             power *= place;
         }
         if image == Complex::default() {
@@ -301,18 +279,18 @@ impl Moments {
         }
         let mut power = 1.0;
         for n in 0..MOMENT_COUNT {
-            self.image[n] = self.image[n] + image.scaled(power * INVERSE_FACTORIALS[n]);
+            self.image[n] += image.scale(power * INVERSE_FACTORIALS[n]);
             power *= -place;
         }
     }
 
-    /// With τ = `direction` t.
+    /// The contribution for τ = `direction` t.
     fn turned(&self, direction: Complex) -> Self {
         let (mut moments, mut power) = (*self, Complex::new(1.0, 0.0));
         for n in 0..MOMENT_COUNT {
-            moments.direct[n] = moments.direct[n] * power;
-            moments.image[n] = moments.image[n] * power;
-            power = power * direction;
+            moments.direct[n] *= power;
+            moments.image[n] *= power;
+            power *= direction;
         }
         moments
     }
@@ -321,8 +299,8 @@ impl Moments {
     fn halve(&mut self) {
         let mut factor = 1.0;
         for n in 0..MOMENT_COUNT {
-            self.direct[n] = self.direct[n].scaled(factor);
-            self.image[n] = self.image[n].scaled(factor);
+            self.direct[n] = self.direct[n].scale(factor);
+            self.image[n] = self.image[n].scale(factor);
             factor *= 0.5;
         }
     }
@@ -333,83 +311,37 @@ fn polynomial<const SLOPE: bool>(coefficients: &[Complex; MOMENT_COUNT], x: f64)
     let (mut value, mut slope) = (Complex::default(), Complex::default());
     for &coefficient in coefficients.iter().rev() {
         if SLOPE {
-            slope = slope.scaled(x) + value;
+            slope = slope.scale(x) + value;
         }
-        value = value.scaled(x) + coefficient;
+        value = value.scale(x) + coefficient;
     }
     (value, slope)
-}
-
-/// `e^((decay + i turn) unit)`, by the power series.
-#[inline(always)]
-fn exponentials(unit: &[f64; LANES], decay: f64, turn: f64) -> Lanes {
-    let mut z = Lanes::default();
-    let mut value = Lanes { re: [INVERSE_FACTORIALS[EXPONENTIAL_DEGREE]; LANES], im: [0.0; LANES] };
-    for lane in 0..LANES {
-        (z.re[lane], z.im[lane]) = (decay * unit[lane], turn * unit[lane]);
-    }
-    for n in (0..EXPONENTIAL_DEGREE).rev() {
-        value = product(&value, &z);
-        for lane in 0..LANES {
-            value.re[lane] += INVERSE_FACTORIALS[n];
-        }
-    }
-    value
-}
-
-#[inline(always)]
-fn product(a: &Lanes, b: &Lanes) -> Lanes {
-    Lanes {
-        re: std::array::from_fn(|lane| a.re[lane] * b.re[lane] - a.im[lane] * b.im[lane]),
-        im: std::array::from_fn(|lane| a.re[lane] * b.im[lane] + a.im[lane] * b.re[lane]),
-    }
-}
-
-#[inline(always)]
-fn reciprocals(a: &Lanes) -> Lanes {
-    let inverse: [f64; LANES] = std::array::from_fn(|lane| 1.0 / (a.re[lane] * a.re[lane] + a.im[lane] * a.im[lane]));
-    Lanes {
-        re: std::array::from_fn(|lane| a.re[lane] * inverse[lane]),
-        im: std::array::from_fn(|lane| -a.im[lane] * inverse[lane]),
-    }
-}
-
-/// Adds a product to the sum number `place`, and times the distance to the next.
-#[inline(always)]
-fn accumulate<const SLOPE: bool>(sums: &mut [Lanes; 4], place: usize, product: &Lanes, distance: &[f64; LANES]) {
-    for lane in 0..LANES {
-        sums[place].re[lane] += product.re[lane];
-        sums[place].im[lane] += product.im[lane];
-        if SLOPE {
-            sums[place + 1].re[lane] += distance[lane] * product.re[lane];
-            sums[place + 1].im[lane] += distance[lane] * product.im[lane];
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::reference::lorentzian::complex::modulus;
     use crate::reference::lorentzian::continuum::last_panel;
     use crate::reference::lorentzian::{CONTOUR_START, FIRST_PANEL, Lorentzian, complex_spectrum};
 
     /// Largest modulus of the integrand, both exponentials, on the ellipse around a panel, θ = 0 or π.
     fn largest(crossover: f64, exponent: f64, from: f64, to: f64, rho: f64) -> f64 {
-        let direction = Complex::polar(1.0, ray_angle(exponent));
+        let direction = polar(1.0, ray_angle(exponent));
         let (centre, half) = (0.5 * (from + to), 0.5 * (to - from));
         let mut largest = 0.0_f64;
         for step in 0..720 {
-            let around = Complex::polar(1.0, PI * f64::from(step) / 360.0);
+            let around = polar(1.0, PI * f64::from(step) / 360.0);
             let t = Complex::new(
                 centre + half * 0.5 * (rho + 1.0 / rho) * around.re,
                 half * 0.5 * (rho - 1.0 / rho) * around.im,
             );
             let w = Complex::new(CONTOUR_START, 0.0) + direction * t;
-            let modulus = |angle: f64| (-angle * w.im).exp();
-            let both = (modulus(0.0) + modulus(2.0 * PI)).max(2.0 * modulus(PI));
-            let turn = Complex::new(-2.0 * PI * w.im, 2.0 * PI * w.re).exponential();
-            let kernel = (Complex::new(1.0, 0.0) + turn.scaled(-1.0)).modulus();
-            let here = both * complex_spectrum(crossover, exponent, w).modulus() / kernel;
+            let decay = |angle: f64| (-angle * w.im).exp();
+            let both = (decay(0.0) + decay(2.0 * PI)).max(2.0 * decay(PI));
+            let turn = exponential(Complex::new(-2.0 * PI * w.im, 2.0 * PI * w.re));
+            let kernel = modulus(Complex::new(1.0, 0.0) + turn.scale(-1.0));
+            let here = both * modulus(complex_spectrum(crossover, exponent, w)) / kernel;
             assert!(here.is_finite());
             largest = largest.max(here);
         }
@@ -418,7 +350,8 @@ mod tests {
 
     #[test]
     fn what_the_quadrature_leaves_out_is_below_rounding() {
-        // Chosen for 2⁻⁵⁴ where the bounds of S and of the denominator meet, which they do nowhere.
+        // Chosen for 2⁻⁵⁴ if the bounds of S and of the denominator were reached at the same point, which never
+        // happens.
         for exponent in [1.01, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 30.0, 100.0] {
             let ((beta, rho), count) = (ellipse(exponent), node_count(exponent));
             let half_sum = (5.0 - 4.0 * (2.0 * beta).cos()).sqrt();
@@ -440,7 +373,7 @@ mod tests {
 
     #[test]
     fn weights_are_not_much_larger_than_what_they_sum_to() {
-        // What rounding is multiplied by. The smallest angles see all panels.
+        // The factor of the rounding. The smallest angles use all panels.
         for exponent in [1.01, 1.2, 1.5, 2.0, 3.0, 4.0, 6.0, 10.0, 31.0, 100.0] {
             for crossover in [0.0, 0.4, 1.0, 1.5, 1.7, 3.0, 10.0, 1e3, 1e6] {
                 let spectrum = |w| complex_spectrum(crossover, exponent, w);
@@ -449,7 +382,7 @@ mod tests {
                 let panels = contour.direct.iter().chain(&contour.image);
                 let sum: f64 = panels.flat_map(|lanes| lanes.re.iter().zip(&lanes.im)).map(|(x, y)| x.hypot(*y)).sum();
                 let first = &contour.moments[0];
-                let sum = sum + first.direct[0].modulus() + first.image[0].modulus();
+                let sum = sum + modulus(first.direct[0]) + modulus(first.image[0]);
                 let total = Lorentzian::of(crossover, exponent).expect("valid").total();
                 let most = 2.0 * total / libm::sin(ray_angle(exponent));
                 assert!(sum < most, "s = {exponent}, f† = {crossover}: {} {}", sum / total, most / total);

@@ -1,9 +1,9 @@
 //! Where a correlation function first falls to a threshold.
 
-/// Where a correlation function first falls to a threshold, or that it never does.
+/// Where a correlation function first falls to a threshold, or the result that it never does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Crossing {
-    /// At this angle \[rad\] (f†θ \[1\] of the limit f† → ∞). 0 if it is below the smallest positive number.
+    /// At this angle \[rad\] (f†θ \[1\] in the limit f† → ∞). 0 if it is below the smallest positive number.
     At(f64),
     /// Nowhere: the threshold is below the lowest value.
     Never {
@@ -13,7 +13,7 @@ pub enum Crossing {
 }
 
 impl Crossing {
-    /// The angle \[rad\], or f†θ \[1\] of the continuum, if there is one.
+    /// The angle \[rad\], or f†θ \[1\] in the continuum limit, if there is one.
     pub fn angle(self) -> Option<f64> {
         match self {
             Crossing::At(angle) => Some(angle),
@@ -22,7 +22,7 @@ impl Crossing {
     }
 }
 
-/// The fall to `threshold` < 1 of a curve with value 1 at 0 that never rises, looked for on an ascending grid.
+/// The crossing of `threshold` < 1 for a curve that starts at 1 and never rises, bracketed on an ascending grid.
 pub(super) fn only_crossing(
     curve: &impl Fn(f64) -> (f64, f64),
     threshold: f64,
@@ -39,9 +39,10 @@ pub(super) fn only_crossing(
     Crossing::Never { lowest }
 }
 
-/// The first fall to `threshold` < 1 of a curve with value 1 at 0, looked for on a grid.
+/// The first crossing of `threshold` < 1 for a curve that starts at 1, bracketed on a grid.
 ///
-/// The curve gives value and slope. Between two points of `grid`, ascending and positive, it must have at most one minimum.
+/// The curve returns value and slope. Between two points of `grid`, ascending and positive, it must have at most one
+/// minimum.
 pub(super) fn first_crossing(
     curve: &impl Fn(f64) -> (f64, f64),
     threshold: f64,
@@ -59,7 +60,7 @@ pub(super) fn first_crossing(
         if end.1 <= threshold {
             return Crossing::At(root(curve, threshold, before, end.0));
         }
-        // NaN must not be dropped.
+        // NaN must be kept.
         if end.1 < lowest || end.1.is_nan() {
             lowest = end.1;
         }
@@ -83,12 +84,12 @@ fn minimum(curve: &impl Fn(f64) -> (f64, f64), mut low: f64, mut high: f64) -> f
     }
 }
 
-/// Where the curve is `threshold`, above it at `low` ≥ 0 and not above it at `high` > 0: Newton's method inside the
-/// bracket, whose geometric mean is taken where Newton leaves it or is slow.
+/// Where the curve is `threshold`, above it at `low` ≥ 0 and not above it at `high` > 0. Newton's method inside the
+/// bracket, replaced by the geometric mean of the bracket if a Newton step leaves it or is slow.
 fn root(curve: &impl Fn(f64) -> (f64, f64), threshold: f64, low: f64, high: f64) -> f64 {
     let (mut low, mut high) = (low, high);
     if low == 0.0 {
-        // The curve may rise as any power of the angle: look for the bracket among powers of two.
+        // The curve may rise as any power of the angle: the bracket is found among powers of two.
         let mut halvings = 1.0;
         loop {
             low = high * libm::exp2(-halvings);
@@ -104,7 +105,7 @@ fn root(curve: &impl Fn(f64) -> (f64, f64), threshold: f64, low: f64, high: f64)
     }
     let mut angle = low.sqrt() * high.sqrt();
     let mut last_step = f64::INFINITY;
-    // Every second step at least halves the logarithm of the bracket: 10 for the logarithm, 53 for the digits.
+    // Every second step at least halves the logarithm of the bracket: 10 steps for the logarithm, 53 for the digits.
     for _ in 0..200 {
         let (value, slope) = curve(angle);
         if value > threshold {
@@ -129,10 +130,10 @@ fn root(curve: &impl Fn(f64) -> (f64, f64), threshold: f64, low: f64, high: f64)
     angle
 }
 
-/// Step of the search for crossings where G may oscillate, in units of 1/max(1, f†): the shortest period is 2π.
+/// Step of the search for crossings of an oscillating G, in units of 1/max(1, f†): the shortest period is 2π.
 pub(super) const SCAN_STEP: f64 = 0.2;
 
-/// Where oscillations have died to e^(−45), in the same units: the first pole gives e^(−f†θ sin(π/s)).
+/// Where oscillations are below e^(−45), in the same units: the first pole gives e^(−f†θ sin(π/s)).
 pub(super) fn scan_end(exponent: f64) -> f64 {
     45.0 / libm::sin(std::f64::consts::PI / exponent)
 }

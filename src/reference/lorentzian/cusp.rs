@@ -1,4 +1,4 @@
-//! `Cusp`: how the correlation function begins at θ = 0, where S falls too slowly for a power series.
+//! `Cusp`: the correlation function near θ = 0, where S falls too slowly for a power series.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -12,17 +12,17 @@ pub(super) const CUSP_BELOW: f64 = 1e-10;
 /// ```
 ///
 /// # Source
-/// S = Σ (−1)^(m+1) A (f†/f)^(ms), each with Σ f^(−a) cos fθ = κ(a) θ^(a−1) + Σ (−1)^j ζ(a−2j) θ^(2j)/(2j)!
-/// (DLMF 25.12.12), the sum over m of the first terms being an entire function of f†θ.
+/// S = Σ (−1)^(m+1) A (f†/f)^(ms), each term with Σ f^(−a) cos fθ = κ(a) θ^(a−1) + Σ (−1)^j ζ(a−2j) θ^(2j)/(2j)! (DLMF
+/// 25.12.12). The sum over m of the first terms is an entire function of f†θ.
 ///
 /// # Accuracy
-/// In the value, terms of order (f†θ)^1.8 and higher are left out: below 10⁻¹⁸ of Σ S.
+/// In the value, terms of order (f†θ)^1.8 and higher are neglected: below 10⁻¹⁸ of Σ S.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cusp {
     exponent: f64,
     /// max(1, f†): the terms are powers of scale·θ.
     scale: f64,
-    /// What stands before κ(ms) (scale θ)^(ms−1), m = 1 and 2.
+    /// The factors of κ(ms) (scale θ)^(ms−1), m = 1 and 2.
     factors: [f64; 2],
 }
 
@@ -31,12 +31,12 @@ impl Cusp {
         Cusp { exponent, scale, factors }
     }
 
-    /// Whether the expansion stands for the sum at this angle.
+    /// Whether the expansion is valid at this angle.
     pub(super) fn holds(&self, angle: f64) -> bool {
         angle * self.scale < CUSP_BELOW
     }
 
-    /// The largest angle it stands for the sum at.
+    /// The largest angle at which the expansion is valid.
     pub(super) fn reach(&self) -> f64 {
         CUSP_BELOW / self.scale
     }
@@ -47,14 +47,14 @@ impl Cusp {
         self.terms(2.8).map(|(factor, a)| factor * kappa(a) * libm::pow(x, a - 1.0)).sum()
     }
 
-    /// The derivative, given that at [`reach`](Self::reach): the part that is not a cusp is proportional to θ.
+    /// The derivative, from its value at [`reach`](Self::reach): the regular part is proportional to θ.
     pub(super) fn slope(&self, angle: f64, slope_at_reach: f64) -> f64 {
         let (x, end) = (self.scale * angle, CUSP_BELOW);
         let share = x / end;
         let cusps: f64 = self
             .terms(4.5)
             .map(|(factor, a)| {
-                // κ(a) [x^(a−2) − x end^(a−3)], finite at a = 3, where κ is not.
+                // κ(a) [x^(a−2) − x end^(a−3)], finite at a = 3, where κ diverges.
                 let difference = if (a - 3.0).abs() < 0.1 {
                     let rise = (a - 3.0) * libm::log(share);
                     // cos(πa/2) = sin(π(a−3)/2).
@@ -73,7 +73,7 @@ impl Cusp {
         share * slope_at_reach + cusps
     }
 
-    /// Factor and a = ms, as far as a is below `limit`.
+    /// Factor and a = ms, for a below `limit`.
     fn terms(&self, limit: f64) -> impl Iterator<Item = (f64, f64)> {
         [(self.factors[0], self.exponent), (self.factors[1], 2.0 * self.exponent)]
             .into_iter()
@@ -83,6 +83,6 @@ impl Cusp {
 
 /// `κ(a) = π/(2 Γ(a) cos(πa/2))`.
 fn kappa(a: f64) -> f64 {
-    // cos(πa/2) = −sin(π(a−1)/2), which keeps the digits next to a = 1.
+    // cos(πa/2) = −sin(π(a−1)/2), which is accurate near a = 1.
     -PI / (2.0 * libm::tgamma(a) * libm::sin(FRAC_PI_2 * (a - 1.0)))
 }

@@ -1,8 +1,8 @@
-//! [`LorentzianError`]: why a Lorentzian, or an angle of one, could not be had.
+//! [`LorentzianError`]: why a Lorentzian, or an angle of one, could not be computed.
 
 use thiserror::Error;
 
-/// Exponents are taken up to here: nodes and time grow with s, and S is a step long before.
+/// Largest exponent: nodes and time grow with s, and S is nearly a step long before.
 pub const LARGEST_EXPONENT: f64 = 100.0;
 
 pub(super) fn check_exponent(exponent: f64) -> Result<(), LorentzianError> {
@@ -17,7 +17,7 @@ pub(super) fn check_threshold(threshold: f64) -> Result<(), LorentzianError> {
     if threshold < 1.0 { Ok(()) } else { Err(LorentzianError::ThresholdNotBelowOne { threshold }) }
 }
 
-/// Why a Lorentzian, or an angle of one, could not be had.
+/// Why a Lorentzian, or an angle of one, could not be computed.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum LorentzianError {
@@ -27,13 +27,13 @@ pub enum LorentzianError {
         /// The frequency given \[1\].
         crossover: f64,
     },
-    /// The exponent is 1 or less, where Σ S diverges, or too large, or not a number.
+    /// The exponent is 1 or less, where Σ S diverges, or too large, or not finite.
     #[error("the exponent must be above 1 and at most {LARGEST_EXPONENT}, it is {exponent}")]
     ExponentOutOfRange {
         /// The exponent given \[1\].
         exponent: f64,
     },
-    /// A correlation function that is 1 at θ = 0 does not fall to 1 or more.
+    /// The threshold is not below 1, the value of G at θ = 0.
     #[error("the threshold must be below 1, it is {threshold}")]
     ThresholdNotBelowOne {
         /// The threshold given \[1\].

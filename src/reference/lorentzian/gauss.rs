@@ -1,8 +1,9 @@
-//! Nodes and weights of Gauss–Legendre quadrature, any count.
+//! Nodes and weights of Gauss–Legendre quadrature for any number of nodes.
 
 use std::f64::consts::PI;
 
-/// Nodes in (−1, 1), ascending, and weights: `∫ f dx = Σ weight f(node)`, exact for polynomials up to degree 2·count − 1.
+/// Nodes in (−1, 1), ascending, and weights: `∫ f dx = Σ weight f(node)`, exact for polynomials up to degree 2·count −
+/// 1.
 ///
 /// Newton's method on the Legendre polynomial from the estimate `cos(π (k − 1/4)/(count + 1/2))`; the weight is
 /// `2 / ((1 − x²) P'(x)²)`.
@@ -13,8 +14,8 @@ pub(super) fn gauss_legendre(count: usize) -> (Vec<f64>, Vec<f64>) {
     let (mut nodes, mut weights) = (vec![0.0; count], vec![0.0; count]);
     for index in 0..count.div_ceil(2) {
         let mut x = libm::cos(PI * (index as f64 + 0.75) / (count as f64 + 0.5));
-        // The estimate is off by O(count⁻²) of the spacing and every step squares the error: four are enough from 4 to
-        // 1000 nodes, the fifth is the last bit.
+        // The estimate has an error of O(count⁻²) of the spacing, and every step squares it: four steps suffice from 4
+        // to 1000 nodes; the fifth fixes the last bit.
         for _ in 0..5 {
             let (value, slope) = legendre(count, x);
             x -= value / slope;

@@ -9,9 +9,8 @@
 //! about f† and falls as f^(−s) beyond. The limit f† → 0 is scale-free, S = f^(−s) ([`Lorentzian::scale_free`]); in the
 //! limit f† → ∞ G depends on f†θ alone ([`ContinuumLorentzian`]).
 //!
-//! The sum converges slowly, as f^(1−s) at θ = 0. It is taken as an integral along a ray in the complex plane
-//! (`contour.rs` has the formula, the quadrature and the bound of what is left out), so that the cost depends neither on
-//! f† nor on θ.
+//! The sum converges slowly, as f^(1−s) at θ = 0. It is computed as an integral along a ray in the complex plane, at a
+//! cost that depends neither on f† nor on θ (`contour.rs` has the formula, the quadrature and its error bound).
 
 mod complex;
 mod continuum;
@@ -20,6 +19,7 @@ mod crossing;
 mod cusp;
 mod error;
 mod gauss;
+mod lanes;
 mod tail_integral;
 
 use std::f64::consts::PI;
@@ -28,7 +28,7 @@ pub use continuum::ContinuumLorentzian;
 pub use crossing::Crossing;
 pub use error::{LARGEST_EXPONENT, LorentzianError};
 
-use crate::reference::lorentzian::complex::Complex;
+use crate::reference::lorentzian::complex::{Complex, reciprocal};
 use crate::reference::lorentzian::continuum::last_panel;
 use crate::reference::lorentzian::contour::{Contour, Kind};
 use crate::reference::lorentzian::crossing::{SCAN_STEP, first_crossing, only_crossing, scan_end};
@@ -39,13 +39,13 @@ use crate::vector::two_product;
 /// The exponent s of the angular power spectrum of the displacements.
 pub const USUAL_EXPONENT: f64 = 1.5;
 
-/// Where the contour leaves the real axis; f = 1 is taken by itself, so that S is nowhere larger than S(1) on the way.
+/// Start of the contour on the real axis; f = 1 is added separately, so that S on the contour does not exceed S(1).
 const CONTOUR_START: f64 = 1.5;
 
 /// First panel: a quarter of the distance to the nearest integer.
 const FIRST_PANEL: f64 = 0.125;
 
-/// Beyond this f† the limit f† → ∞ stands for G: they differ by 1/(2 Σ S), less than 2⁻⁵⁶.
+/// Above this f† the limit f† → ∞ is used: the difference is 1/(2 Σ S), less than 2⁻⁵⁶.
 const CONTINUUM_FROM: f64 = 72_057_594_037_927_936.0;
 
 /// 2π as the nearest number and the rest.
@@ -57,27 +57,25 @@ const TURN: (f64, f64) = (2.0 * PI, 2.449_293_598_294_706_4e-16);
 /// S(f) = (1 + f†^s) / (f†^s + f^s)        G(θ) = Σ_(f ≥ 1) S(f) cos fθ / Σ_(f ≥ 1) S(f)
 /// ```
 ///
-/// G is even and 2π-periodic, G(0) = 1. For s ≤ 2 it falls and is convex on [0, π], because
-/// `Σ S cos fθ = −A/2 + ∫_0^∞ K(t) cosh((π−θ)t)/sinh(πt) dt` with K ≥ 0; for s > 2 it may oscillate.
+/// G is even and 2π-periodic, G(0) = 1. For s ≤ 2 it falls and is convex on [0, π], because `Σ S cos fθ = −A/2 + ∫_0^∞
+/// K(t) cosh((π−θ)t)/sinh(πt) dt` with K ≥ 0. For s > 2 it may oscillate.
 ///
 /// # Units
 /// f and f† are numbers of waves around the circle, θ in rad; S, G without unit.
 ///
 /// # Source
 /// S: Fu, Jin, Pan, Procaccia, Long-range angular correlations of particle displacements at a plastic-to-elastic
-/// transition in jammed amorphous solids, supplement. The integral: DLMF 2.10.2 (Abel–Plana) with its contour turned.
+/// transition in jammed amorphous solids, supplement. The integral: DLMF 2.10.2 (Abel–Plana) with a rotated contour.
 ///
 /// # Accuracy
-/// Absolute error of G, and relative error of Σ S, below (8 s + 14)·2⁻⁵²/sin(π/2s), 6.7·10⁻¹⁵ at s = 1.5. Largest found over
-/// the rows of `fixtures/reference/lorentzian*.json`, s from 1.05 to 31, f† from 10⁻⁶ to 10⁶, θ from 10⁻⁹ to π:
-/// 1.8·10⁻¹⁵ in G, 5.6·10⁻¹⁶ in Σ S. In units of m·max(1, (mθ)^(s−2)), m = max(1, f†), the derivative has four times the
-/// error allowed for G; found 2.1·10⁻¹⁵.
+/// Absolute error of G, and relative error of Σ S, below (8 s + 14)·2⁻⁵²/sin(π/2s), 6.7·10⁻¹⁵ at s = 1.5. Largest
+/// errors found for the rows of `fixtures/reference/lorentzian*.json`, s from 1.05 to 31, f† from 10⁻⁶ to 10⁶, θ from
+/// 10⁻⁹ to π: 1.8·10⁻¹⁵ in G, 5.6·10⁻¹⁶ in Σ S. In units of m·max(1, (mθ)^(s−2)), m = max(1, f†), the bound for the
+/// derivative is four times that for G; largest found: 2.1·10⁻¹⁵.
 ///
 /// # Cost
-/// The same for every θ and f†. G takes 0.4 µs at s = 1.5, 0.7 µs at 4, 3 to 5 µs at 30; G' 1.8 to 2.1 times that; setting up 0.12 to
-/// 0.16 ms at s = 1.5, 0.16 to 0.24 ms at 4, 0.9 to 1.4 ms at 30 (`cargo bench --bench lorentzian`, f† = 5 and 10⁶, least of four runs
-/// on two shared cores). Memory: 0.7 kB a panel at s = 1.5, 42
-/// panels of 16 nodes for f† ≤ 1, 62 at f† = 10⁶; 28 nodes at s = 4.
+/// Independent of θ and f†; grows with s (`cargo bench --bench lorentzian`). Memory: 0.7 kB per panel at s = 1.5, with
+/// 42 panels of 16 nodes for f† ≤ 1 and 62 at f† = 10⁶; 28 nodes at s = 4.
 ///
 /// # Example
 /// ```
@@ -121,7 +119,7 @@ impl Lorentzian {
     /// The limit f† → 0: S = f^(−s), G = Re Li_s(e^(iθ))/ζ(s).
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// See [`new`](Self::new).
     pub fn scale_free(exponent: f64) -> Result<Self, LorentzianError> {
         Self::of(0.0, exponent)
     }
@@ -138,7 +136,7 @@ impl Lorentzian {
         let kind = Kind::Sum { start: CONTOUR_START };
         let contour = Contour::new(kind, exponent, FIRST_PANEL, last_panel(exponent, scale), spectrum);
         let power = libm::pow(crossover / scale, exponent);
-        // A in front of 1/(power + (f/scale)^s), which is S for f† < 1, and A otherwise.
+        // The factor of 1/(power + (f/scale)^s), which is S for f† < 1, and A otherwise.
         let front = power + libm::pow(scale, -exponent);
         let integral = if crossover <= CONTOUR_START {
             (1.0 + libm::pow(crossover, exponent)) * tail_integral::scaled_beyond(exponent, crossover, CONTOUR_START)
@@ -182,12 +180,12 @@ impl Lorentzian {
         self.total
     }
 
-    /// G(θ) \[1\] at any angle \[rad\]; NaN where the angle is not finite.
+    /// G(θ) \[1\] at any angle \[rad\]; NaN if the angle is not finite.
     pub fn correlation(&self, angle: f64) -> f64 {
         self.evaluate::<false>(angle).0
     }
 
-    /// G'(θ) \[1/rad\], odd. At θ = 0 (modulo 2π) it is NaN for s ≤ 2, where G has a cusp or a kink.
+    /// G'(θ) \[1/rad\], odd. NaN at θ = 0 (modulo 2π) for s ≤ 2, where G has a cusp or a kink.
     pub fn derivative(&self, angle: f64) -> f64 {
         self.evaluate::<true>(angle).1
     }
@@ -197,12 +195,12 @@ impl Lorentzian {
         -self.correlation(PI)
     }
 
-    /// θ*: the first angle in (0, π] at which G falls to `threshold`, or that it never does.
+    /// θ*: the first angle in (0, π] at which G falls to `threshold`, or the result that it never does.
     ///
-    /// For s > 2, where G may have several minima, they are looked for on a grid of 1/30 of the shortest period.
+    /// For s > 2 G may have several minima; they are bracketed on a grid of 1/30 of the shortest period.
     ///
     /// # Cost
-    /// Some ten evaluations of G and G'; for s > 2 up to 225/sin(π/s) before.
+    /// About ten evaluations of G and G'; for s > 2 up to 225/sin(π/s) additional ones.
     ///
     /// # Errors
     /// A threshold that is not below 1.
@@ -215,7 +213,7 @@ impl Lorentzian {
         let scale = self.crossover.max(1.0);
         let end = if self.crossover <= 1.0 { PI } else { PI.min(scan_end(self.exponent) / scale) };
         let step = SCAN_STEP / scale;
-        // Beyond the end only the integral over K is left, K of one sign, so that G is monotonic.
+        // Beyond the end only the integral over K is left; K has one sign, so G is monotonic.
         let grid = (1_u32..).map(|n| f64::from(n) * step).take_while(|&angle| angle < end).chain([PI]);
         Ok(first_crossing(&curve, threshold, grid))
     }
@@ -255,7 +253,7 @@ fn complex_spectrum(crossover: f64, exponent: f64, w: Complex) -> Complex {
     let scale = crossover.max(1.0);
     let power = libm::pow(crossover / scale, exponent);
     let front = power + libm::pow(scale, -exponent);
-    (Complex::new(power, 0.0) + w.scaled(1.0 / scale).power(exponent)).reciprocal().scaled(front)
+    reciprocal(Complex::new(power, 0.0) + complex::power(w.scale(1.0 / scale), exponent)).scale(front)
 }
 
 /// The angle in [0, π] with the same G, and the sign of the derivative there; none if the angle is not finite.

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 /// `∫_0^∞ du/(1 + u^s) = (π/s)/sin(π/s)`, s > 1.
 pub(super) fn whole(exponent: f64) -> f64 {
-    // sin(π/s) = sin(π(s−1)/s), the smaller argument keeps the digits.
+    // sin(π/s) = sin(π(s−1)/s); the smaller argument is more accurate.
     let angle = PI * f64::min(1.0, exponent - 1.0) / exponent;
     PI / exponent / libm::sin(angle)
 }
@@ -17,7 +17,7 @@ pub(super) fn beyond(exponent: f64, from: f64) -> f64 {
     whole(exponent) - from / (1.0 + power) * series(1.0 + 1.0 / exponent, power / (1.0 + power))
 }
 
-/// `∫_x^∞ df/(c^s + f^s)` for c ≤ x, c = 0 included: the same with u → 1/u.
+/// `∫_x^∞ df/(c^s + f^s)` for c ≤ x, including c = 0: the same with u → 1/u.
 pub(super) fn scaled_beyond(exponent: f64, crossover: f64, from: f64) -> f64 {
     let power = libm::pow(crossover / from, exponent);
     let front = libm::pow(from, 1.0 - exponent) / (exponent - 1.0);

@@ -32,8 +32,8 @@ pub struct NonlinearConjugateGradients {
     pub step_limit: usize,
     /// Longest displacement of a disk in one step over its radius \[1\]. Changes results far from a minimum.
     pub largest_step: f64,
-    /// Slope along a direction, over the initial slope, below which a point counts as the lowest \[1\]. Changes speed: 0.03 to
-    /// 0.1 take the fewest evaluations.
+    /// Slope along a direction, over the initial slope, below which a point counts as the lowest \[1\]. Changes speed:
+    /// 0.03 to 0.1 take the fewest evaluations.
     pub flatness: f64,
 }
 

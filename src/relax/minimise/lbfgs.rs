@@ -9,8 +9,8 @@
 //! positive curvature y·d is left out, so H stays positive definite and s points downhill.
 //!
 //! # Source
-//! Nocedal (1980), Math. Comput. 35, 773; Liu, Nocedal (1989), Math. Program. 45, 503; Nocedal, Wright (2006), Numerical
-//! Optimization, 2nd ed., algorithm 7.4 and eq. (7.20).
+//! Nocedal (1980), Math. Comput. 35, 773; Liu, Nocedal (1989), Math. Program. 45, 503; Nocedal, Wright (2006),
+//! Numerical Optimization, 2nd ed., algorithm 7.4 and eq. (7.20).
 
 use serde::{Deserialize, Serialize};
 
@@ -33,10 +33,11 @@ pub struct QuasiNewton {
     pub step_limit: usize,
     /// Longest displacement of a disk in one step over its radius \[1\]. Changes results far from a minimum.
     pub largest_step: f64,
-    /// Number of stored steps, m. Changes speed: more steps save a few evaluations and cost 4 m n multiplications a step.
+    /// Number of stored steps, m. Changes speed: more steps save a few evaluations and cost 4 m n multiplications a
+    /// step.
     pub memory: usize,
-    /// Slope along a direction, over the initial slope, below which a point is accepted \[1\]. Changes speed: with 0.9 most
-    /// directions take one evaluation. With 0.3 they take two, and there are hardly fewer directions.
+    /// Slope along a direction, over the initial slope, below which a point is accepted \[1\]. Changes speed: with 0.9
+    /// most directions take one evaluation. With 0.3 they take two, and there are hardly fewer directions.
     pub flatness: f64,
 }
 

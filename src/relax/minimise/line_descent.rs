@@ -1,4 +1,5 @@
-//! Descent along one direction after another, by line searches: the common part of nonlinear conjugate gradients and L-BFGS.
+//! Descent along one direction after another, by line searches: the common part of nonlinear conjugate gradients and
+//! L-BFGS.
 
 use std::time::Instant;
 

@@ -170,8 +170,9 @@ mod tests {
     use crate::law::power_laws::Hookean;
     use crate::packing::{Domain, Packing};
 
-    /// One disk at −0.9 presses the disk to the right. Further disks lie at 1.5 and 3.3. At 2.4 the slope is also zero, but the
-    /// energy is twice that of the start. The disk must come to rest where nothing touches it, between 0.1 and 0.5.
+    /// One disk at −0.9 presses the disk to the right. Further disks lie at 1.5 and 3.3. At 2.4 the slope is also zero,
+    /// but the energy is twice that of the start. The disk must come to rest where nothing touches it, between 0.1 and
+    /// 0.5.
     #[test]
     fn a_flat_place_beyond_a_hump_is_refused() {
         let law = Hookean { stiffness: 1.0 };

@@ -10,12 +10,12 @@
 //! energies cannot resolve the fall, the work of the forces along the step decides. The ratio of the actual fall to
 //! that of the quadratic model sets S for the next step.
 //!
-//! Near a minimum each step squares the residual, as long as no contact opens or closes. Rattlers do not change that: the
-//! stiffness of their contacts is chosen to open them in one step, see the book.
+//! Near a minimum each step squares the residual, as long as no contact opens or closes. Rattlers do not change that:
+//! the stiffness of their contacts is chosen to open them in one step, see the book.
 //!
 //! # Source
-//! Nocedal, Wright (2006), Numerical Optimization, 2nd ed., §3.4 (modified Hessian), §3.1 (sufficient decrease). The shift
-//! by rows of the prestress: this module.
+//! Nocedal, Wright (2006), Numerical Optimization, 2nd ed., §3.4 (modified Hessian), §3.1 (sufficient decrease). The
+//! shift by rows of the prestress: this module.
 
 use std::time::Instant;
 

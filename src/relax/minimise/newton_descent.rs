@@ -1,5 +1,5 @@
-//! Steps of Newton's method on an assembly: a direction from the shifted Hessian, a point along it that is low enough, and the
-//! update of the shift.
+//! Steps of Newton's method on an assembly: a direction from the shifted Hessian, a point along it that is low enough,
+//! and the update of the shift.
 
 use crate::forces::assembly::Assembly;
 use crate::forces::totals::Totals;
@@ -192,7 +192,8 @@ impl NewtonDescent {
         share
     }
 
-    /// Searches for the lowest point along a direction from the checkpoint, to within `FLATNESS`. None if no point leads down.
+    /// Searches for the lowest point along a direction from the checkpoint, to within `FLATNESS`. None if no point
+    /// leads down.
     ///
     /// Its acceptance test is that of [`search`](crate::relax::minimise::line_search::search), but its lengths differ.
     /// The model gives the length, so no length above 1 is tried. The next point lies between a tenth and half of the

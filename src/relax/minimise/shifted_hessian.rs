@@ -7,8 +7,8 @@
 //! ```
 //!
 //! K' is the Hessian, except for contacts of disks off the backbone. At rest these carry no force. Their forces grow as
-//! δ^(α−1), so Newton's own step would leave (1 − 1/(α−1)) of such an overlap, a third for Hertzian contacts. With the secant
-//! stiffness F/δ for F', and without prestress, one step removes it.
+//! δ^(α−1), so Newton's own step would leave (1 − 1/(α−1)) of such an overlap, a third for Hertzian contacts. With the
+//! secant stiffness F/δ for F', and without prestress, one step removes it.
 //!
 //! The only negative parts of K' are the prestress −F/r across contacts and −Γ of sites. The p_i are their Gershgorin
 //! row sums. With θ = 1 the matrix is positive definite for every packing (up to the change of r since the anchors). So
@@ -28,8 +28,8 @@ use crate::vector::{Vector, larger, norm, scaled};
 /// (10⁻¹⁴).
 const SMALLEST_SHIFT: f64 = 1e-10;
 
-/// Largest η: about what remains of the overlap of a rattler after a step. η is the net force of the rattler over the mean
-/// contact force, but at most this. An almost free rattler needs only a short displacement, even in a steep wedge.
+/// Largest η: about what remains of the overlap of a rattler after a step. η is the net force of the rattler over the
+/// mean contact force, but at most this. An almost free rattler needs only a short displacement, even in a steep wedge.
 const OFF_BACKBONE: f64 = 1e-4;
 
 /// Smallest diagonal added, over the largest k_i. Without it, the pivots of a rattler with little stiffness may count

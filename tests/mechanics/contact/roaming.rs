@@ -201,7 +201,7 @@ fn leaps(step: usize) -> bool {
 fn a_way_that_is_taken_stands_for_the_bounds_that_were_told() {
     let (packing, middle) = three_tiles();
     let mut assembly = Crossing::new(&packing, (1, middle), (0.0, 0.0)).assembly;
-    // No looks: without near pairs the list in use is that of all, with a skin of half a radius, and holds for ways of an eighth of a diameter.
+    // No checks: without near pairs the list in use is that of all, with a skin of half a radius, and holds for ways of an eighth of a diameter.
     assembly.prune_lists(false);
     let mut velocities = vec![[0.0; 2]; assembly.mobile_count()];
     velocities[0] = [WAY, 0.0];

@@ -16,11 +16,11 @@ use crate::scenes::starts::{inflated, points};
 fn the_energy_never_increases() {
     fn check<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) {
         for choice in minimisers(1e-10) {
-            let mut looks = Vec::new();
-            let trace = &mut |look: &Check| looks.push(*check);
+            let mut checks = Vec::new();
+            let trace = &mut |check: &Check| checks.push(*check);
             let outcome = choice.relax(packing.clone(), law, trace).expect("no coincidence");
             assert!(matches!(outcome.stop, Stop::Converged(_)), "{law:?}, {}: {:?}", choice.name(), outcome.stop);
-            only_falls(&looks, 10.0, &format!("{law:?}, {}", choice.name()));
+            only_falls(&checks, 10.0, &format!("{law:?}, {}", choice.name()));
         }
     }
     for seed in [1, 2, 3] {
@@ -42,10 +42,10 @@ fn energies_at_the_restarts_of_fire_never_increase_either_way() {
     {
         let RelaxerChoice::Fire(fire) = choice else { unreachable!("it is FIRE") };
         let fire = Fire { time_step_fraction, step_limit: 20_000, ..fire };
-        let mut looks: Vec<Check> = Vec::new();
-        let trace = &mut |look: &Check| looks.push(*check);
+        let mut checks: Vec<Check> = Vec::new();
+        let trace = &mut |check: &Check| checks.push(*check);
         let _ = fire.relax(points::<2>(200, 0.9, 1), &Hertzian::default(), trace).expect("no coincidence");
-        let restarts: Vec<f64> = looks.iter().filter(|look| check.restart).map(|look| check.energy).collect();
+        let restarts: Vec<f64> = checks.iter().filter(|check| check.restart).map(|check| check.energy).collect();
         assert!(restarts.len() > 3, "{} restarts", restarts.len());
         assert!(restarts.is_sorted_by(|&before, &after| after <= before * (1.0 + 1e-13)), "{restarts:?}");
     }

@@ -91,10 +91,10 @@ fn the_residual_is_squared_at_each_step_near_a_minimum() {
 fn the_energy_falls_where_contacts_that_close_make_the_whole_step_climb() {
     fn check<L: PairLaw>(law: L, name: &str) {
         let near = at_rest(relax(&fire(1e-4), inflated(name, 0), &law));
-        let mut looks = Vec::new();
+        let mut checks = Vec::new();
         let settings = Newton { step_limit: 40, ..newton(1e-12) };
-        let _ = settings.relax(near, &law, &mut |look: &Check| looks.push(*check)).expect("no coincidence");
-        only_falls(&looks, 1.0, &format!("{law:?}"));
+        let _ = settings.relax(near, &law, &mut |check: &Check| checks.push(*check)).expect("no coincidence");
+        only_falls(&checks, 1.0, &format!("{law:?}"));
     }
     check(Hookean::default(), "hooke_N1000_p100");
     check(Hookean::default(), "hooke_N1000_p10");
@@ -110,9 +110,9 @@ proptest! {
     fn the_energy_of_newton_never_increases(seed in 0..1000u64, fraction in 0.8..1.3f64, law in 0..3usize) {
         fn check<const D: usize, L: PairLaw>(packing: Packing<D>, law: &L) {
             let settings = Newton { step_limit: 60, ..newton(1e-10) };
-            let mut looks = Vec::new();
-            let _ = settings.relax(packing, law, &mut |look: &Check| looks.push(*check)).expect("no coincidence");
-            only_falls(&looks, 1.0, &format!("{law:?}"));
+            let mut checks = Vec::new();
+            let _ = settings.relax(packing, law, &mut |check: &Check| checks.push(*check)).expect("no coincidence");
+            only_falls(&checks, 1.0, &format!("{law:?}"));
         }
         match law {
             0 => check(points::<2>(100, fraction, seed), &Hertzian::default()),

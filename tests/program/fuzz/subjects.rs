@@ -12,7 +12,7 @@ use jamscope::relax::{Fire, Outcome, Relaxer, RelaxerChoice, Stop};
 use jamscope::scene::Scene;
 use jamscope::study::{Plan, Study};
 
-use super::{Fault, law_of_file, scene_file};
+use super::{Fault, contact_law, scene_file};
 
 /// What refusals of packings name where it is not a line.
 pub const PACKING_FIELDS: [&str; 9] =
