@@ -44,7 +44,8 @@ pub enum Stop {
     /// An implicit motion stagnates. For thousands of steps its residual has not fallen by 10 %, and damping has taken
     /// less than half of its kinetic energy.
     #[cfg(feature = "linear")]
-    Restless,
+    #[serde(alias = "restless")]
+    Stagnation,
     /// The factors of Newton's matrix do not fit in memory.
     #[cfg(feature = "linear")]
     OutOfMemory,

@@ -95,7 +95,7 @@ fn stop(stop: Stop) -> &'static str {
         Stop::Unstable => "unstable",
         Stop::EnergyGained => "energy gained",
         Stop::NoMinimum => "no minimum",
-        Stop::Restless => "does not come to rest",
+        Stop::Stagnation => "does not come to rest",
         Stop::OutOfMemory => "out of memory",
         Stop::NoDescent => "no descent",
         Stop::Interrupted => "interrupted",

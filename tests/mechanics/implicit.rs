@@ -363,12 +363,12 @@ fn what_never_comes_to_rest_ends_with_a_name() {
     let packing = inflated("hertz_N1000_phi082", 0);
     let damping = DampingChoice::Viscoelastic(ViscoelasticDamping { rate: 500.0 });
     let outcome = relaxed(&ImplicitDynamics { damping, ..ImplicitDynamics::default() }, &packing);
-    assert!(matches!(outcome.stop, Stop::Restless | Stop::Converged(_)), "{:?}", outcome.stop);
+    assert!(matches!(outcome.stop, Stop::Stagnation | Stop::Converged(_)), "{:?}", outcome.stop);
     assert!(outcome.cost.simulated_time > 0.0 && outcome.cost.step_count < 30_000);
     // Without Newton at the end, and where the limit on steps is first.
     let alone = ImplicitDynamics { damping, finish: Finish::Motion, ..ImplicitDynamics::default() };
     let outcome = relaxed(&alone, &packing);
-    assert!(matches!(outcome.stop, Stop::Restless | Stop::Converged(_)), "{:?}", outcome.stop);
+    assert!(matches!(outcome.stop, Stop::Stagnation | Stop::Converged(_)), "{:?}", outcome.stop);
     assert!(outcome.cost.step_count < 30_000, "{:?}", outcome.cost);
     let short = relaxed(&ImplicitDynamics { step_limit: 2, ..alone }, &packing);
     assert_eq!((short.stop, short.cost.step_count), (Stop::StepLimit, 2));

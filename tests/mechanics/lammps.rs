@@ -265,7 +265,7 @@ fn near_jamming_each_method_ends_in_the_minimum_it_ends_in_with_lammps() {
     assert!((apart - net.table.number("dmax")).abs() < 2e-7, "FIRE and damped dynamics are {apart} apart");
 }
 
-/// At these pressures another variant of FIRE often ends elsewhere (design §7); from these two centres ours meets LAMMPS's.
+/// At these pressures another variant of FIRE often ends elsewhere; from these two centres ours meets LAMMPS's.
 #[test]
 fn fire_ends_where_that_of_lammps_does_at_lower_pressures() {
     for name in ["hertz_N1000_p100_fire", "hertz_N1000_p10_fire"] {

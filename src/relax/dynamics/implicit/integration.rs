@@ -108,7 +108,7 @@ impl Integration {
             }
             let residual = monitor.residual().relative();
             if stagnation.is_reached(cost.step_count, (kinetic_energy, motion.dissipated), residual) {
-                return Ok(Stop::Restless);
+                return Ok(Stop::Stagnation);
             }
             if monitor.takes_new_anchors() {
                 motion.reanchor()?;

@@ -17,7 +17,7 @@ use crate::law::damping::DampingLaw;
 use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
-use crate::relax::dynamics::implicit::multirate::patch::{FastDisks, Patch};
+use crate::relax::dynamics::implicit::multirate::patch::{Patch, PatchDisks};
 use crate::relax::dynamics::implicit::multirate::shells::{DONE, LONGEST_MOVE, Shells};
 use crate::relax::dynamics::implicit::rkc::coefficients::Chebyshev;
 use crate::relax::dynamics::implicit::rkc::stages::measure;
@@ -47,7 +47,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     /// Two disks with the same centre.
     pub(crate) fn correct_fast_disks(
         &mut self,
-        fast: &FastDisks<'_, impl Fn(usize, f64) -> f64>,
+        fast: &PatchDisks<'_, impl Fn(usize, f64) -> f64>,
     ) -> Result<bool, PackingError> {
         let longest = LONGEST_MOVE * self.moved.iter().fold(0.0, |most, &change| larger(norm(change), most));
         if self.assembly.remaining_displacement() < longest.min(LISTED_SKIN * self.assembly.skin()) {
@@ -98,7 +98,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     fn correct_patches(
         &mut self,
         shell_count: u32,
-        fast: &FastDisks<'_, impl Fn(usize, f64) -> f64>,
+        fast: &PatchDisks<'_, impl Fn(usize, f64) -> f64>,
         shells: &mut Shells<D>,
     ) -> Option<f64> {
         let mut change = 0.0;
@@ -124,7 +124,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     fn correct_patch(
         &mut self,
         longest: f64,
-        fast: &FastDisks<'_, impl Fn(usize, f64) -> f64>,
+        fast: &PatchDisks<'_, impl Fn(usize, f64) -> f64>,
         patch: &mut Patch<D>,
     ) -> Option<f64> {
         let (law, time_step) = (*self.assembly.law(), fast.time_step);
@@ -232,7 +232,7 @@ mod tests {
 
     fn refined(motion: &mut Motion, disks: &[u32]) -> bool {
         let stiffness = motion.stiffness().expect("every contact is damped");
-        motion.correct_fast_disks(&FastDisks { time_step: STEP, stiffness, disks, share }).expect("no coincidence")
+        motion.correct_fast_disks(&PatchDisks { time_step: STEP, stiffness, disks, share }).expect("no coincidence")
     }
 
     #[test]

@@ -26,7 +26,7 @@ const MOST_STEPS: usize = 500;
 const ABSENT: u32 = u32::MAX;
 
 /// The disks whose errors are too large for the long step, and the accuracy they need.
-pub(crate) struct FastDisks<'a, S> {
+pub(crate) struct PatchDisks<'a, S> {
     /// Length of the long step \[time\].
     pub(crate) time_step: f64,
     pub(crate) stiffness: Stiffness,
@@ -203,7 +203,7 @@ impl<const D: usize> Patch<D> {
         &mut self,
         laws: (&L, &C),
         longest: f64,
-        fast: &FastDisks<'_, impl Fn(usize, f64) -> f64>,
+        fast: &PatchDisks<'_, impl Fn(usize, f64) -> f64>,
     ) -> Option<f64> {
         self.set_start(laws);
         let whole = fast.time_step;
