@@ -8,7 +8,7 @@ use crate::relax::dynamics::energy_balance::{Energies, EnergyBalance};
 use crate::relax::dynamics::implicit::allowed_error::AllowedError;
 use crate::relax::dynamics::implicit::method_selection::{Method, MethodSelection};
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
-use crate::relax::dynamics::implicit::multirate::patch::FastDisks;
+use crate::relax::dynamics::implicit::multirate::patch::PatchDisks;
 use crate::relax::dynamics::implicit::step_control::{LARGEST_RATIO, SMALLEST_RATIO, step_ratio};
 use crate::relax::outcome::Cost;
 
@@ -54,7 +54,7 @@ pub(crate) fn rkc_phase<const D: usize, L: PairLaw, C: DampingLaw>(
             let most =
                 errors.set(motion.assembly.mobile_count(), |disk| share(disk, motion.stabilised_error(step, disk)));
             let ratio = step_ratio(most, largest_ratio);
-            let fast = FastDisks { time_step: step, stiffness, disks: &errors.too_large, share };
+            let fast = PatchDisks { time_step: step, stiffness, disks: &errors.too_large, share };
             if most <= 1.0 && (errors.too_large.is_empty() || motion.correct_fast_disks(&fast)?) {
                 *time_step = step * if rejected { ratio.min(1.0) } else { ratio };
                 rejected = false;
