@@ -41,11 +41,11 @@ impl ser::Error for NotWritable {
 ///
 /// # Example
 /// ```
-/// use jamscope::scene::{Scene, finite};
+/// use jamscope::scene::{Scene, finite_numbers};
 /// let mut scene = Scene::default();
-/// assert_eq!(finite::check(&scene), Ok(()));
+/// assert_eq!(finite_numbers::check(&scene), Ok(()));
 /// scene.mixture.components[1].share = f64::INFINITY;
-/// let message = finite::check(&scene).expect_err("a share without end").to_string();
+/// let message = finite_numbers::check(&scene).expect_err("a share without end").to_string();
 /// assert_eq!(message, "mixture[1].share = inf: must be a finite number");
 /// ```
 pub fn check<T: Serialize + ?Sized>(value: &T) -> Result<(), NotWritable> {

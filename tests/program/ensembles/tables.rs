@@ -207,6 +207,32 @@ impl Ensemble {
         table
     }
 
+    /// ξ below jamming: a row a φ, a column a size and threshold.
+    pub fn penetration(&self) -> String {
+        let all = &self.transition.jamming;
+        let mut fractions: Vec<f64> = all.iter().flat_map(|one| &one.points).map(|it| it.packing_fraction).collect();
+        fractions.sort_by(f64::total_cmp);
+        fractions.dedup();
+        let mut table = "| φ |".to_string();
+        for one in all {
+            write!(table, " {} disks, d_th = {} |", one.cell.disk_count, one.threshold).expect("text");
+        }
+        table += &format!("\n|{}\n", "---|".repeat(all.len() + 1));
+        for fraction in fractions {
+            write!(table, "| {fraction} |").expect("text");
+            for one in all {
+                let point = one.points.iter().find(|it| it.packing_fraction == fraction);
+                let text = point.map_or("–".into(), |it| match it.length.standard_error {
+                    Some(error) => format!("{:.2} ± {error:.2}", it.length.mean),
+                    None => format!("{:.2}", it.length.mean),
+                });
+                write!(table, " {text} |").expect("text");
+            }
+            table.push('\n');
+        }
+        table
+    }
+
     fn is_hookean(&self) -> bool {
         self.transition.series.iter().any(|one| matches!(one.cell.law, LawChoice::Hookean(_)))
     }
@@ -288,6 +314,11 @@ pub fn tables(ensembles: &[Ensemble]) -> Vec<(String, String)> {
             }
             continue;
         }
+        if one.name == "jamming" {
+            all.push(("jamming: ξ".into(), one.penetration()));
+            all.push(("jamming: ν".into(), one.comparison("FIRE")));
+            continue;
+        }
         for disk_count in one.disk_counts() {
             let title = |of: &str| format!("{}, {disk_count} disks: {of}", one.name);
             all.push((title("radial"), one.radial(disk_count)));
@@ -308,7 +339,10 @@ pub fn ensembles(folder: &Path) -> Vec<Ensemble> {
     archives.sort();
     assert!(!archives.is_empty());
     let of_law = |hookean: bool| -> Vec<&Path> {
-        let is = |path: &&std::path::PathBuf| path.to_string_lossy().contains("hookean") == hookean;
+        let is = |path: &&std::path::PathBuf| {
+            let name = path.file_name().expect("a name").to_string_lossy();
+            name.contains("hookean") == hookean && !name.contains("jamming")
+        };
         archives.iter().filter(is).map(|path| path.as_path()).collect()
     };
     let (hertzian, hookean) = (of_law(false), of_law(true));
