@@ -96,10 +96,10 @@ pub struct Single<const D: usize> {
 }
 
 impl<const D: usize> Single<D> {
-    /// Single-precision state for the disks of an assembly. None for a law with sites, or for numbers near the limits
-    /// of double precision.
+    /// Single-precision state for the disks of an assembly. None for a law with sites or one that is not a power of the
+    /// overlap, or for numbers near the limits of double precision.
     pub fn new<L: PairLaw>(assembly: &Assembly<D, L>) -> Option<Self> {
-        if assembly.law().has_sites() {
+        if assembly.law().has_sites() || !L::IS_POWER {
             return None;
         }
         let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);

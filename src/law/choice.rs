@@ -83,6 +83,8 @@ impl LawChoice {
 
 /// Results have the same bits as those of the chosen law.
 impl PairLaw for LawChoice {
+    const IS_POWER: bool = true;
+
     #[inline(always)]
     fn resolve<V: LawVisitor>(&self, visitor: V) -> V::Output {
         match self {

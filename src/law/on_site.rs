@@ -41,6 +41,8 @@ pub struct OnSite<L> {
 }
 
 impl<L: PairLaw> PairLaw for OnSite<L> {
+    const IS_POWER: bool = L::IS_POWER;
+
     /// Sites do not change the contacts.
     #[inline(always)]
     fn resolve<V: LawVisitor>(&self, visitor: V) -> V::Output {

@@ -51,8 +51,12 @@ pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
         forces
     }
 
-    /// c δ^(α−1) for a vector of pairs in single precision, in any units of c and δ. Its cost dominates a relaxation
-    /// while disks are far from rest.
+    /// Whether the force is c δ^(α−1) for all overlaps. Only such a law is computed in single precision, whose units of
+    /// force and length are others.
+    const IS_POWER: bool = false;
+
+    /// c δ^(α−1) for a vector of pairs in single precision, in any units of c and δ; called only if the law
+    /// [is a power](Self::IS_POWER). Its cost dominates a relaxation while disks are far from rest.
     #[inline(always)]
     fn forces_in_single<S: Simd>(&self, _simd: S, coefficients: S::f32s, overlaps: S::f32s) -> S::f32s {
         let mut forces = [overlaps];

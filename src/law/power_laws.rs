@@ -75,6 +75,8 @@ impl Default for Hookean {
 }
 
 impl PairLaw for Hertzian {
+    const IS_POWER: bool = true;
+
     fn viscoelastic(&self, rate: f64) -> ContactDamping {
         ContactDamping::Viscoelastic(ViscoelasticDamping { rate })
     }
@@ -107,7 +109,9 @@ impl PairLaw for Hertzian {
 }
 
 impl PairLaw for Hookean {
+    const IS_POWER: bool = true;
     const ONE_COEFFICIENT: bool = true;
+
     fn viscoelastic(&self, rate: f64) -> ContactDamping {
         ContactDamping::Mass(MassDamping { rate })
     }
@@ -140,6 +144,8 @@ impl PairLaw for Hookean {
 }
 
 impl PairLaw for PowerLaw {
+    const IS_POWER: bool = true;
+
     fn viscoelastic(&self, rate: f64) -> ContactDamping {
         ContactDamping::Mass(MassDamping { rate })
     }

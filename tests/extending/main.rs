@@ -11,7 +11,7 @@ use jamscope::network::ContactNetwork;
 use jamscope::packing::{Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare_with, random_points};
 use jamscope::reference::{Annulus, RadialSolution, elastic::Elastic};
-use jamscope::relax::{Criterion, Fire, Relaxer, Stop};
+use jamscope::relax::{Criterion, Fire, Precision, Relaxer, Stop};
 use jamscope::vector::{larger, norm};
 use stiffening::Stiffening;
 use swirl::swirl;
@@ -49,6 +49,17 @@ fn the_force_of_a_new_law_is_minus_the_slope_of_its_energy() {
 /// The energy of a packing under the new law.
 fn energy(packing: &Packing<2>) -> f64 {
     ContactNetwork::new(packing, &LAW).expect("no coincidence").energy()
+}
+
+#[test]
+fn a_law_that_is_no_power_is_never_computed_in_single_precision() {
+    let points = || random_points::<2>(200, &Mixture::default(), 0.92, 1).expect("valid");
+    let positions = |precision: Precision| {
+        let outcome = Fire { precision, ..Fire::default() }.relax(points(), &LAW, &mut ()).expect("no coincidence");
+        outcome.converged().expect("at rest").into_inner().positions().to_vec()
+    };
+    // The same bits: mixed precision falls back to double.
+    assert_eq!(positions(Precision::Mixed), positions(Precision::Double));
 }
 
 #[test]

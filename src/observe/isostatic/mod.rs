@@ -9,8 +9,6 @@
 //! ([`PointForce`](crate::reference::angular_modes::point_force::PointForce)), which dominates beyond any ℓ_iso; see
 //! the book. h_0 makes h_∥ dimensionless, see [`Normalisation`]. The threshold is a given value or a share of the
 //! plateau, see [`IsostaticRule`]; for x see [`Scale`]. Between two rings y is interpolated linearly.
-//! [`Normalisation`]; the threshold is one given or a share of the plateau, [`IsostaticRule`]; which x, [`Scale`].
-//! Between two rings y is taken as a straight line.
 //!
 //! # Source
 //! Ellenbroek, Somfai, van Hecke, van Saarloos (2006), Phys. Rev. Lett. 97, 258001; the study, threshold 1.3, C ≈ 6.
