@@ -39,9 +39,9 @@ use jamscope::run::{SampleOutcome, run};
 use jamscope::scene::{ProtocolChoice, Sample, Scene, Source};
 use jamscope::verdict::{AboveLimit, Decision, VerdictSettings};
 
-/// The mechanics of jammed packings: prepare, inflate, relax, and hold the response against exact solutions.
+/// The mechanics of jammed packings: prepare, inflate, relax, and compare the response with exact solutions.
 ///
-/// Without a command, `run` with the built-in scene: the three phases side by side.
+/// Without a command, jamscope runs the built-in scene, which shows the three phases.
 #[derive(Parser)]
 #[command(version, about, after_help = exit_code::HELP)]
 struct Cli {
@@ -55,24 +55,24 @@ enum Command {
     Run(RunArguments),
     /// Print a scene with all defaults and a comment on every field.
     Scene,
-    /// Print what is known of a packing file: certificate, energy, stress, contacts, forces, elastic moduli, modes.
+    /// Print the properties of a packing file: certificate, energy, stress, contacts, forces, elastic moduli, modes.
     Inspect(InspectArguments),
-    /// Measure the observables of states before and after an inflation that were relaxed elsewhere.
+    /// Measure the observables of states that another program relaxed, before and after an inflation.
     Analyse(analyse::AnalyseArguments),
-    /// Run an experiment over sizes, pressures, inflations, laws and seeds; an interrupted one goes on where it was.
+    /// Run an experiment over sizes, pressures, inflations, laws and seeds; an interrupted study continues.
     Study(study::StudyArguments),
-    /// Gather the samples of a study, with statistics.
+    /// Merge the samples of a study and compute statistics.
     Merge(study::MergeArguments),
-    /// Print an exact solution as a table, 17 significant digits.
+    /// Print an exact solution as a table with 17 significant digits.
     Exact(exact::ExactArguments),
-    /// Measure error against cost: every relaxer from one inflated start, at a ladder of settings.
+    /// Measure error and cost of every relaxer, from the same inflated packing, at several settings.
     #[cfg(feature = "linear")]
     Precision(precision::PrecisionArguments),
 }
 
 #[derive(Args, Default)]
 struct RunArguments {
-    /// Scene file (TOML); without one the built-in scene.
+    /// Scene file (TOML); by default the built-in scene.
     scene: Option<PathBuf>,
     /// Use this packing (extended XYZ, LAMMPS data or dump) instead of the samples of the scene.
     #[arg(long, value_name = "FILE")]
@@ -80,13 +80,13 @@ struct RunArguments {
     /// Folder for the report.
     #[arg(long, value_name = "DIR", default_value = "jamscope-report")]
     out: PathBuf,
-    /// Seed of every sample instead of the scene's.
+    /// Seed of every sample, instead of the seeds in the scene.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Threads; without it one a core. Never changes a result.
+    /// Number of threads; by default one per core. Changes no result.
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    /// Give a phase and fits, and end with 0, even if a state is not at rest.
+    /// Report a phase and fits, and exit with code 0, even if a state is not at rest.
     #[arg(long)]
     not_at_rest: bool,
 }
@@ -95,23 +95,23 @@ struct RunArguments {
 struct InspectArguments {
     /// Packing file: extended XYZ, LAMMPS data or dump.
     packing: PathBuf,
-    /// The contact law, `hertzian`, `hookean` or `power:ALPHA`, where the file does not say; without either Hertzian.
+    /// Contact law if the file gives none: `hertzian`, `hookean` or `power:ALPHA`; by default Hertzian.
     #[arg(long, value_name = "LAW", value_parser = contact_law::parse)]
     law: Option<contact_law::LawName>,
-    /// k' of the Hertzian and Hookean law, energy scale of the power law, where the file does not say; without either 2e5, and 1
-    /// for the power law.
+    /// Stiffness k' (Hertzian, Hookean) or energy scale (power law) if the file gives none; by default 2e5, and 1 for the
+    /// power law.
     #[arg(long, value_name = "K")]
     stiffness: Option<f64>,
     /// Dimension of the packing.
     #[arg(long, value_name = "D", default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
     dimension: u8,
-    /// End with 0 even if the packing is not at rest.
+    /// Exit with code 0 even if the packing is not at rest.
     #[arg(long)]
     not_at_rest: bool,
-    /// Print JSON, every number at full precision.
+    /// Print JSON, with every number in full precision.
     #[arg(long)]
     json: bool,
-    /// The lowest vibrational modes, so many of them.
+    /// Number of vibrational modes to compute, from the lowest.
     #[cfg(feature = "linear")]
     #[arg(long, value_name = "K", default_value_t = 0)]
     modes: usize,

@@ -29,7 +29,8 @@ impl Memory {
         add(read("/proc/meminfo").and_then(|text| installed(&text)), "the memory of this machine");
         add(read("/proc/self/cgroup").and_then(|text| control_group(&text)), "the memory limit of its control group");
         add(read("/proc/self/limits").and_then(|text| address_space(&text)), "the limit on its address space");
-        let fixed = Memory { bytes: FIXED_LIMIT, origin: "a fixed limit: this system does not tell its memory" };
+        let fixed =
+            Memory { bytes: FIXED_LIMIT, origin: "a fixed limit, because this system does not report its memory" };
         found.into_iter().min_by_key(|memory| memory.bytes).unwrap_or(fixed)
     }
 
@@ -69,7 +70,7 @@ impl Limit {
 
 /// A count exceeds the memory or an index type.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{field} = {value}: at most {limit} ({reason}); {value} would take {} of memory", amount(*bytes))]
+#[error("{field} = {value}: must be at most {limit} ({reason}); {value} would take {} of memory", amount(*bytes))]
 pub struct TooLarge {
     /// The field of the settings, or the argument.
     pub field: String,
@@ -147,7 +148,7 @@ mod tests {
         let memory = Memory { bytes: 16_000_000_000, origin: "the memory of this machine" };
         assert_eq!(memory.check("disk_count", 16_000_000, 1000.0), Ok(()));
         let message = memory.check("disk_count", 1_000_000_000_000, 1000.0).expect_err("too many").to_string();
-        let expected = "disk_count = 1000000000000: at most 16000000 (the memory of this machine); 1000000000000 would take \
+        let expected = "disk_count = 1000000000000: must be at most 16000000 (the memory of this machine); 1000000000000 would take \
                         1000.0 TB of memory";
         assert_eq!(message, expected);
         // The largest count does not overflow.

@@ -25,10 +25,10 @@ pub enum PlasticError {
     #[error(transparent)]
     Packing(#[from] PackingError),
     /// The response is to forces or displacements, not to the growth of a disk.
-    #[error("the linear response is not one to the growth of a disk")]
+    #[error("the linear response must be the response to the growth of a disk")]
     NothingGrows,
     /// A relaxation did not end at rest.
-    #[error("inflated by {increase:e} the relaxation stopped with {stop:?} after {step_count} steps")]
+    #[error("after an inflation by {increase:e}, the relaxation stopped with {stop:?} after {step_count} steps")]
     NotAtRest {
         /// d_0 of that relaxation.
         increase: f64,

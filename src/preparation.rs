@@ -97,7 +97,7 @@ pub enum PreparationError {
     },
     /// p must be positive: p = 0 leaves the packing fraction open.
     #[error(
-        "pressure is {pressure}, not a positive number (for an unjammed packing name a packing_fraction below jamming)"
+        "pressure is {pressure}, not a positive number (for an unjammed packing give a packing_fraction below jamming)"
     )]
     PressureNotPositive {
         /// The pressure given.
@@ -105,7 +105,7 @@ pub enum PreparationError {
     },
     /// p must be below the pressure of disks at φ = 4.
     #[error(
-        "pressure is {pressure}, above {largest}, about that at packing fraction 4, where every disk overlaps all of a dozen neighbours"
+        "pressure is {pressure}: must be at most {largest}, about the pressure at packing fraction 4, where every disk overlaps a dozen neighbours"
     )]
     PressureOutOfReach {
         /// The pressure given.
@@ -135,7 +135,7 @@ pub enum PreparationError {
     },
     /// The search did not meet the pressure.
     #[error(
-        "pressure {target} not met within {tolerance} after {relaxation_count} relaxations: nearest {nearest} at packing fraction {packing_fraction}"
+        "pressure {target} not reached within a relative tolerance of {tolerance} after {relaxation_count} relaxations: the nearest pressure is {nearest}, at packing fraction {packing_fraction}"
     )]
     PressureNotReached {
         /// Target pressure.

@@ -21,7 +21,7 @@ pub struct PairSettings {
 #[non_exhaustive]
 pub enum AnalysisError {
     /// The numbers of disks differ.
-    #[error("{before_count} disks before, {after_count} {state}: the states have to hold the same disks")]
+    #[error("{before_count} disks before, {after_count} {state}: both states must contain the same disks")]
     CountsDiffer {
         /// Which state is compared with the one before.
         state: &'static str,
@@ -31,7 +31,7 @@ pub enum AnalysisError {
         after_count: usize,
     },
     /// A label of one state is missing in the other.
-    #[error("disk {label} is there before but not {state}")]
+    #[error("disk {label} is in the state before, but not in the state {state}")]
     LabelMissing {
         /// Which state is compared with the one before.
         state: &'static str,
@@ -39,7 +39,7 @@ pub enum AnalysisError {
         label: u64,
     },
     /// Repeated labels do not match in order.
-    #[error("label {label} stands more than once, and the disks {state} are in another order than before")]
+    #[error("label {label} occurs more than once, and the order of the disks {state} differs from that before")]
     LabelsAmbiguous {
         /// Which state is compared with the one before.
         state: &'static str,
@@ -56,7 +56,7 @@ pub enum AnalysisError {
     #[error("no disk changed its radius, so none was inflated")]
     NoCentre,
     /// Several radii changed.
-    #[error("{count} disks changed their radius, disks {first} and {second} among them: one is inflated")]
+    #[error("{count} disks changed their radius, among them disks {first} and {second}: only one disk may be inflated")]
     SeveralCentres {
         /// Number of these disks.
         count: usize,
@@ -66,7 +66,7 @@ pub enum AnalysisError {
         second: u64,
     },
     /// No disk, or more than one mobile disk, has the given label.
-    #[error("{count} disks have the label {label} of the inflated one, not one")]
+    #[error("{count} disks have the label {label} of the inflated disk: exactly one disk must have it")]
     CentreNotOne {
         /// The label.
         label: u64,
@@ -84,7 +84,7 @@ pub enum AnalysisError {
         grown: Option<u64>,
     },
     /// R is invalid.
-    #[error("the outer radius is {outer_radius}, not above the radius of the inflated disk, {inner_radius}")]
+    #[error("the outer radius is {outer_radius}: must be larger than the radius of the inflated disk, {inner_radius}")]
     OuterRadiusOutOfRange {
         /// R given.
         outer_radius: f64,
@@ -92,7 +92,7 @@ pub enum AnalysisError {
         inner_radius: f64,
     },
     /// The boundary of the packing is unknown.
-    #[error("the packing is in the open plane and no disk is held: say the outer radius, beyond which disks are held")]
+    #[error("the packing is in the open plane and no disk is held: give the outer radius beyond which disks are held")]
     NoBoundary,
     /// No disk could move.
     #[error("no disk lies within the outer radius {outer_radius}")]

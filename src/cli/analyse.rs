@@ -16,26 +16,27 @@ use crate::{Failure, exit_code, override_limit, print, scene_file};
 /// Arguments of `analyse`.
 #[derive(Args)]
 pub struct AnalyseArguments {
-    /// A folder with pairs NAME.before.* and NAME.after.* (or NAME.displacement.*, as a run writes it), and
-    /// NAME.deflated.* where there is one; or the files before, after and, if there is one, after the deflation.
+    /// A folder with pairs NAME.before.* and NAME.after.* (or NAME.displacement.*, as written by `run`) and optional files
+    /// NAME.deflated.*; or the file before, the file after and, optionally, the file after the deflation.
     #[arg(required = true, num_args = 1..=3, value_name = "DIR | BEFORE AFTER [DEFLATED]")]
     states: Vec<PathBuf>,
-    /// Label of the inflated disk; without it the one whose radius changed.
+    /// Label of the inflated disk; by default the disk whose radius changed.
     #[arg(long, value_name = "LABEL")]
     centre: Option<u64>,
-    /// R, beyond which disks are held; without it what the file says, or the nearest held disk, or half of the box.
+    /// Radius R beyond which disks are held; by default that of the file, or the distance of the nearest held disk, or half
+    /// the box.
     #[arg(long, value_name = "R")]
     outer_radius: Option<f64>,
-    /// The contact law, `hertzian`, `hookean` or `power:ALPHA`, where the files do not say; without either Hertzian.
+    /// Contact law if the files give none: `hertzian`, `hookean` or `power:ALPHA`; by default Hertzian.
     #[arg(long, value_name = "LAW", value_parser = contact_law::parse)]
     law: Option<LawName>,
-    /// k' of the Hertzian and Hookean law, energy scale of the power law, where the files do not say.
+    /// Stiffness k' (Hertzian, Hookean) or energy scale (power law) if the files give none.
     #[arg(long, value_name = "K")]
     stiffness: Option<f64>,
-    /// Measure what the observables of this scene name, with the limit of its verdict (TOML); without it all.
+    /// Scene file (TOML) that selects the observables and the residual limit; by default all observables.
     #[arg(long, value_name = "SCENE")]
     scene: Option<PathBuf>,
-    /// Give a phase and fits, and end with 0, even if a state is not at rest.
+    /// Report a phase and fits, and exit with code 0, even if a state is not at rest.
     #[arg(long)]
     not_at_rest: bool,
     /// Folder for the results.
@@ -106,7 +107,7 @@ fn analyse(
     // A file without a law has that of the other file.
     let law = match (says_law(&files.before)?, says_law(&files.after)?) {
         (true, true) if first != second => {
-            return Err(format!("the files name two laws, {first:?} and {second:?}").into());
+            return Err(format!("the files give different laws, {first:?} and {second:?}").into());
         }
         (false, true) => second,
         _ => first,
@@ -162,7 +163,7 @@ fn pairs_in(folder: &Path) -> Result<Vec<Files>, Failure> {
     names = left;
     if !earlier.is_empty() {
         print(&format!(
-            "left out, of an earlier run than the report in {}: {}\n",
+            "left out, because they are from an earlier run than the report in {}: {}\n",
             folder.display(),
             earlier.join(", ")
         ))?;
@@ -181,27 +182,32 @@ fn pairs_in(folder: &Path) -> Result<Vec<Files>, Failure> {
         match found[..] {
             [] => Ok(None),
             [name] => Ok(Some(folder.join(name))),
-            [a, b, ..] => {
-                Err(format!("{}: {a} and {b} are both a state {}", folder.display(), states.join(" or ")).into())
-            }
+            [a, b, ..] => Err(format!(
+                "{}: {a} and {b} are both files of the state {}; only one is allowed",
+                folder.display(),
+                states.join(" or ")
+            )
+            .into()),
         }
     };
     let mut pairs = Vec::new();
     let mut samples: Vec<String> = names.iter().filter_map(|name| state_of(name, "before")).collect();
     samples.dedup();
     for sample in samples {
-        let before = find(&sample, &["before"])?.ok_or("a file that was there is gone")?;
+        let before = find(&sample, &["before"])?.ok_or("a file disappeared during the analysis")?;
         let Some(after) = find(&sample, &["after", "displacement"])? else {
-            return Err(
-                format!("{}: no {sample}.after.* or {sample}.displacement.* beside it", before.display()).into()
-            );
+            return Err(format!(
+                "{}: no {sample}.after.* or {sample}.displacement.* in the same folder",
+                before.display()
+            )
+            .into());
         };
         let deflated = find(&sample, &["deflated"])?;
         let name = if sample.is_empty() { "pair".into() } else { sample };
         pairs.push(Files { name, before, after, deflated });
     }
     if pairs.is_empty() {
-        return Err(format!("{}: no file NAME.before.* in it", folder.display()).into());
+        return Err(format!("{}: the folder contains no file NAME.before.*", folder.display()).into());
     }
     Ok(pairs)
 }

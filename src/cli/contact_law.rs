@@ -44,7 +44,7 @@ impl std::fmt::Display for LawName {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LawOfFileError {
     /// The law of the file is unknown, and the command line gives none.
-    #[error("{path}: law is `{law}`, not hertz…, hook… or power…: say --law")]
+    #[error("{path}: law is `{law}`, which is unknown (known: hertz…, hook…, power…); give it with --law")]
     UnknownLaw {
         /// The file.
         path: String,
@@ -74,7 +74,7 @@ pub enum LawOfFileError {
         value: f64,
     },
     /// The file gives the power law but not its exponent.
-    #[error("{path}: law is `{law}`, without an exponent: say --law power:ALPHA")]
+    #[error("{path}: law is `{law}`, but its exponent is missing; give it with --law power:ALPHA")]
     NoExponent {
         /// The file.
         path: String,
@@ -82,7 +82,7 @@ pub enum LawOfFileError {
         law: String,
     },
     /// File and command line contradict each other.
-    #[error("{path}: the file says {what} {file}, the command line {command_line}")]
+    #[error("{path}: the file gives {what} {file}, but the command line gives {command_line}")]
     Contradiction {
         /// The file.
         path: String,

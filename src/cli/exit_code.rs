@@ -6,10 +6,10 @@ use std::process::ExitCode;
 /// Exit codes, for the help; 2 is that of the parser of the command line.
 pub const HELP: &str = "\
 Exit codes:
-  0  all that was asked for is in the output
-  1  a file, a scene or an argument made no sense, or a sample failed
+  0  success: the output is complete
+  1  a file, a scene or an argument is invalid, or a sample failed
   2  the command line cannot be parsed
-  3  a state is not at rest: all is measured, but there is no phase and no fit";
+  3  a state is not at rest: everything is measured, but there is no phase and no fit";
 
 /// Exit code if states are not at rest.
 const NOT_AT_REST: u8 = 3;
@@ -22,7 +22,7 @@ pub fn of_states(not_at_rest: &[String]) -> ExitCode {
     // The standard error stream may be closed: the exit code contains the same information.
     let _ = writeln!(
         std::io::stderr(),
-        "jamscope: not at rest, so without phase and fit: {}; --not-at-rest gives both all the same",
+        "jamscope: no phase and no fit, because these are not at rest: {}; --not-at-rest overrides this",
         not_at_rest.join(", ")
     );
     ExitCode::from(NOT_AT_REST)

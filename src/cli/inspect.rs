@@ -104,7 +104,7 @@ fn with_law<const D: usize>(
     settings: &VerdictSettings,
 ) -> Result<Inspection, Box<dyn std::error::Error>> {
     let law = &choice;
-    let largest = Limit { largest: (D * packing.len()) as u64, reason: "as many as coordinates of disks" };
+    let largest = Limit { largest: (D * packing.len()) as u64, reason: "the number of coordinates of all disks" };
     largest.check("--modes", mode_count, 8.0 * (D * packing.len()) as f64)?;
     let state = State::new(packing, law)?;
     let verdict = RestVerdict::of(&[("in the file", &state)], law, &choice, None, settings);
@@ -184,7 +184,7 @@ fn write_certificate(f: &mut std::fmt::Formatter<'_>, certificate: &Certificate)
     if let Some(virial) = certificate.virial {
         writeln!(
             f,
-            "{:<28} {} (-dE/d ln L off by {:e}) [energy]",
+            "{:<28} {} (relative difference from -dE/d ln L: {:e}) [energy]",
             "virial, sum F r", virial.from_forces, virial.relative_difference
         )?;
     }

@@ -15,18 +15,18 @@ use crate::{Failure, print, sample_of_file, scene_file, threads};
 
 #[derive(Args)]
 pub struct PrecisionArguments {
-    /// Scene file (TOML); without one the built-in scene.
+    /// Scene file (TOML); by default the built-in scene.
     scene: Option<PathBuf>,
-    /// Only the sample of this name.
+    /// Run only the sample with this name.
     #[arg(long, value_name = "NAME", conflicts_with = "packing")]
     sample: Option<String>,
     /// Use this packing (extended XYZ, LAMMPS data or dump) instead of the samples of the scene.
     #[arg(long, value_name = "FILE")]
     packing: Option<PathBuf>,
-    /// Folder for tables, plots and the page.
+    /// Folder for the tables, the plots and the page.
     #[arg(long, value_name = "DIR", default_value = "precision")]
     out: PathBuf,
-    /// Steps allowed to the relaxers that take one or two force evaluations a step.
+    /// Step limit of relaxers with one or two force evaluations per step.
     #[arg(long, value_name = "N", default_value_t = PrecisionSettings::default().explicit_step_limit)]
     steps: usize,
 }

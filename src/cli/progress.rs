@@ -38,7 +38,7 @@ impl Bars {
                 let bar = all.add(ProgressBar::new(PARTS));
                 bar.set_style(style.clone());
                 bar.set_prefix(name.to_string());
-                bar.set_message("waits");
+                bar.set_message("waiting");
                 bar
             })
             .collect();
@@ -76,7 +76,7 @@ impl Progress for Bars {
             part if part > 0.02 => {
                 format!("about {:.0} s left", stage.start.elapsed().as_secs_f64() * (1.0 - part) / part)
             }
-            _ => "time left not known yet".into(),
+            _ => "time left unknown".into(),
         };
         let Stage { name, limit, relaxation_count, .. } = stage;
         bar.set_message(format!("{name} {relaxation_count}: residual {residual:.1e} to {limit:.0e}, {left}"));

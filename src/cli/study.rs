@@ -21,37 +21,37 @@ pub struct StudyArguments {
     /// Study file (TOML).
     #[arg(conflicts_with = "recipe")]
     study: Option<PathBuf>,
-    /// Run the study behind a figure of the published study instead of a file.
+    /// Run the study of a published figure, instead of a study file.
     #[arg(long, value_name = "NAME", value_parser = recipes())]
     recipe: Option<Recipe>,
-    /// How much of a recipe: minutes on two cores, a night on two cores, or the published sizes and 400 samples.
+    /// Size of a recipe: minutes on two cores, a night on two cores, or the published sizes and 400 samples.
     #[arg(long, value_parser = scales(), default_value = "small", requires = "recipe")]
     scale: Scale,
-    /// How packings of a recipe come to rest after the inflation.
+    /// How the packings of a recipe are relaxed after the inflation.
     #[arg(long, value_name = "NAME", value_parser = protocols(), default_value = ProtocolChoice::default().name(), requires = "recipe")]
     protocol: ProtocolChoice,
-    /// A relaxer with its default settings in place of that of the protocol.
+    /// Relaxer of a recipe with its default settings, instead of a protocol.
     #[arg(long, value_name = "NAME", value_parser = relaxer, requires = "recipe", conflicts_with = "protocol")]
     relaxer: Option<RelaxerChoice>,
-    /// Packings of each size and pressure of a recipe, in place of those of its scale.
+    /// Number of packings for each size and pressure of a recipe, instead of that of its scale.
     #[arg(long, value_name = "N", requires = "recipe")]
     seeds: Option<usize>,
-    /// Print the study, to be run from a file or changed, and run nothing.
+    /// Print the study as a study file (TOML) and run nothing.
     #[arg(long)]
     print: bool,
-    /// Folder of its samples; those that are there already are not run again.
+    /// Folder of the samples; existing samples are not run again.
     #[arg(long, value_name = "DIR", default_value = "jamscope-study")]
     out: PathBuf,
-    /// Run only part I of N, I from 1 to N; without it, that of the Slurm array task this is, or all.
+    /// Run only part I of N, with I from 1 to N; by default the part of the Slurm array task, or all.
     #[arg(long, value_name = "I/N", value_parser = parse_shard)]
     shard: Option<Shard>,
-    /// Print the plan with its cost, as far as samples in the folder tell, and run nothing.
+    /// Print the plan with its cost, estimated from existing samples if there are any, and run nothing.
     #[arg(long)]
     dry_run: bool,
-    /// Let the study take the place of another one in the folder; samples of both are kept.
+    /// Replace another study in the folder; the samples of both are kept.
     #[arg(long)]
     replace: bool,
-    /// Threads; without it one a core. Never changes a result.
+    /// Number of threads; by default one per core. Changes no result.
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
 }
@@ -111,7 +111,10 @@ fn shard_of_environment() -> Result<Shard, Failure> {
     let first = number("SLURM_ARRAY_TASK_MIN")?.unwrap_or(0);
     match task.checked_sub(first) {
         Some(index) if index < count => Ok(Shard { index, count }),
-        _ => Err(format!("the array has {count} tasks from {first} on in steps of 1, {task} is none of them").into()),
+        _ => {
+            Err(format!("SLURM_ARRAY_TASK_ID is {task}, but the array has {count} tasks from {first} on in steps of 1")
+                .into())
+        }
     }
 }
 
@@ -133,7 +136,7 @@ fn read_study(path: &Path) -> Result<Study, Failure> {
         let protocol: ProtocolChoice =
             protocol.try_into().map_err(|error| format!("{}: protocol: {error}", path.display()))?;
         if !study.relaxers.is_empty() {
-            return Err(format!("{}: protocol and relaxers: one of them is enough", path.display()).into());
+            return Err(format!("{}: protocol and relaxers: give only one of them", path.display()).into());
         }
         study.relaxers = vec![protocol.relaxer()];
     }
@@ -177,7 +180,7 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
     if let Some(recipe) = arguments.recipe {
         let by = arguments.relaxer.map_or(arguments.protocol.title(), |relaxer| relaxer.name());
         let cost = cost::summary(&plan, &arguments.out, shard);
-        print(&format!("{}: {}\nat rest by {by}\n{cost}", recipe.name(), recipe.title()))?;
+        print(&format!("{}: {}\nrelaxed by {by}\n{cost}", recipe.name(), recipe.title()))?;
     }
     let bar = Bar::new(plan.tasks.iter().filter(|task| shard.has(task.index)).count());
     let executed = match shard == Shard::default() {
@@ -192,17 +195,17 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
     // The lock is held until the report is written, so that the report is of this study.
     let (done, merged, _lock) = executed?;
     let mut text = format!(
-        "{} samples: {} run, {} there before, in {}\n",
+        "{} samples: {} run, {} already present, in {}\n",
         done.sample_count,
         done.run_count,
         done.found_count,
         arguments.out.display()
     );
     text += &failures(&done.failures);
-    text += &problems("left alone, of no sample of this study", &done.foreign);
+    text += &problems("were not changed, because they belong to no sample of this study", &done.foreign);
     print(&text)?;
     if !done.damaged.is_empty() {
-        return Err(problems("damaged, move them away to have their samples run again", &done.damaged)
+        return Err(problems("are damaged; move them away to run their samples again", &done.damaged)
             .trim_end()
             .into());
     }
@@ -244,8 +247,8 @@ fn results(merged: &Merged, folder: &Path) -> Result<String, Failure> {
         text.push('\n');
         text += &failures(&statistics.failures);
     }
-    text += &problems("left out, damaged", &merged.damaged);
-    text += &problems("left out, of no sample of this study", &merged.foreign);
+    text += &problems("were left out, because they are damaged", &merged.damaged);
+    text += &problems("were left out, because they belong to no sample of this study", &merged.foreign);
     let mut files = merged.files.clone();
     #[cfg(feature = "fit")]
     {
@@ -283,7 +286,7 @@ mod transition {
         match found {
             TransitionPressure::Above(highest) => format!("above {highest:.2e}"),
             TransitionPressure::Below(lowest) => format!("below {lowest:.2e}"),
-            TransitionPressure::Unordered => "not in one place".into(),
+            TransitionPressure::Unordered => "no single transition".into(),
             TransitionPressure::Uninformative { reason } => format!("cannot tell: {}", reason.words()),
             found => {
                 let ends = found.interval().map_or(String::new(), |[low, high]| format!(" ({low:.2e} to {high:.2e})"));
@@ -293,7 +296,7 @@ mod transition {
     }
 
     fn line(one: &Comparison) -> String {
-        let value = one.value.map_or("a bound".into(), number);
+        let value = one.value.map_or("only a bound".into(), number);
         let ends = one.interval.map_or(String::new(), |[low, high]| format!(" ({} to {})", number(low), number(high)));
         let published = number(one.published);
         let reason = one.reason.map_or(String::new(), |reason| format!(", {}", reason.words()));

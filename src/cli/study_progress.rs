@@ -21,7 +21,7 @@ struct Counts {
 
 impl Bar {
     pub fn new(task_count: usize) -> Self {
-        let style = ProgressStyle::with_template("{bar:30} {pos}/{len} packings, {elapsed} gone, {eta} left{msg}")
+        let style = ProgressStyle::with_template("{bar:30} {pos}/{len} packings, {elapsed} elapsed, {eta} left{msg}")
             .unwrap_or_else(|_| ProgressStyle::default_bar());
         let bar = ProgressBar::new(task_count as u64).with_style(style);
         bar.enable_steady_tick(Duration::from_millis(500));
@@ -52,6 +52,6 @@ impl StudyProgress for Bar {
         let minutes = self.bar.elapsed().as_secs_f64() / 60.0;
         let failed: Vec<String> =
             counts.failures.iter().map(|(kind, count)| format!(", {count} failed ({})", kind.name())).collect();
-        self.bar.set_message(format!(", {:.1} samples a minute{}", counts.run as f64 / minutes, failed.concat()));
+        self.bar.set_message(format!(", {:.1} samples per minute{}", counts.run as f64 / minutes, failed.concat()));
     }
 }

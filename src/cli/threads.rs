@@ -10,7 +10,7 @@ use crate::Failure;
 #[cfg(feature = "parallel")]
 fn limit() -> Limit {
     let processors = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    Limit { largest: (4 * processors as u64).max(256), reason: "four a processor, at least 256" }
+    Limit { largest: (4 * processors as u64).max(256), reason: "four per processor, but at least 256" }
 }
 
 /// The stack of a thread \[bytes\].
@@ -51,6 +51,8 @@ pub fn set_threads(threads: Option<usize>) -> Result<(), Failure> {
 pub fn set_threads(threads: Option<usize>) -> Result<(), Failure> {
     match threads {
         None | Some(1) => Ok(()),
-        Some(count) => Err(format!("--threads {count}: built without the feature `parallel`, one thread only").into()),
+        Some(count) => {
+            Err(format!("--threads {count}: this build has one thread only (feature `parallel` is off)").into())
+        }
     }
 }

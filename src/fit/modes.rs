@@ -150,7 +150,7 @@ pub fn fit_elastic_modes(
             let best = grid.iter().map(|&ratio| total(ratio)).fold(f64::INFINITY, f64::min);
             let freedom: usize = fit(0.0).iter().skip(1).map(|mode| mode.freedom).sum();
             // One standard error, with each error scaled so that χ² per degree of freedom is 1.
-            let found = minimum(&grid, (best / freedom.max(1) as f64).max(f64::MIN_POSITIVE), total);
+            let found = minimum(&grid, (best / freedom.max(1) as f64).max(f64::MIN_POSITIVE), &total);
             (found.at, found.lower.zip(found.upper).map(|(low, high)| [low, high]))
         }
     };

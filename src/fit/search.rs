@@ -13,9 +13,10 @@ const EDGE_TOLERANCE: f64 = 1e-7;
 /// False position needs 6 to 10 steps.
 const EDGE_STEPS: usize = 60;
 
-struct Cost<F>(F);
+/// Type-erased, so that each solver is compiled once.
+struct Cost<'a>(&'a dyn Fn(f64) -> f64);
 
-impl<F: Fn(f64) -> f64> CostFunction for Cost<F> {
+impl CostFunction for Cost<'_> {
     type Param = f64;
     type Output = f64;
 
@@ -25,7 +26,7 @@ impl<F: Fn(f64) -> f64> CostFunction for Cost<F> {
 }
 
 /// The minimum of the function between two points, by golden-section search.
-pub(super) fn golden(low: f64, high: f64, tolerance: f64, function: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn golden(low: f64, high: f64, tolerance: f64, function: &dyn Fn(f64) -> f64) -> f64 {
     let middle = 0.5 * (low + high);
     let Ok(solver) = GoldenSectionSearch::new(low, high).and_then(|solver| solver.with_tolerance(tolerance)) else {
         return middle;
@@ -52,11 +53,11 @@ pub(super) struct Minimum {
 /// Minimum and interval on an ascending grid of at least three points.
 ///
 /// The interval ends where the function stays above; humps inside it are included.
-pub(super) fn minimum(grid: &[f64], rise: f64, function: impl Fn(f64) -> f64) -> Minimum {
+pub(super) fn minimum(grid: &[f64], rise: f64, function: &dyn Fn(f64) -> f64) -> Minimum {
     let values: Vec<f64> = grid.iter().map(|&at| function(at)).collect();
     let lowest = (0..grid.len()).fold(0, |best, i| if values[i] < values[best] { i } else { best });
     let (low, high) = (grid[lowest.saturating_sub(1)], grid[(lowest + 1).min(grid.len() - 1)]);
-    let polished = Executor::new(Cost(&function), BrentOpt::new(low, high).set_tolerance(1e-8, 1e-10))
+    let polished = Executor::new(Cost(function), BrentOpt::new(low, high).set_tolerance(1e-8, 1e-10))
         .configure(|state| state.max_iters(STEP_LIMIT))
         .run()
         .ok()
@@ -68,14 +69,14 @@ pub(super) fn minimum(grid: &[f64], rise: f64, function: impl Fn(f64) -> f64) ->
     let inside = |i: &usize| values[*i] <= level;
     let first = (0..grid.len()).find(inside).map_or(at, |i| grid[i]).min(at);
     let last = (0..grid.len()).rev().find(inside).map_or(at, |i| grid[i]).max(at);
-    let lower = grid.iter().rev().find(|&&point| point < first).map(|&out| edge(out, first, level, &function));
-    let upper = grid.iter().find(|&&point| point > last).map(|&out| edge(out, last, level, &function));
+    let lower = grid.iter().rev().find(|&&point| point < first).map(|&out| edge(out, first, level, function));
+    let upper = grid.iter().find(|&&point| point > last).map(|&out| edge(out, last, level, function));
     Minimum { at, value, lower, upper }
 }
 
 /// Where the function crosses `level` between a point above it and one not above it: false position, halving the value
 /// of an end that does not move (Illinois method; Dowell, Jarratt (1971), BIT 11, 168).
-fn edge(out: f64, inside: f64, level: f64, function: impl Fn(f64) -> f64) -> f64 {
+fn edge(out: f64, inside: f64, level: f64, function: &dyn Fn(f64) -> f64) -> f64 {
     let excess = |at: f64| function(at) - level;
     let (mut high, mut low) = ((out, excess(out)), (inside, excess(inside)));
     let width = (out - inside).abs();

@@ -12,10 +12,10 @@ pub enum InflationError {
     #[error(transparent)]
     Packing(#[from] PackingError),
     /// A circle can only be cut from a periodic box.
-    #[error("the packing is not periodic: a circle with its held rim is cut from a periodic box")]
+    #[error("the packing is not periodic: a circle with a held rim can be cut only from a periodic box")]
     NotPeriodic,
     /// r_out must be such that every mobile disk has one image.
-    #[error("outer radius {outer_radius} is not between 0 and half the shortest side of the box, {half_side}")]
+    #[error("outer radius {outer_radius}: must be between 0 and half the shortest side of the box, {half_side}")]
     OuterRadiusOutOfRange {
         /// The outer radius given.
         outer_radius: f64,
@@ -29,7 +29,9 @@ pub enum InflationError {
         outer_radius: f64,
     },
     /// d_0 must be finite and leave a positive radius.
-    #[error("increase is {increase}, which leaves no positive radius of a disk of radius {radius}")]
+    #[error(
+        "increase is {increase}: must be finite and above -{radius}, so that the radius of the inflated disk stays positive"
+    )]
     IncreaseNotPossible {
         /// d_0.
         increase: f64,
@@ -38,7 +40,7 @@ pub enum InflationError {
     },
     /// The inflated disk would cover the centre of a neighbour.
     #[error(
-        "increase is {increase}, larger than the neighbours allow: a disk of radius {radius} has a neighbour's centre at {nearest}, so the increase must stay below {}",
+        "increase is {increase}, which is too large: a disk of radius {radius} would cover the centre of a neighbour at distance {nearest}, so the increase must stay below {}",
         nearest - radius
     )]
     IncreaseTooLarge {
@@ -63,7 +65,7 @@ pub enum InflationError {
     },
     /// A mobile disk was pushed through the held rim: a disk fits between it and r_out.
     #[error(
-        "{stage}: disk {label} was pushed through the rim: it is at {distance} from the centre, and disks from {outer_radius} on are held"
+        "{stage}: disk {label} was pushed through the rim: it is at distance {distance} from the centre, and the rim is at {outer_radius}"
     )]
     BeyondRim {
         /// Stage of the relaxation.

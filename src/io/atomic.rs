@@ -19,7 +19,7 @@ pub enum WriteError {
         source: io::Error,
     },
     /// A folder or device has that name; a file must not replace it.
-    #[error("{path}: there is something of that name that is not a file")]
+    #[error("{path}: exists, but is not a file")]
     NotAFile {
         /// The path.
         path: PathBuf,
@@ -55,7 +55,7 @@ pub enum WriteError {
         value: String,
     },
     /// The packing has data that the format cannot contain and whose loss a reader would not notice.
-    #[error("{path}: LAMMPS data has no place for {what}")]
+    #[error("{path}: the format LAMMPS data cannot store {what}")]
     NoPlaceFor {
         /// The file.
         path: PathBuf,

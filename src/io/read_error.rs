@@ -65,7 +65,7 @@ pub enum ReadError {
         found: usize,
     },
     /// There are more disks than announced.
-    #[error("{path}, line {line}: a disk more than the {expected} announced")]
+    #[error("{path}, line {line}: there are more disks than the {expected} announced")]
     TooManyRows {
         /// The file.
         path: PathBuf,
@@ -113,7 +113,7 @@ pub enum ReadError {
         found: String,
     },
     /// A duplicate id, column, key, header line, section or item.
-    #[error("{path}, line {line}: {field} `{value}` stands already in line {first_line}")]
+    #[error("{path}, line {line}: {field} `{value}` is already in line {first_line}")]
     Repeated {
         /// The file.
         path: PathBuf,
@@ -128,7 +128,7 @@ pub enum ReadError {
     },
     /// The low part of a coordinate is too large.
     #[error(
-        "{path}, line {line}: {field} {axis} is `{value}`, expected a low part of the coordinate {coordinate:?}: below {:e}, the spacing of numbers there", spacing(*.coordinate)
+        "{path}, line {line}: {field} {axis} is `{value}`, expected a correction of the coordinate {coordinate:?} below {:e}, the spacing of floating-point numbers there", spacing(*.coordinate)
     )]
     CorrectionTooLarge {
         /// The file.
@@ -146,7 +146,7 @@ pub enum ReadError {
     },
     /// A coordinate is so large that its rounding is not negligible.
     #[error(
-        "{path}, line {line}: {field} is {value:?}, beyond {limit:?}, a million times {unit}: six of its 16 digits are lost there, and overlaps with them"
+        "{path}, line {line}: {field} is {value:?}, beyond the limit {limit:?}, a million times {unit}: six of its 16 digits would be lost, and overlaps would be inaccurate"
     )]
     TooFar {
         /// The file.
@@ -207,7 +207,7 @@ pub enum ReadError {
         dimension: usize,
     },
     /// A LAMMPS data file has another atom style.
-    #[error("{path}, line {line}: atom style is `{style}`, only `sphere` has diameters of disks that can be read")]
+    #[error("{path}, line {line}: atom style is `{style}`: must be `sphere`, the only supported style with diameters")]
     AtomStyle {
         /// The file.
         path: PathBuf,
@@ -217,7 +217,7 @@ pub enum ReadError {
         style: String,
     },
     /// The frame does not exist.
-    #[error("{path}: no frame {frame} (counted from 0), the file has {frame_count}")]
+    #[error("{path}: no frame {frame} (counted from 0); the file has {frame_count} frames")]
     NoSuchFrame {
         /// The file.
         path: PathBuf,

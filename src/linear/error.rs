@@ -26,7 +26,7 @@ pub enum LinearError {
         disk: usize,
     },
     /// No disk has this index.
-    #[error("disk {disk} of {disk_count}: there is none")]
+    #[error("disk {disk} does not exist: there are {disk_count} disks, counted from 0")]
     NoSuchDisk {
         /// The index given.
         disk: usize,
@@ -40,7 +40,7 @@ pub enum LinearError {
         disk: usize,
     },
     /// The numbers of loads and disks differ.
-    #[error("{found} forces for {disk_count} disks")]
+    #[error("{found} forces for {disk_count} disks: there must be one force per disk")]
     LoadNotOneADisk {
         /// Number of forces.
         found: usize,
@@ -48,13 +48,13 @@ pub enum LinearError {
         disk_count: usize,
     },
     /// A displacement is given for a disk that is not held.
-    #[error("disk {disk} is not held: its displacement is part of the answer")]
+    #[error("disk {disk} is not held: a displacement can be given only for held disks")]
     NotHeld {
         /// The disk.
         disk: usize,
     },
     /// An entry is NaN or infinite.
-    #[error("the matrix has the entry {value} in row {row}, column {column}")]
+    #[error("the matrix has the entry {value} in row {row}, column {column}, which is not finite")]
     NotFinite {
         /// Row of the entry.
         row: usize,
@@ -64,13 +64,13 @@ pub enum LinearError {
         value: f64,
     },
     /// The pattern of entries differs from that of the analysed matrix.
-    #[error("the matrix of {dimension} rows does not have the pattern that was analysed")]
+    #[error("the matrix of {dimension} rows has another sparsity pattern than the matrix that was analysed")]
     PatternDiffers {
         /// Its number of rows.
         dimension: usize,
     },
     /// An elimination order contains a row twice, an invalid row, or not all rows.
-    #[error("the order of elimination has row {row} in place {place}, which is no order of {dimension} rows")]
+    #[error("the order of elimination has row {row} in place {place}: must be a permutation of the {dimension} rows")]
     NotAnOrder {
         /// Number of rows of the matrix.
         dimension: usize,
@@ -86,7 +86,9 @@ pub enum LinearError {
         dimension: usize,
     },
     /// Singular to rounding: a motion has no stiffness.
-    #[error("the matrix is singular to rounding: its pivots span {pivot_ratio:e}, smallest over largest")]
+    #[error(
+        "the matrix is singular within rounding: the ratio of its smallest to its largest pivot is {pivot_ratio:e}"
+    )]
     Singular {
         /// Smallest over largest absolute value of a pivot; for a definite matrix, an upper bound of the inverse
         /// condition number.
@@ -101,7 +103,7 @@ pub enum LinearError {
         refinement_count: usize,
     },
     /// Conjugate gradients did not converge.
-    #[error("the backward error is {backward_error:e} after {iteration_count} iterations, all that were allowed")]
+    #[error("the backward error is {backward_error:e} after {iteration_count} iterations, the iteration limit")]
     IterationsUsedUp {
         /// Iterations made.
         iteration_count: usize,
@@ -109,23 +111,23 @@ pub enum LinearError {
         backward_error: f64,
     },
     /// Held disks do not follow the strain of a box.
-    #[error("{held_count} disks are held: elastic moduli are those of a periodic packing that nothing holds")]
+    #[error("{held_count} disks are held: elastic moduli need a periodic packing without held disks")]
     HeldDisks {
         /// Number of held disks.
         held_count: usize,
     },
     /// There is no box to strain.
-    #[error("the packing lies in the open plane: elastic moduli are those of a periodic packing")]
+    #[error("the packing lies in the open plane: elastic moduli need a periodic packing")]
     NotPeriodic,
     /// Sites do not follow the strain of a box.
-    #[error("sites hold or push the disks with Γ = {coupling}: the energy is not one of the strain alone")]
+    #[error("sites act on the disks with Γ = {coupling}: elastic moduli need an energy without sites")]
     OnSites {
         /// Γ of the law.
         coupling: f64,
     },
     /// Not all requested modes were found.
     #[error(
-        "{found} of {asked} modes were found to {tolerance:e} of the norm after {factorisation_count} factorisations"
+        "{found} of {asked} modes were found within {tolerance:e} of the matrix norm after {factorisation_count} factorisations"
     )]
     ModesNotFound {
         /// Number found.

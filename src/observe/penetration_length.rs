@@ -46,7 +46,7 @@ pub enum PenetrationError {
         threshold: f64,
     },
     /// The mean or the radius of a ring is not finite.
-    #[error("ring {ring} at radius {radius} has a mean displacement of {mean}")]
+    #[error("ring {ring} at radius {radius} has a mean displacement of {mean}: both must be finite")]
     RingNotFinite {
         /// Index of the ring, from 0.
         ring: usize,

@@ -84,7 +84,7 @@ fn figure(sample: &SamplePrecision, quantity: Quantity, price: Price) -> Option<
     Some(Figure::new(
         format!("{}: {} against {}", sample.name, quantity.name, price.label),
         format!(
-            "{} of {} runs against {}, both logarithmic; one colour and marker a relaxer",
+            "{} of {} runs against {}, both logarithmic, with one colour and marker per relaxer",
             quantity.label,
             points.len(),
             price.label

@@ -17,11 +17,11 @@ pub fn page(report: &PrecisionReport) -> String {
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>jamscope: what accuracy costs</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-         <header>\n<h1>What accuracy costs</h1>\n<p>One disk of a packing has grown; every relaxer brings the rest to rest \
-         from that one state, at a ladder of force limits, time steps or tolerances. Errors are those against the minimum a \
-         run belongs to, known to rounding. Full signs: that minimum is a reference, found by two methods; hollow ones: it \
-         is another, and the error is against that one. Crossed out: the steps allowed were used up. What is below the axis, \
-         zero included, stands on its edge.</p>\n</header>\n<main>\n"
+         <header>\n<h1>What accuracy costs</h1>\n<p>One disk of a packing has grown. Every relaxer relaxes the packing \
+         from the same state, with several force limits, time steps or tolerances. An error is the difference from the \
+         minimum of the run, which is known within rounding. Filled symbols: this minimum is a reference, found by two \
+         methods. Hollow symbols: it is another minimum. Crossed symbols: the run ended at the step limit. Values below \
+         the axis, including zero, are drawn at its edge.</p>\n</header>\n<main>\n"
     );
     for sample in &report.samples {
         section(sample, &mut html);
@@ -29,8 +29,8 @@ pub fn page(report: &PrecisionReport) -> String {
     let _ = write!(
         html,
         "</main>\n<footer>\n<p>jamscope {}. All numbers: <a href=\"precision.csv\">precision.csv</a>, \
-         <a href=\"choices.csv\">choices.csv</a>, <a href=\"precision.json\">precision.json</a>; but for the seconds two \
-         measurements of one scene agree to the byte.</p>\n</footer>\n</body>\n</html>\n",
+         <a href=\"choices.csv\">choices.csv</a>, <a href=\"precision.json\">precision.json</a>; two measurements of one \
+         scene give the same bytes, except for the seconds.</p>\n</footer>\n</body>\n</html>\n",
         escaped(report.jamscope_version)
     );
     html

@@ -61,8 +61,8 @@ pub(super) fn facts(sample: &SamplePrecision) -> Vec<String> {
     let references = &sample.references;
     let residuals = references.residuals.map(|residual| significant(residual, 2));
     let same = match (sample.unjammed, references.same_minimum) {
-        (true, _) => "the packing is unjammed, so that no disk has a place of its own; they lie apart by",
-        (false, true) => "they are one minimum (A) and disagree by",
+        (true, _) => "the packing is unjammed, so the positions at rest are not unique; the references differ by",
+        (false, true) => "they are the same minimum (A) and differ by",
         (false, false) => "they are two minima, A and B, which differ by",
     };
     let mut lines = vec![

@@ -146,7 +146,9 @@ pub enum ReferenceError {
         wavenumber: f64,
     },
     /// The wavenumber is a pole to rounding: the displacement has no finite value anywhere in the annulus.
-    #[error("the screening wavenumber {wavenumber} is pole number {index}, {pole}, to rounding: no finite solution")]
+    #[error(
+        "the screening wavenumber {wavenumber} equals pole number {index}, {pole}, within rounding: there is no finite solution"
+    )]
     AtPole {
         /// Number of the pole, counted from 1.
         index: usize,

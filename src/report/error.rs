@@ -11,7 +11,7 @@ use crate::report::figures;
 #[non_exhaustive]
 pub enum ReportError {
     /// The folder could not be made.
-    #[error("{folder}: the folder could not be made: {source}")]
+    #[error("{folder}: the folder could not be created: {source}")]
     Folder {
         /// The folder.
         folder: PathBuf,
@@ -19,7 +19,7 @@ pub enum ReportError {
         source: std::io::Error,
     },
     /// Nothing can be written into the folder.
-    #[error("{folder}: nothing can be written into the folder: {source}")]
+    #[error("{folder}: cannot write into the folder: {source}")]
     NotWritable {
         /// The folder.
         folder: PathBuf,
@@ -27,7 +27,7 @@ pub enum ReportError {
         source: std::io::Error,
     },
     /// No file with this name can be created.
-    #[error("{field} = \"{value}\": no file `{name}` ({} letters) can be made in {folder}: {source}", name.chars().count())]
+    #[error("{field} = \"{value}\": the file `{name}` ({} characters) cannot be created in {folder}: {source}", name.chars().count())]
     Name {
         /// The origin of the name.
         field: &'static str,
@@ -43,7 +43,7 @@ pub enum ReportError {
     /// A complete report could not be moved to its place; it stays complete, and the next command on the folder tries
     /// again.
     #[error(
-        "{path}: {source}; the report is complete in a hidden folder beside it, and the next run or analysis of the folder moves it"
+        "{path}: {source}; the report is complete in a hidden folder beside it, and the next run or analysis of the folder moves it into place"
     )]
     Place {
         /// The file or folder.
@@ -53,7 +53,7 @@ pub enum ReportError {
     },
     /// Another process is moving a report into the same folder and does not end.
     #[error(
-        "{folder}: locked by another process; the report is complete in a hidden folder in it, and the next run or analysis of the folder moves it"
+        "{folder}: locked by another process; the report is complete in a hidden folder in it, and the next run or analysis of the folder moves it into place"
     )]
     Busy {
         /// The folder.

@@ -169,7 +169,7 @@ fn section(report: &Report, sample: &SampleReport) -> Result<String, FigureError
         SampleOutcome::Failed(reason) => {
             return Ok(format!(
                 "<section class=\"sample failed\" aria-label=\"Sample {name}\">\n<h2>{name}: failed</h2>\n\
-                 <p class=\"reason\">{}</p>\n<p>Asked for: {}.</p>\n</section>\n",
+                 <p class=\"reason\">{}</p>\n<p>Requested: {}.</p>\n</section>\n",
                 escaped(reason),
                 escaped(&requests(report, sample))
             ));
@@ -195,7 +195,7 @@ fn requests(report: &Report, sample: &SampleReport) -> String {
         Some(Source::PackingFraction(value)) => format!("packing fraction {value}"),
         Some(Source::Pressure(value)) => format!("pressure {value}"),
         Some(Source::File(path)) => format!("the packing in {}", path.display()),
-        None => "nothing the scene names".into(),
+        None => "a sample that is not in the scene".into(),
     }
 }
 

@@ -25,7 +25,7 @@ pub(crate) fn section(samples: &[SampleReport]) -> Section {
         Some(format!("{}, {at_rest}", sensitivity.endings.len()))
     })
     .add("minima", |it| measured(it).map(|it| count(it.minimum_count)))
-    .add("endings in them", |it| {
+    .add("relaxers in each minimum", |it| {
         let sensitivity = measured(it).filter(|it| it.minimum_count > 0)?;
         let members = |minimum| sensitivity.endings.iter().filter(|it| it.minimum == Some(minimum)).count();
         let counts = (1..=sensitivity.minimum_count).map(|minimum| members(minimum).to_string());
@@ -41,14 +41,14 @@ pub(crate) fn section(samples: &[SampleReport]) -> Section {
     .add("contacts that differ, at most", |it| {
         measured(it)?.endings.iter().filter_map(|ending| ending.contact_difference_count).max().map(count)
     })
-    .add("which minimum: Δp ± [force/length]", |it| deviation(measured(it)?.spreads.pressure_change))
-    .add("which minimum: G* ±", |it| deviation(measured(it)?.spreads.anticorrelation))
-    .add("which minimum: θ* ± [rad]", |it| deviation(measured(it)?.spreads.correlation_angle))
-    .add("which minimum: contact changes ±", |it| deviation(measured(it)?.spreads.contact_change_count));
+    .add("scatter of minima: Δp [force/length]", |it| deviation(measured(it)?.spreads.pressure_change))
+    .add("scatter of minima: G*", |it| deviation(measured(it)?.spreads.anticorrelation))
+    .add("scatter of minima: θ* [rad]", |it| deviation(measured(it)?.spreads.correlation_angle))
+    .add("scatter of minima: contact changes", |it| deviation(measured(it)?.spreads.contact_change_count));
     #[cfg(feature = "fit")]
-    rows.add("which minimum: elastic d_0^eff ±", |it| deviation(measured(it)?.spreads.elastic_amplitude))
-        .add("which minimum: screened d_0^eff ±", |it| deviation(measured(it)?.spreads.screened_amplitude))
-        .add("which minimum: κ ± [1/length]", |it| deviation(measured(it)?.spreads.wavenumber));
+    rows.add("scatter of minima: elastic d_0^eff", |it| deviation(measured(it)?.spreads.elastic_amplitude))
+        .add("scatter of minima: screened d_0^eff", |it| deviation(measured(it)?.spreads.screened_amplitude))
+        .add("scatter of minima: κ [1/length]", |it| deviation(measured(it)?.spreads.wavenumber));
     rows.section("Protocols")
 }
 
@@ -56,7 +56,7 @@ pub(crate) fn section(samples: &[SampleReport]) -> Section {
 pub(crate) fn summary(report: &Report) -> Option<String> {
     let all = report.protocol.as_ref()?;
     let mut text = format!(
-        "Protocols: {} of {} samples compared, {} of them with more than one minimum ({} in the mean), largest distance {}",
+        "Protocols: {} of {} samples compared, {} of them with more than one minimum ({} on average), largest distance {}",
         all.compared_count,
         all.sample_count,
         all.several_minima_count,
@@ -80,7 +80,7 @@ pub(crate) fn summary(report: &Report) -> Option<String> {
             let _ = write!(text, "; {name} ± {}", significant(deviation, 2));
         }
     }
-    Some(text + " (error bars for which minimum, root mean square over samples).")
+    Some(text + " (standard deviations over minima, root mean square over samples).")
 }
 
 /// Why a relaxer stopped, in words.
@@ -164,7 +164,7 @@ pub(crate) fn html(sensitivity: &ProtocolSensitivity) -> String {
 
     let mut heads = vec![
         "Relaxer",
-        "stop",
+        "ends by",
         "minimum",
         "distance [length]",
         "disks that differ",
@@ -178,7 +178,8 @@ pub(crate) fn html(sensitivity: &ProtocolSensitivity) -> String {
     if cfg!(feature = "fit") {
         heads.extend(["elastic d_0^eff [length]", "screened d_0^eff [length]", "κ [1/length]"]);
     }
-    let mut html = String::from("<h3>Where other relaxers end</h3>\n<div class=\"table\">\n<table>\n<thead>\n<tr>");
+    let mut html =
+        String::from("<h3>Minima reached by other relaxers</h3>\n<div class=\"table\">\n<table>\n<thead>\n<tr>");
     for head in &heads {
         let _ = write!(html, "<th scope=\"col\">{}</th>", escaped(head));
     }

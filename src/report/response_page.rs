@@ -155,7 +155,7 @@ pub(crate) fn legend(responses: &[&Response], heat: bool) -> String {
     if heat {
         text.push_str(
             "The map shows r·d<sub>r</sub>, the radial displacement of each disk times its distance from the centre, \
-             over a size that 98 % of the disks stay below: orange moves outwards, purple inwards; grey disks are rattlers. ",
+             divided by a value that 98 % of the disks do not exceed. Orange disks move outwards, purple disks inwards; grey disks are rattlers. ",
         );
     }
     if any(|it| it.radial_profile.is_some()) {
@@ -163,29 +163,29 @@ pub(crate) fn legend(responses: &[&Response], heat: bool) -> String {
     }
     if any(|it| !crate::report::curve::curves(it).is_empty()) {
         text.push_str(
-            "It is held against the elastic solution and the one screened by plastic events with wavenumber κ; the one \
-             that describes it is solid, the other dashed. ",
+            "It is compared with the elastic solution and with the solution screened by plastic events with wavenumber κ. The solution \
+             that describes it is a solid line, the other is dashed. ",
         );
     }
     if any(|it| it.angular_profiles.is_some()) {
-        text.push_str("The angular profiles show single disks in narrow rings: smooth where the response is elastic, noise-like where it is not. ");
+        text.push_str("The angular profiles show single disks in narrow rings. They are smooth where the response is elastic, and noisy where it is not. ");
     }
     if any(|it| it.angular_correlation.is_some()) {
         text.push_str(
             "G(θ) and S(f) are the correlation and the power spectrum of d<sub>r</sub> around a ring; the correlation angle θ* \
-             is read off at the dashed line. ",
+             is where G crosses the dashed line. ",
         );
     }
     if any(|it| it.multipoles.is_some()) {
         text.push_str(
-            "Angular modes: isotropic part n = 0, dipole 1, quadrupole 2; dashed, the elastic modes fitted to them. ",
+            "Angular modes: isotropic part n = 0, dipole 1, quadrupole 2; the dashed lines are the fitted elastic modes. ",
         );
     }
     if any(|it| it.bond_changes.is_some()) {
         text.push_str("The map of r·d<sub>∥</sub> shows bonds, blue stretched, red compressed, with a circle at the isostatic length. ");
     }
     if any(|it| it.contact_changes.is_some()) {
-        text.push_str("Contacts made are red, broken ones blue. ");
+        text.push_str("New contacts are red, broken contacts blue. ");
     }
     text
 }

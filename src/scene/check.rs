@@ -18,7 +18,7 @@ use crate::scene::source::Source;
 #[non_exhaustive]
 pub enum SceneError {
     /// There is no sample.
-    #[error("sample: a scene needs at least one")]
+    #[error("sample: a scene needs at least one sample")]
     NoSample,
     /// Two samples have the same name and would write the same files.
     #[error("sample: the name \"{name}\" is used twice")]
@@ -56,7 +56,7 @@ pub enum SceneError {
     },
     /// A force limit accepts states far from rest.
     #[error(
-        "{field} = {value}: must be at most {limit:.3e}, as a residual above {} of the mean contact force is not rest",
+        "{field} = {value}: must be at most {limit:.3e}, because a packing with a residual above {} of the mean contact force is not at rest",
         crate::verdict::LARGEST_RESIDUAL
     )]
     LimitTooLoose {
@@ -68,7 +68,7 @@ pub enum SceneError {
         limit: f64,
     },
     /// Radii differ so much that forces on small disks are lost in rounding.
-    #[error("mixture: radii from {smallest:e} to {largest:e} are {:.1e} apart: at most {limit:e}, beyond which forces on small disks are below the rounding of those on large ones", largest / smallest)]
+    #[error("mixture: radii from {smallest:e} to {largest:e} have a ratio of {:.1e}: must be at most {limit:e}, because beyond it forces on small disks are below the rounding of those on large disks", largest / smallest)]
     RadiiTooFarApart {
         /// The smallest \[length\].
         smallest: f64,
@@ -79,7 +79,7 @@ pub enum SceneError {
     },
     /// A pressure is below the resolution of rounding.
     #[error(
-        "sample \"{name}\": source.pressure = {pressure:?}: disks of radius {radius:e} would overlap by some {overlap:.1e} of it: at least {limit:e}, below which overlaps are rounding; are pressure, stiffness and radii in one unit?"
+        "sample \"{name}\": source.pressure = {pressure:?}: disks of radius {radius:e} would overlap by about {overlap:.1e} of their radius: must be at least {limit:e}, because smaller overlaps are lost in rounding; check the units of pressure, stiffness and radii"
     )]
     PressureBelowRounding {
         /// The sample.

@@ -144,7 +144,7 @@ impl Record {
                 let kind = FailureKind::of(error);
                 // A time limit ends a sample at a point that depends on the machine, so its message is not recorded.
                 let reason = match kind {
-                    FailureKind::TimeLimit => "the wall time allowed was used up".into(),
+                    FailureKind::TimeLimit => "the time limit of the study was reached".into(),
                     _ => error.to_string(),
                 };
                 RecordOutcome::Failed { kind, reason }

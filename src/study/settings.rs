@@ -127,10 +127,10 @@ pub enum StudyError {
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
     /// The scene of the study contains samples.
-    #[error("scene.sample: the lists of a study make its samples, it names none itself")]
+    #[error("scene.sample: must be absent in a study, whose samples come from its lists")]
     SamplesNamed,
     /// A list is empty.
-    #[error("{list}: it is empty, so there is nothing to run")]
+    #[error("{list}: must not be empty")]
     Empty {
         /// The list.
         list: &'static str,
@@ -144,7 +144,7 @@ pub enum StudyError {
         value: f64,
     },
     /// A list contains a value twice.
-    #[error("{list}: {value} stands twice")]
+    #[error("{list}: {value} occurs twice")]
     Twice {
         /// The list.
         list: &'static str,
@@ -152,7 +152,7 @@ pub enum StudyError {
         value: String,
     },
     /// Two parts contain the same packing.
-    #[error("part {part}: {disk_count} disks at {target:?} with seed {seed} are in an earlier part already")]
+    #[error("part {part}: {disk_count} disks at {target:?} with seed {seed} are already in an earlier part")]
     PartsOverlap {
         /// The later part, from 1.
         part: usize,
@@ -164,7 +164,7 @@ pub enum StudyError {
         seed: u64,
     },
     /// A seed exceeds the largest integer.
-    #[error("seeds: {count} from {first} on is beyond the largest seed")]
+    #[error("seeds: {count} seeds from {first} on go beyond the largest seed")]
     SeedsTooLarge {
         /// The first seed.
         first: u64,
@@ -175,7 +175,7 @@ pub enum StudyError {
 
 /// Largest number of packings: each has a file in one folder, and the whole plan is in memory.
 const MOST_PACKINGS: Limit =
-    Limit { largest: 1_000_000, reason: "a study has at most a million packings, a file each" };
+    Limit { largest: 1_000_000, reason: "a study has at most a million packings, with one file each" };
 
 /// Memory of a task of the plan and of its file name \[bytes\].
 const BYTES_A_PACKING: f64 = 256.0;

@@ -248,7 +248,7 @@ impl Store {
             // A partial file of another process.
             let begun = name.starts_with('.') && name.ends_with(".part");
             if !known.contains(&name) && !begun {
-                found.push(Problem { path: entry.path(), reason: "of no sample of this study".into() });
+                found.push(Problem { path: entry.path(), reason: "belongs to no sample of this study".into() });
             }
         }
         found.sort_by(|a, b| a.path.cmp(&b.path));
@@ -269,14 +269,18 @@ fn records(text: &str, identity: &str) -> Result<(Vec<Record>, f64, Option<Vecto
     let (Some(header), Some(body), Some(timing), Some(""), None) =
         (lines.next(), lines.next(), lines.next(), lines.next(), lines.next())
     else {
-        return Err("cut short, or not three lines".into());
+        return Err("incomplete: the file must have three lines".into());
     };
     let header: Header = serde_json::from_str(header).map_err(|error| format!("line 1: {error}"))?;
     if header.jamscope_version != env!("CARGO_PKG_VERSION") {
-        return Err(format!("written by version {}, this is {}", header.jamscope_version, env!("CARGO_PKG_VERSION")));
+        return Err(format!(
+            "written by version {}, but this is version {}",
+            header.jamscope_version,
+            env!("CARGO_PKG_VERSION")
+        ));
     }
     if header.identity != identity {
-        return Err("the records of another sample".into());
+        return Err("contains the records of another sample".into());
     }
     if header.checksum != hash(&[body]) {
         return Err("line 2: changed since it was written (checksum)".into());

@@ -21,15 +21,15 @@ pub enum StoreError {
     Write(#[from] WriteError),
     /// The folder contains another study.
     #[error(
-        "{path}: the folder holds another study; give this one a folder of its own, or say that it takes that one's place \
-         (samples both have are kept, those of the other are left alone)"
+        "{path}: the folder contains another study; choose another folder, or replace that study with --replace \
+         (samples of both studies are kept)"
     )]
     OtherStudy {
         /// The file of that study.
         path: PathBuf,
     },
     /// The folder contains no study.
-    #[error("{path}: not there, so the folder holds no study")]
+    #[error("{path}: not found, so the folder contains no study")]
     NoStudy {
         /// The missing file.
         path: PathBuf,
@@ -43,7 +43,9 @@ pub enum StoreError {
         reason: String,
     },
     /// Another process runs the same part.
-    #[error("{path}: locked, another process runs the study in this folder, or this part of it; nothing was changed")]
+    #[error(
+        "{path}: locked: another process is running the study in this folder, or this part of it; nothing was changed"
+    )]
     Locked {
         /// The lock.
         path: PathBuf,

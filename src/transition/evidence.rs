@@ -74,7 +74,7 @@ impl CannotTell {
             CannotTell::OneSide => "fewer than 2 cells or 20 samples on one side",
             CannotTell::EndUndecided => "the end cell may be on either side",
             CannotTell::NoValue => "a cell without a value",
-            CannotTell::Unordered => "not in one place",
+            CannotTell::Unordered => "no single transition",
             CannotTell::NoInterval => "no interval",
             CannotTell::WideInterval => "the interval is too wide",
             CannotTell::BeyondCells => "the interval goes beyond the cells",

@@ -105,7 +105,7 @@ impl fmt::Display for Cause {
                 write!(
                     formatter,
                     "a wall or a rim inside R; the {unbalanced_count} unbalanced disks lie within a contact of R = {outer_radius}, \
-                     pushed {side}. Beyond R {held_count} disks hold them, the density says {expected_count}. Give an R inside the \
+                     pushed {side}. Beyond R, {held_count} disks hold them; from the density, {expected_count} are expected. Give an R inside the \
                      wall, with --outer-radius."
                 )
             }
@@ -115,20 +115,20 @@ impl fmt::Display for Cause {
             Cause::Centre { label, unbalanced_count } => write!(
                 formatter,
                 "the centre; the {unbalanced_count} unbalanced disks are neighbours of the inflated disk {label}, whose radius or \
-                 place was another when they came to rest."
+                 position was different when they came to rest."
             ),
             Cause::FewDigits { digits: Digits { significant, spacing }, residual_bound } => write!(
                 formatter,
-                "the digits of the coordinates; they were written with {significant}, known to {spacing:.0e}, which alone leaves a \
-                 residual of up to {residual_bound:.0e}. In LAMMPS: dump_modify ID format float %.17g"
+                "the digits of the coordinates; they were written with {significant} digits, with a spacing of {spacing:.0e}, which alone \
+                 causes a residual of up to {residual_bound:.0e}. In LAMMPS: dump_modify ID format float %.17g"
             ),
-            Cause::Sites => formatter.write_str("the sites; their pushes are in the file's forces, but not in these."),
+            Cause::Sites => formatter.write_str("the sites; the forces in the file contain their forces, but this law does not."),
             Cause::FewDisks { unbalanced_count, label } => write!(
                 formatter,
                 "a damaged line; {unbalanced_count} disks are unbalanced, all others at rest; disk {label} has the largest net force."
             ),
             Cause::Unfinished => formatter.write_str(
-                "a relaxation that ended early; unbalanced disks are everywhere, and no other law is nearer to rest.",
+                "a relaxation that ended early; unbalanced disks are everywhere, and no other law explains the residual.",
             ),
         }
     }

@@ -209,14 +209,14 @@ impl RestVerdict {
         let consequence = match self.decision {
             Decision::AtRest => return Vec::new(),
             Decision::NotAtRest => "no phase and no fit",
-            Decision::NotAtRestButGiven => "phase and fits only because they were asked for",
+            Decision::NotAtRestButGiven => "phase and fits are given only on request",
         };
         let mut all = vec![format!("NOT AT REST: {consequence}. {}", self.residuals())];
         all.extend(self.likely.iter().map(|cause| format!("Likely: {cause}")));
         if !self.other_laws.is_empty() {
             let others: Vec<String> = self.other_laws.iter().map(OtherLaw::to_string).collect();
             all.push(format!(
-                "Residual under other laws: {}. The stiffness scales all contact forces alike and changes none of these.",
+                "Residual under other laws: {}. The stiffness scales all contact forces alike and does not change these residuals.",
                 others.join(", ")
             ));
         }

@@ -335,12 +335,12 @@ fn a_scene_compares_the_fraction_asked_for_and_nothing_changes_where_it_does_not
     }
     assert_eq!(with.iter().filter(|(file, _)| file.ends_with("protocol.csv")).count(), 2);
     let table = terminal_table(&report);
-    for text in ["\nProtocols\n", "  minima ", "which minimum: Δp ±", "Protocols: 2 of 4 samples compared, "] {
+    for text in ["\nProtocols\n", "  minima ", "scatter of minima: Δp", "Protocols: 2 of 4 samples compared, "] {
         assert!(table.contains(text), "{text}\n{table}");
     }
     if cfg!(feature = "plot") {
         let (_, page) = with.iter().find(|(file, _)| file == "report.html").expect("a page");
-        assert_eq!(page.matches("Where other relaxers end").count(), 2);
+        assert_eq!(page.matches("Minima reached by other relaxers").count(), 2);
     }
 }
 

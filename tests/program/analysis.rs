@@ -205,7 +205,7 @@ fn what_does_not_fit_together_is_named() {
     assert_eq!(new(&before, &after, settings), AnalysisError::NoMobileDisk { outer_radius: 0.51 });
     let fewer = Packing::new(*after.domain(), after.positions()[1..].to_vec(), after.radii()[1..].to_vec());
     let message = new(&before, &fewer.expect("valid"), plain).to_string();
-    assert_eq!(message, "600 disks before, 599 after: the states have to hold the same disks");
+    assert_eq!(message, "600 disks before, 599 after: both states must contain the same disks");
     let labels = |change: fn(&mut Vec<u64>)| {
         let mut labels = before.labels().to_vec();
         change(&mut labels);

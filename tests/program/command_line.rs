@@ -405,19 +405,19 @@ fn analyse_says_what_is_missing() {
     let path = |name: &str| folder.path().join(name);
     let out = path("out");
     let of_folder = || complaint(&["analyse", text(folder.path()), "--out", text(&out)]);
-    assert!(of_folder().contains("no file NAME.before.* in it"), "{}", of_folder());
+    assert!(of_folder().contains("the folder contains no file NAME.before.*"), "{}", of_folder());
     let packing = fixture("packings/hertz_N1000_p800.xyz");
     std::fs::copy(&packing, path("one.before.xyz")).expect("copied");
-    assert!(of_folder().contains("no one.after.* or one.displacement.* beside it"), "{}", of_folder());
+    assert!(of_folder().contains("no one.after.* or one.displacement.* in the same folder"), "{}", of_folder());
     std::fs::copy(&packing, path("one.after.xyz")).expect("copied");
     let message = of_folder();
     assert!(message.contains("one.before.xyz") && message.contains("no disk changed its radius"), "{message}");
     std::fs::copy(fixture("packings/hertz_N1000_p100.xyz"), path("one.after.xyz")).expect("copied");
     assert!(of_folder().contains("the box before and the one after differ"), "{}", of_folder());
     std::fs::copy(fixture("packings/hooke_N1000_p100.xyz"), path("one.after.xyz")).expect("copied");
-    assert!(of_folder().contains("the files name two laws"), "{}", of_folder());
+    assert!(of_folder().contains("the files give different laws"), "{}", of_folder());
     std::fs::copy(&packing, path("one.displacement.xyz")).expect("copied");
-    assert!(of_folder().contains("are both a state"), "{}", of_folder());
+    assert!(of_folder().contains("are both files of the state"), "{}", of_folder());
     assert!(!out.exists(), "nothing was written");
 }
 

@@ -63,7 +63,7 @@ fn names_are_measured_before_the_work() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let out = folder.path().join("out");
     let said = refused(&mut run(&fixture("refused/name-too-long.toml"), &out));
-    for part in ["sample.name", "aaaaaaaa", "letters) can be made in", "out"] {
+    for part in ["sample.name", "aaaaaaaa", "characters) cannot be created in", "out"] {
         assert!(said.contains(part), "no {part:?} in {said}");
     }
     assert!(!out.exists(), "nothing is left of what was tried");
@@ -77,11 +77,11 @@ fn a_folder_that_cannot_be_used_is_refused_before_the_work() {
     std::fs::write(&file, "mine").expect("written");
     for out in [folder.path().join("FILE/"), folder.path().join("FILE/inner")] {
         let said = refused(&mut run(&scene, &out));
-        assert!(said.contains("FILE") && said.contains("could not be made"), "{said}");
+        assert!(said.contains("FILE") && said.contains("could not be created"), "{said}");
         let mut analyse = Command::new(env!("CARGO_BIN_EXE_jamscope"));
         let packing = fixture("packings/hertz_N1000_p800.xyz");
         let said = refused(analyse.arg("analyse").args([&packing, &packing]).arg("--out").arg(&out));
-        assert!(said.contains("FILE") && said.contains("could not be made"), "{said}");
+        assert!(said.contains("FILE") && said.contains("could not be created"), "{said}");
         let mut study = Command::new(env!("CARGO_BIN_EXE_jamscope"));
         let said = refused(study.arg("study").arg(fixture("studies/b.toml")).arg("--out").arg(&out));
         assert!(said.contains("FILE"), "{said}");
@@ -89,7 +89,7 @@ fn a_folder_that_cannot_be_used_is_refused_before_the_work() {
     assert_eq!(std::fs::read_to_string(&file).expect("there"), "mine");
     if Path::new("/proc/self").is_dir() {
         let said = refused(&mut run(&scene, Path::new("/proc/self")));
-        assert!(said.contains("nothing can be written into the folder"), "{said}");
+        assert!(said.contains("cannot write into the folder"), "{said}");
     }
 }
 

@@ -104,6 +104,6 @@ fn the_limit_is_that_of_the_process() {
         out.display()
     );
     let said = refused(Command::new("bash").args(["-c", &script]));
-    assert_says(&said, &["disk_count = 20000000: at most", "the limit on its address space", "GB of memory"]);
+    assert_says(&said, &["disk_count = 20000000: must be at most", "the limit on its address space", "GB of memory"]);
     assert!(!out.exists());
 }

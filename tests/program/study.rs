@@ -202,9 +202,9 @@ fn files_that_are_not_what_they_should_be_are_named_and_left_alone() {
     let done = whole(&study(), folder.path());
     assert_eq!((done.run_count, done.damaged.len(), done.foreign.len()), (0, 3, 1));
     let reasons: Vec<&str> = done.damaged.iter().map(|problem| problem.reason.as_str()).collect();
-    assert_eq!(reasons[0], "cut short, or not three lines");
+    assert_eq!(reasons[0], "incomplete: the file must have three lines");
     assert_eq!(reasons[1], "line 2: changed since it was written (checksum)");
-    assert_eq!(reasons[2], "the records of another sample");
+    assert_eq!(reasons[2], "contains the records of another sample");
     assert_eq!(text(&files[0]), cut[..cut.len() / 2], "left alone");
     let partial = merge(folder.path()).expect("a study is there");
     assert_eq!((partial.record_count, partial.damaged.len(), partial.foreign.len()), (14, 3, 1));
@@ -332,9 +332,9 @@ fn a_study_that_makes_no_sense_says_where() {
         change(&mut study);
         Plan::of(&study).expect_err("it makes no sense").to_string()
     };
-    assert_eq!(wrong(|it| it.targets.clear()), "targets: it is empty, so there is nothing to run");
-    assert_eq!(wrong(|it| it.seeds.count = 0), "seeds.count: it is empty, so there is nothing to run");
-    assert_eq!(wrong(|it| it.increases.push(0.1)), "increases: 0.1 stands twice");
+    assert_eq!(wrong(|it| it.targets.clear()), "targets: must not be empty");
+    assert_eq!(wrong(|it| it.seeds.count = 0), "seeds.count: must not be empty");
+    assert_eq!(wrong(|it| it.increases.push(0.1)), "increases: 0.1 occurs twice");
     assert_eq!(wrong(|it| it.time_limit = Some(0.0)), "time_limit = 0: must be a positive number");
     assert!(wrong(|it| it.targets.push(Target::Pressure(-1.0))).contains("source.pressure = -1"));
     assert!(wrong(|it| it.seeds.first = u64::MAX).contains("beyond the largest seed"));

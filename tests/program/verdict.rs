@@ -131,7 +131,11 @@ fn a_forgotten_law_is_named_with_its_residual() {
 fn six_digits_are_recognised_and_the_line_for_more_is_given() {
     let (before, after) = (fixture("verdict/six_digits.before.dump"), fixture("verdict/six_digits.after.dump"));
     let found = analysed(&before, &after, &[]);
-    refused(&found, "few_digits", &["they were written with 6, known to 1e-4", "dump_modify ID format float %.17g"]);
+    refused(
+        &found,
+        "few_digits",
+        &["they were written with 6 digits, with a spacing of 1e-4", "dump_modify ID format float %.17g"],
+    );
     let output = jamscope(&["inspect", text(&before)]);
     let said = String::from_utf8(output.stdout).expect("Unicode");
     assert_eq!(output.status.code(), Some(3));
@@ -199,7 +203,7 @@ fn one_flag_overrides_and_the_report_still_says_so_first() {
     let found = ring(&["--outer-radius", "12", "--not-at-rest"]);
     assert_eq!(found.code, Some(0), "{}", found.table);
     let said = found.table.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(said.starts_with("ring: NOT AT REST: phase and fits only because they were asked for."), "{said}");
+    assert!(said.starts_with("ring: NOT AT REST: phase and fits are given only on request."), "{said}");
     assert_eq!(found.json["verdict"]["decision"], "not_at_rest_but_given");
     assert_ne!(found.json["phase"]["outcome"], "not_at_rest");
     assert!(found.json["phase"].get("by_pressure_change").is_some());
@@ -327,8 +331,9 @@ fn limits_that_are_no_rest_are_refused_with_field_value_and_limit() {
                 let said = String::from_utf8_lossy(&output.stderr).into_owned();
                 assert_eq!(output.status.code(), Some(1), "{relaxer}: {said}");
                 // A hundredth of ⟨F⟩ ≤ p π ⟨R²⟩/(0.8 ⟨R⟩) = 0.37 π/(0.8 · 0.6) at p = 1.
-                let expected =
-                    format!("{field}.limit.{limit} = {value}: must be at most {largest}, as a residual above 0.01");
+                let expected = format!(
+                    "{field}.limit.{limit} = {value}: must be at most {largest}, because a packing with a residual above 0.01"
+                );
                 assert!(said.contains(&expected), "{relaxer}: no {expected:?} in {said}");
             }
         }
@@ -339,9 +344,7 @@ fn limits_that_are_no_rest_are_refused_with_field_value_and_limit() {
 #[test]
 fn the_exit_codes_stand_in_the_help() {
     let help = String::from_utf8(jamscope(&["--help"]).stdout).expect("Unicode");
-    for line in
-        ["Exit codes:", "0  all that was asked for", "1  a file", "2  the command line", "3  a state is not at rest"]
-    {
+    for line in ["Exit codes:", "0  success", "1  a file", "2  the command line", "3  a state is not at rest"] {
         assert!(help.contains(line), "no {line:?} in {help}");
     }
 }

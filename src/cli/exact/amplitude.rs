@@ -16,13 +16,13 @@ pub struct AmplitudeArguments {
     /// Wavenumbers κ, separated by commas [1/length].
     #[arg(long, value_name = "KAPPAS", value_delimiter = ',', allow_hyphen_values = true, conflicts_with_all = ["count", "from", "to"])]
     wavenumbers: Option<Vec<f64>>,
-    /// So many evenly spaced wavenumbers.
+    /// Number of evenly spaced wavenumbers.
     #[arg(long, value_name = "N", default_value_t = 101)]
     count: u64,
-    /// The first of them [1/length].
+    /// First wavenumber [1/length].
     #[arg(long, value_name = "KAPPA", default_value_t = 0.0, allow_negative_numbers = true)]
     from: f64,
-    /// The last of them [1/length]; 10/(R − a) unless given, beyond the first two poles.
+    /// Last wavenumber [1/length]; by default 10/(R − a), which is beyond the first two poles.
     #[arg(long, value_name = "KAPPA", allow_negative_numbers = true)]
     to: Option<f64>,
 }

@@ -12,13 +12,13 @@ pub struct BesselArguments {
     /// Order of the function.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=1))]
     order: u8,
-    /// Which of the four.
+    /// Kind of the function.
     #[arg(long, value_name = "KIND")]
     kind: Kind,
-    /// The spherical ones, j y i k, in place of J Y I K.
+    /// Compute the spherical functions j, y, i, k instead of J, Y, I, K.
     #[arg(long)]
     spherical: bool,
-    /// Less their exponential: e^(-|x|) I(x), e^x K(x).
+    /// Compute the scaled functions e^(-|x|) I(x) and e^x K(x).
     #[arg(long)]
     scaled: bool,
     /// Arguments x, separated by commas [1].
@@ -59,7 +59,7 @@ impl BesselArguments {
         let of_order = |functions: [fn(f64) -> f64; 2]| functions[usize::from(self.order)];
         Ok(match (self.kind, self.spherical, self.scaled) {
             (Kind::J | Kind::Y, _, true) => {
-                return Err("--scaled: only i and k have an exponential to leave out".into());
+                return Err("--scaled: possible only for the kinds i and k".into());
             }
             (Kind::J, false, false) => of_order([cylinder::j0, cylinder::j1]),
             (Kind::Y, false, false) => of_order([cylinder::y0, cylinder::y1]),

@@ -13,7 +13,7 @@ pub fn places<'a>(
         return Ok(Box::new(list.iter().copied()));
     }
     if count < 2 {
-        return Err(format!("--count {count}: at least two, the first and the last").into());
+        return Err(format!("--count {count}: must be at least two, for the first and the last point").into());
     }
     let last = count - 1;
     // The last point is exact, and rounding must not exceed it: there is no solution beyond.

@@ -11,7 +11,7 @@ use crate::Failure;
 
 #[derive(Args)]
 pub struct LorentzianArguments {
-    /// Crossover frequency f† [1]; 0 is the scale-free limit, inf the limit in which f†θ takes the place of θ.
+    /// Crossover frequency f† [1]; 0 is the scale-free limit, inf is the continuum limit, as a function of f†θ.
     #[arg(long, value_name = "F", allow_negative_numbers = true)]
     frequency: f64,
     /// Exponent s of the spectrum [1].
@@ -20,7 +20,7 @@ pub struct LorentzianArguments {
     /// G at these angles, separated by commas [rad].
     #[arg(long, value_name = "ANGLES", value_delimiter = ',', allow_hyphen_values = true, group = "what")]
     angles: Option<Vec<f64>>,
-    /// G at so many evenly spaced angles from 0 to π (f†θ from 0 to 10 if the frequency is inf).
+    /// G at N evenly spaced angles from 0 to π (f†θ from 0 to 10 if the frequency is inf).
     #[arg(long, value_name = "N", default_value_t = 101, group = "what")]
     count: u64,
     /// S(f) at f = 1 to N instead.
@@ -106,7 +106,7 @@ fn spectrum<'a>(medium: Medium, count: u64) -> Result<Table<'a>, Failure> {
         return Err("--spectrum: the limit --frequency inf has S = 1 at every frequency".into());
     };
     if count == 0 {
-        return Err("--spectrum 0: at least one frequency".into());
+        return Err("--spectrum 0: must be at least 1".into());
     }
     Ok(Table {
         solution: "lorentzian",

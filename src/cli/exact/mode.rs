@@ -18,13 +18,13 @@ pub struct ModeArguments {
     /// n, the number of periods around the circle.
     #[arg(long, value_name = "N")]
     mode: u32,
-    /// Poisson's ratio of two dimensions, between -1 and 1.
+    /// Poisson's ratio in two dimensions, between -1 and 1.
     #[arg(long, value_name = "NU", allow_negative_numbers = true)]
     poisson: f64,
     /// U at the inflated disk, u_r = Re[U e^(inθ)], such as 0.1, -0.1i or 0.1+0.2i [length].
     #[arg(long, value_name = "U", default_value = "0", allow_hyphen_values = true)]
     radial: Complex<f64>,
-    /// V at the inflated disk, u_θ = Re[V e^(inθ)]; sin nθ is -i [length].
+    /// V at the inflated disk, u_θ = Re[V e^(inθ)]; V = -i gives sin nθ [length].
     #[arg(long, value_name = "V", default_value = "0", allow_hyphen_values = true)]
     transverse: Complex<f64>,
     /// Even screening Γ_e over the shear modulus, of either sign [1/length²].
@@ -33,7 +33,7 @@ pub struct ModeArguments {
     /// Odd screening Γ_o over the shear modulus, of either sign [1/length²].
     #[arg(long, value_name = "GAMMA", allow_negative_numbers = true)]
     odd: Option<f64>,
-    /// Even screening by the wavenumber κ of its radial inflation instead, Γ_e = 2κ²/(1 − ν) [1/length].
+    /// Wavenumber κ of the radial inflation, which sets the even screening Γ_e = 2κ²/(1 − ν) [1/length].
     #[arg(long, value_name = "KAPPA", allow_negative_numbers = true, conflicts_with_all = ["even", "odd"])]
     wavenumber: Option<f64>,
     #[command(flatten)]

@@ -13,7 +13,7 @@ use crate::Failure;
 pub struct PolesArguments {
     #[command(flatten)]
     annulus: AnnulusArguments,
-    /// So many poles, from the first.
+    /// Number of poles, from the first.
     #[arg(long, value_name = "N", default_value_t = 20)]
     count: u32,
 }
@@ -21,7 +21,7 @@ pub struct PolesArguments {
 impl PolesArguments {
     pub fn table(&self) -> Result<Table<'_>, Failure> {
         if self.count == 0 {
-            return Err("--count 0: at least one pole".into());
+            return Err("--count 0: must be at least 1".into());
         }
         let annulus = self.annulus.annulus()?;
         Ok(match self.annulus.dimension {

@@ -17,7 +17,7 @@ pub struct ProfileArguments {
     /// Wavenumber κ [1/length] of the screening; 0 is the elastic medium.
     #[arg(long, value_name = "KAPPA", default_value_t = 0.0, allow_negative_numbers = true)]
     wavenumber: f64,
-    /// The other sign of κ²: a medium on an elastic foundation, without poles.
+    /// Use the opposite sign of κ²: a medium on an elastic foundation, without poles.
     #[arg(long)]
     antiscreened: bool,
     /// Displacement d_0 of the edge of the inflated disk [length].

@@ -12,7 +12,7 @@ pub struct RadiiArguments {
     /// Radii, separated by commas [length].
     #[arg(long, value_name = "LENGTHS", value_delimiter = ',', allow_hyphen_values = true, conflicts_with = "count")]
     radii: Option<Vec<f64>>,
-    /// So many evenly spaced radii from disk to rim.
+    /// Number of evenly spaced radii from the disk to the rim.
     #[arg(long, value_name = "N", default_value_t = 100)]
     count: u64,
 }
@@ -22,7 +22,7 @@ impl RadiiArguments {
     pub fn within(&self, annulus: Annulus) -> Result<Box<dyn Iterator<Item = f64> + '_>, Failure> {
         let (inner, outer) = (annulus.inner_radius(), annulus.outer_radius());
         if let Some(radius) = self.radii.iter().flatten().find(|&&radius| !annulus.contains(radius)) {
-            return Err(refused("radii", radius, format!("not between disk and rim, {inner} to {outer}")));
+            return Err(refused("radii", radius, format!("must be between the disk and the rim, {inner} to {outer}")));
         }
         places(self.radii.as_deref(), self.count, inner, outer)
     }

@@ -157,7 +157,7 @@ pub fn fit_crossover(rings: &[RingSample], settings: &CrossoverSettings) -> Resu
         ExponentChoice::Fixed(exponent) => (exponent, deviance(Shape { crossover, exponent })),
         ExponentChoice::Free => {
             let at = |exponent: f64| deviance(Shape { crossover, exponent });
-            let best = golden(EXPONENTS[0], EXPONENTS[1], 1e-5, at);
+            let best = golden(EXPONENTS[0], EXPONENTS[1], 1e-5, &at);
             (best, at(best))
         }
     };
@@ -193,13 +193,13 @@ pub(in crate::fit) fn locate(highest: usize, rise: f64, factor: f64, deviance: i
     let octaves = libm::log2(highest as f64) + 2.0 * OCTAVES_BEYOND;
     let steps = (octaves * STEPS_PER_OCTAVE).ceil() as usize;
     let grid: Vec<f64> = (0..=steps).map(|i| i as f64 / STEPS_PER_OCTAVE - OCTAVES_BEYOND).collect();
-    let inside = minimum(&grid, rise, |octave| deviance(Crossover::Octave(octave)));
+    let inside = minimum(&grid, rise, &|octave| deviance(Crossover::Octave(octave)));
     let (scale_free, white) = (deviance(Crossover::Zero), deviance(Crossover::Infinite));
     let lowest = inside.value.min(scale_free).min(white);
     let (scale_free_rise, white_rise) = (scale_free - lowest, white - lowest);
     // The interval is recomputed if one of the limits fits better than any crossover between.
     let interval = if lowest < inside.value {
-        minimum(&grid, rise + lowest - inside.value, |octave| deviance(Crossover::Octave(octave)))
+        minimum(&grid, rise + lowest - inside.value, &|octave| deviance(Crossover::Octave(octave)))
     } else {
         inside
     };

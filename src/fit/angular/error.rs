@@ -10,7 +10,7 @@ pub const LEAST_POWER_COUNT: usize = 3;
 #[non_exhaustive]
 pub enum SpectrumFitError {
     /// No ring was given.
-    #[error("no ring to fit")]
+    #[error("there is no ring to fit")]
     NoRing,
     /// Fewer powers than [`LEAST_POWER_COUNT`].
     #[error(
@@ -27,7 +27,7 @@ pub enum SpectrumFitError {
         disk_count: usize,
     },
     /// The window begins at 0 or ends above n/2.
-    #[error("powers from f = {lowest} to {highest} of {disk_count} disks: from 1 to n/2 there are")]
+    #[error("powers from f = {lowest} to {highest} of {disk_count} disks: must be from 1 to half the number of disks")]
     WindowOutOfRange {
         /// Lowest f.
         lowest: usize,
@@ -37,7 +37,7 @@ pub enum SpectrumFitError {
         disk_count: usize,
     },
     /// All values of a ring are equal.
-    #[error("ring {ring} has no power")]
+    #[error("ring {ring} has no power, because all its values are equal")]
     NoPower {
         /// Index of the ring.
         ring: usize,

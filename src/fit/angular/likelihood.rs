@@ -157,7 +157,7 @@ impl Ring {
         let ratios = || expected.iter().zip(white).map(|(e, w)| e / w);
         let low = libm::log(-ratios().map(|ratio| -ratio).fold(f64::NEG_INFINITY, larger)) - NOISE_DECADES;
         let high = libm::log(ratios().fold(0.0, larger)) + NOISE_DECADES;
-        let found = at(libm::exp(golden(low, high, 1e-4, |log| at(libm::exp(log)).deviance)));
+        let found = at(libm::exp(golden(low, high, 1e-4, &|log| at(libm::exp(log)).deviance)));
         if found.deviance < without.deviance { found } else { without }
     }
 

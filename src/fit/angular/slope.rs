@@ -64,7 +64,7 @@ pub fn fit_slope(rings: &[RingSample], settings: &SpectrumWindowSettings) -> Res
     let powers = Powers::of(rings, settings)?;
     let at = |exponent: f64| powers.best(|logarithm| libm::exp(-exponent * logarithm));
     let grid: Vec<f64> = (0..=STEPS).map(|step| FIRST + STEP * f64::from(step)).collect();
-    let found = minimum(&grid, powers.rise(), |exponent| at(exponent).deviance);
+    let found = minimum(&grid, powers.rise(), &|exponent| at(exponent).deviance);
     let exponent = Interval { best: found.at, lower: found.lower, upper: found.upper };
     let outcome = match (found.lower, found.upper) {
         _ if exponent.holds(0.0) => SlopeOutcome::Flat,

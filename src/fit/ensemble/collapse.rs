@@ -162,7 +162,7 @@ pub fn collapse<const K: usize>(
         let below = (0..half).map(|i| low + (exponents[k] - low) * f64::from(i) / f64::from(half));
         let above = (1..=half).map(|i| exponents[k] + (high - exponents[k]) * f64::from(i) / f64::from(half));
         let grid: Vec<f64> = below.chain(std::iter::once(exponents[k])).chain(above).collect();
-        let found = minimum(&grid, RISE, along);
+        let found = minimum(&grid, RISE, &along);
         [found.lower, found.upper]
     });
     Ok(CollapseOutcome::Found(Collapse { exponents, quality, rough }))

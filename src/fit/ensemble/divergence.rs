@@ -130,12 +130,12 @@ pub fn fit_divergence(points: &[MeasuredPoint]) -> Result<DivergenceOutcome, Ens
     };
     let chi_squared = |logarithm: f64| line(logarithm).chi_squared;
     let grid: Vec<f64> = (0..=STEPS).map(|step| FIRST + STEP * f64::from(step)).collect();
-    let found = minimum(&grid, RISE, chi_squared);
+    let found = minimum(&grid, RISE, &chi_squared);
     let critical = |logarithm: f64| high + range * libm::exp(logarithm);
     let exponential = Line::of(points, |x| (x - high) / range).chi_squared;
     if exponential <= found.value || found.at >= grid[grid.len() - 1] {
         // The interval is recomputed about the limit.
-        let about_limit = minimum(&grid, (RISE + exponential - found.value).max(0.0), chi_squared);
+        let about_limit = minimum(&grid, (RISE + exponential - found.value).max(0.0), &chi_squared);
         let smallest = about_limit.lower.map(critical);
         return Ok(DivergenceOutcome::Unbounded { smallest, chi_squared: exponential });
     }

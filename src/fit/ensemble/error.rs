@@ -7,7 +7,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum EnsembleFitError {
     /// There is no sample.
-    #[error("no sample")]
+    #[error("there are no samples")]
     NoSample,
     /// Too few points, or too few different x.
     #[error("{point_count} different points: at least {needed} are needed")]
@@ -18,13 +18,13 @@ pub enum EnsembleFitError {
         needed: usize,
     },
     /// Fewer than two curves with points, or none with two points.
-    #[error("{curve_count} curves with points: two are needed, one of them with two points")]
+    #[error("{curve_count} curves with points: at least two are needed, and one of them needs two points")]
     TooFewCurves {
         /// Number of curves with points.
         curve_count: usize,
     },
     /// An invalid point: not finite, an error that is not positive, or a value without a logarithm.
-    #[error("point {point}: x = {x}, y = {y}, error {error}")]
+    #[error("point {point} is invalid: x = {x}, y = {y}, error {error}")]
     PointUnusable {
         /// Index of the point, from 0.
         point: usize,
@@ -36,7 +36,7 @@ pub enum EnsembleFitError {
         error: f64,
     },
     /// A group with invalid x or counts.
-    #[error("group {group}: {hits} hits of {count} at x = {x}")]
+    #[error("group {group} is invalid: {hits} hits of {count} at x = {x}")]
     GroupUnusable {
         /// Index of the group, from 0.
         group: usize,
@@ -48,7 +48,7 @@ pub enum EnsembleFitError {
         count: f64,
     },
     /// The number of powers of a sample differs from that of the first.
-    #[error("sample {sample} has {power_count} powers, the first {expected}")]
+    #[error("sample {sample} has {power_count} powers, but the first sample has {expected}")]
     SamplesDiffer {
         /// Index of the sample, from 0.
         sample: usize,
@@ -66,7 +66,7 @@ pub enum EnsembleFitError {
         frequency: usize,
     },
     /// A window beyond the powers, or with fewer than three of them.
-    #[error("powers from f = {lowest} to {highest} of f = 1 to {power_count}: at least 3 are needed")]
+    #[error("powers from f = {lowest} to {highest}: must be at least 3 powers, within f = 1 to {power_count}")]
     WindowOutOfRange {
         /// Lowest f.
         lowest: usize,
@@ -86,7 +86,7 @@ pub enum EnsembleFitError {
         critical: f64,
     },
     /// The logarithm of a scale factor is not finite.
-    #[error("curve {curve}: the logarithm of a scale factor is {logarithm}")]
+    #[error("curve {curve}: the logarithm of a scale factor is {logarithm}, not a finite number")]
     ScaleUnusable {
         /// Index of the curve, from 0.
         curve: usize,

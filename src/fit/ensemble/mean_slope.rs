@@ -158,7 +158,7 @@ fn likelihood(powers: &MeanPowers) -> LikelihoodSlope {
     if lowest == first || lowest == last {
         return LikelihoodSlope::Undetermined;
     }
-    let found = minimum(&grid[first..=last], RISE, deviance);
+    let found = minimum(&grid[first..=last], RISE, &deviance);
     let amplitude = powers.best(|logarithm| -found.at * logarithm).map_or(f64::NAN, |best| best.amplitude);
     let exponent = Interval { best: found.at, lower: found.lower, upper: found.upper };
     LikelihoodSlope::Found { exponent, amplitude }

@@ -12,7 +12,7 @@ pub const LEAST_DISK_COUNT: usize = 4;
 #[non_exhaustive]
 pub enum AngularError {
     /// The numbers of angles and of values differ.
-    #[error("{angle_count} angles and {value_count} values")]
+    #[error("{angle_count} angles but {value_count} values: the numbers must be equal")]
     LengthsDiffer {
         /// Number of angles.
         angle_count: usize,
@@ -26,7 +26,7 @@ pub enum AngularError {
         disk_count: usize,
     },
     /// An angle or a value is not finite, or a value is above 10¹⁵⁰, whose square overflows.
-    #[error("disk {disk}: angle {angle}, value {value}")]
+    #[error("disk {disk}: angle {angle}, value {value}: both must be finite, and the value at most 1e150")]
     NotFinite {
         /// Index of the disk as given.
         disk: usize,
@@ -55,7 +55,7 @@ pub enum AngularError {
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
     /// The highest frequency requested is 0, or above the limit of the estimator.
-    #[error("frequencies up to {frequency_limit}: from 1 to {highest} can be had")]
+    #[error("highest frequency {frequency_limit}: must be from 1 to {highest}")]
     FrequencyLimitOutOfRange {
         /// The highest frequency requested.
         frequency_limit: usize,
@@ -69,7 +69,9 @@ pub enum AngularError {
         threshold: f64,
     },
     /// Too few blocks to have a scatter, or too many for the disks.
-    #[error("{block_count} blocks of {disk_count} disks: at least 4, and at most a fourth as many as disks")]
+    #[error(
+        "{block_count} blocks of {disk_count} disks: must be at least 4 and at most a quarter of the number of disks"
+    )]
     BlockCountOutOfRange {
         /// Number of blocks requested.
         block_count: usize,

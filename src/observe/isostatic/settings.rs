@@ -135,7 +135,7 @@ pub enum IsostaticError {
         ring_width: f64,
     },
     /// The smallest radius must not be negative.
-    #[error("from is {from}, not a number from 0 on")]
+    #[error("from is {from}: must be a finite number, not negative")]
     FromNegative {
         /// The value given \[length\].
         from: f64,
@@ -153,7 +153,7 @@ pub enum IsostaticError {
         value: f64,
     },
     /// The plateau must lie within the circle.
-    #[error("the plateau goes from {from} to {to} of the outer radius: not 0 ≤ from < to ≤ 1")]
+    #[error("the plateau goes from {from} to {to} of the outer radius: must satisfy 0 ≤ from < to ≤ 1")]
     PlateauOutOfRange {
         /// The smaller radius given \[1\].
         from: f64,

@@ -44,7 +44,7 @@ impl Default for MultipoleSettings {
 #[non_exhaustive]
 pub enum MultipoleError {
     /// The highest mode must be at least 2.
-    #[error("highest_mode is {highest_mode}, not from 2 to {HIGHEST_MODE}")]
+    #[error("highest_mode is {highest_mode}: must be from 2 to {HIGHEST_MODE}")]
     HighestModeOutOfRange {
         /// The value given.
         highest_mode: usize,
@@ -56,7 +56,7 @@ pub enum MultipoleError {
         ring_width: f64,
     },
     /// A fit needs at least as many disks as coefficients.
-    #[error("disks_per_coefficient is {disks_per_coefficient}, not a number from 1 on")]
+    #[error("disks_per_coefficient is {disks_per_coefficient}: must be a finite number of at least 1")]
     TooFewDisksPerCoefficient {
         /// The value given.
         disks_per_coefficient: f64,

@@ -215,7 +215,9 @@ pub enum AngularModeError {
         outer_radius: f64,
     },
     /// The screening is a pole of this mode to rounding: the displacement has no finite value.
-    #[error("the screening {even} (even), {odd} (odd) is a pole of mode {mode} to rounding: condition {condition:.1e}")]
+    #[error(
+        "the screening {even} (even), {odd} (odd) is a pole of mode {mode} within rounding: the condition number is {condition:.1e}"
+    )]
     AtPole {
         /// n.
         mode: u32,

@@ -23,7 +23,7 @@ fn states(analyses: &[Analysis]) -> Section {
     };
     let mut rows = Rows::new(analyses.iter().map(Some).collect());
     rows.add("inflated disk", |it| Some(it.centre_label.to_string()))
-        .add("its radius, a [length]", |it| Some(significant(it.inner_radius, 5)))
+        .add("radius of this disk, a [length]", |it| Some(significant(it.inner_radius, 5)))
         .add("increase, d_0 [length]", |it| Some(significant(it.increase, 5)))
         .add("mobile disks, N", |it| Some(count(it.mobile_count)))
         .add("radius of the circle, R [length]", |it| Some(significant(it.outer_radius, 5)))

@@ -13,8 +13,8 @@ pub(super) fn section(samples: &[SampleReport]) -> Section {
         .add("p̂ over p̂_c by κ", |it| of(it, |it| Some(over(it, it.critical_by_wavenumber?))))
         .add("p̂ over p̂_c by Δp", |it| of(it, |it| Some(over(it, it.critical_by_pressure_change?))))
         .add("samples at the nearest p̂", |it| of(it, |it| Some(significant(it.cell_reduced_pressure, 2))))
-        .add("… that get the same word", |it| of(it, |it| Some(share(it))));
-    rows.section("Phase, of an ensemble of such samples")
+        .add("… with the same phase", |it| of(it, |it| Some(share(it))));
+    rows.section("Phases in an ensemble of similar samples")
 }
 
 fn over(of: &PhaseFrequency, critical: f64) -> String {

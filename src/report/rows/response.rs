@@ -115,7 +115,7 @@ fn angular(responses: Vec<Option<&Response>>) -> Section {
     }
     let mut rows = Rows::new(responses);
     rows.add("ring, r/R", |it| Some(significant(ring(it)?.relative_radius, 3)))
-        .add("disks in it", |it| Some(count(ring(it)?.spectrum.disk_count)))
+        .add("disks in the ring", |it| Some(count(ring(it)?.spectrum.disk_count)))
         .add("G* = −G(π)", |it| {
             let value = ring(it)?.correlation.anticorrelation;
             value.is_finite().then(|| significant(value, 3))
@@ -151,7 +151,7 @@ fn fitted(rows: &mut Rows<'_, Response>) {
             _ => estimate.unwrap_or_else(|| significant(fit.exponent.best, 3)),
         })
     })
-    .add("f fitted", |it| slope(it).map(|fit| window(fit.window)))
+    .add("range of f fitted", |it| slope(it).map(|fit| window(fit.window)))
     .add("crossover, f†", |it| {
         Some(match crossover(it)? {
             CrossoverOutcome::Found { crossover, .. } => match crossover.estimate() {
@@ -186,7 +186,7 @@ fn multipoles(responses: Vec<Option<&Response>>) -> Section {
     rows.add("share of d_r² in n = 0, r/R = 1/2", |it| share(it, 0))
         .add("share in n = 1, dipole", |it| share(it, 1))
         .add("share in n = 2, quadrupole", |it| share(it, 2))
-        .add("share of all else", |it| share(it, 3));
+        .add("share in all other modes", |it| share(it, 3));
     #[cfg(feature = "fit")]
     elastic_modes(&mut rows);
     rows.section("Angular modes")
@@ -197,15 +197,16 @@ fn elastic_modes(rows: &mut Rows<'_, Response>) {
     use crate::report::number::with_error;
 
     let fit = |it: &Response| it.elastic_modes.as_ref()?.measured().cloned();
-    for (mode, label) in
-        ["n = 0, described by elasticity", "n = 1, described by it", "n = 2, described by it"].into_iter().enumerate()
+    for (mode, label) in ["n = 0, share described by elasticity", "n = 1, share described", "n = 2, share described"]
+        .into_iter()
+        .enumerate()
     {
         rows.add(label, |it| {
             let share = fit(it)?.modes.iter().find(|fit| fit.mode == mode)?.share_described?;
             Some(significant(share, 3))
         });
     }
-    rows.add("Poisson's ratio of that, ν (2d)", |it| {
+    rows.add("Poisson's ratio of this fit, ν (2d)", |it| {
         let fit = fit(it)?;
         Some(match fit.poisson_estimate() {
             Some(estimate) => with_error(estimate.value, estimate.standard_error),
@@ -226,7 +227,7 @@ fn contacts(responses: Vec<Option<&Response>>) -> Section {
             let changes = summary(it)?.1?.changes;
             Some(format!("{}, {}", count(changes.made_count), count(changes.broken_count)))
         })
-        .add("share that returns", |it| Some(significant(summary(it)?.1?.returned_share?, 3)));
+        .add("share that returns on deflation", |it| Some(significant(summary(it)?.1?.returned_share?, 3)));
     rows.section("Contacts of the backbone")
 }
 
@@ -304,7 +305,7 @@ fn fit(responses: Vec<Option<&Response>>) -> Section {
     .add("screened: rms residual / ring error", |it| {
         Some(rms(screened(it)?.chi_squared, curve::fit_of(it)?.ring_count))
     })
-    .add("chance of such a gain if κ = 0", |it| screened(it).map(|fit| significant(fit.chance_of_elastic, 2)));
+    .add("probability of this gain if κ = 0", |it| screened(it).map(|fit| significant(fit.chance_of_elastic, 2)));
     rows.section("Fit of the radial profile")
 }
 

@@ -37,12 +37,16 @@ impl<'a, T> Rows<'a, T> {
 
     /// Adds a row if at least one sample has the quantity.
     pub(crate) fn add(&mut self, label: impl Into<String>, cell: impl Fn(&T) -> Option<String>) -> &mut Self {
-        let cells: Vec<Option<String>> = self.results.iter().map(|result| result.and_then(&cell)).collect();
+        self.add_row(label.into(), &cell);
+        self
+    }
+
+    fn add_row(&mut self, label: String, cell: &dyn Fn(&T) -> Option<String>) {
+        let cells: Vec<Option<String>> = self.results.iter().map(|result| result.and_then(cell)).collect();
         if cells.iter().any(Option::is_some) {
             let cells = cells.into_iter().map(|cell| cell.unwrap_or_else(|| "–".into())).collect();
-            self.rows.push(Row { label: label.into(), cells });
+            self.rows.push(Row { label, cells });
         }
-        self
     }
 
     /// Adds a row of given cells.

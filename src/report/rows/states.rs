@@ -86,11 +86,11 @@ pub(super) fn inflation(report: &Report, samples: &[SampleReport], times: Times)
     .add("pressure before, p [force/length]", |it| Some(significant(it.inflation.before.pressure, 5)))
     .add("pressure change, Δp [force/length]", |it| Some(significant(it.inflation.pressure_change, 4)))
     .add(scaled_label(exponent), |it| it.inflation.scaled_pressure_change.map(|value| significant(value, 4)))
-    .add("Δp left, deflated [force/length]", |it| {
+    .add("Δp after deflation [force/length]", |it| {
         let deflated = it.inflation.deflated.as_ref()?;
         Some(significant(deflated.pressure - it.inflation.before.pressure, 4))
     })
-    .add("largest |d| left, deflated [length]", |it| {
+    .add("largest |d| after deflation [length]", |it| {
         let left = it.cycle_field.as_ref()?.counted().map(|disk| crate::vector::norm(disk.displacement));
         Some(significant(left.fold(0.0, crate::vector::larger), 3))
     });
@@ -148,7 +148,7 @@ pub(super) fn plastic(samples: &[SampleReport]) -> Section {
     rows.add("linear response", |it| match it.plastic_part.as_ref()? {
         Measurement::Measured(plastic) => Some(match plastic.negative_eigenvalue_count {
             0 => "at a minimum".into(),
-            negative => format!("at a saddle, {negative} down"),
+            negative => format!("saddle of index {negative}"),
         }),
         Measurement::Refused(_) => Some("none".into()),
     })

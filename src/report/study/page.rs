@@ -22,7 +22,7 @@ use crate::transition::{
 /// The page of a study. Two merges of the same samples give the same bytes.
 pub fn study_page(merged: &Merged, transition: &Transition) -> String {
     let subject = Subject { merged, transition };
-    let mut html = head("jamscope: study", "Response to an inflation, sample after sample", &introduction(merged));
+    let mut html = head("jamscope: study", "Response to an inflation, statistics over samples", &introduction(merged));
     for (title, text, figures) in views(&subject) {
         if !figures.is_empty() {
             let _ = write!(
@@ -40,8 +40,8 @@ pub fn study_page(merged: &Merged, transition: &Transition) -> String {
     html.push_str(&cells(merged));
     let _ = write!(
         html,
-        "</main>\n<footer>\n<p>jamscope {}. Lengths in diameters of a small disk. Intervals are of 95 %, by drawing the samples of every cell \
-         anew. Data: <a href=\"summary.csv\">summary.csv</a>, <a href=\"summary.json\">summary.json</a>, \
+        "</main>\n<footer>\n<p>jamscope {}. Lengths in diameters of a small disk. Intervals are 95 % bootstrap intervals over the samples of every \
+         cell. Data: <a href=\"summary.csv\">summary.csv</a>, <a href=\"summary.json\">summary.json</a>, \
          <a href=\"transition.csv\">transition.csv</a>, <a href=\"transition.json\">transition.json</a>, \
          <a href=\"records.jsonl\">records.jsonl</a>.</p>\n</footer>\n</body>\n</html>\n",
         env!("CARGO_PKG_VERSION")
@@ -64,54 +64,54 @@ fn views(subject: &Subject<'_>) -> Vec<(&'static str, &'static str, Vec<Figure>)
     vec![
         (
             "Radial profiles",
-            "Single samples with the solution that describes them better, elastic or screened; means over samples are described by neither.",
+            "Single samples with the better of the two solutions, elastic or screened. Neither describes means over samples.",
             profiles,
         ),
         (
             "Screening and pressure change",
-            "κ of the best screened solution over κ₁, its first pole, and the change of pressure. Every pale point is a sample.",
+            "κ of the best screened solution over κ₁, its first pole, and the change of pressure. Every pale point is one sample.",
             order_parameters::by_sample(subject),
         ),
         (
             "Angular correlation and spectrum",
-            "Means over samples. A spectrum ∼ f^(−1.5) has no scale; below the transition Lorentzians are fitted.",
+            "Means over samples. A spectrum ∼ f^(−1.5) has no scale; below the transition, Lorentzians are fitted.",
             angular::functions(subject),
         ),
         (
             "Order parameter and correlation angle",
-            "G* = −G(π), θ* where G = 0.1, and hollow θ† = k/f†. Series by their number of disks, and by law and d₀ where they differ.",
+            "G* = −G(π), θ* where G = 0.1, and θ† = k/f† (hollow symbols). Series are named by their number of disks, and by law and d₀ if these differ.",
             order,
         ),
         (
             "Crossover",
-            "θ† = k/f† of the fitted Lorentzians, and θ* beside its exact value for a Lorentzian spectrum.",
+            "θ† = k/f† of the fitted Lorentzians, and θ* with its exact value for a Lorentzian spectrum.",
             order_parameters::crossovers(subject),
         ),
-        ("Against p N^(3/2)", "The scaling of Hertzian disks, which Hookean ones do not follow.", as_hertzian),
+        ("Against p N^(3/2)", "The scaling of Hertzian disks, which Hookean disks do not follow.", as_hertzian),
         ("Thresholds", "The correlation angle θ* with other thresholds of G.", thresholds),
         (
             "Spectrum by distance",
-            "In the cell of every series whose slope is nearest to 1.5.",
+            "For every series, in the cell whose slope is nearest to 1.5.",
             angular::by_radius(subject),
         ),
         (
             "Screening and isostatic length",
-            "ℓ_s = 1/κ of the screened samples; ℓ_iso where the fluctuation of bonds turns continuous.",
+            "ℓ_s = 1/κ of the screened samples; ℓ_iso is the distance beyond which the fluctuation of bonds is that of a continuum.",
             lengths::matching(subject),
         ),
         (
             "Fluctuations around rings",
-            "Of the stretching of bonds and of the displacement of disks, over their value next to the inflated disk.",
+            "Fluctuations of the stretching of bonds and of the displacement of disks, divided by their value next to the inflated disk.",
             lengths::fluctuations(subject),
         ),
-        ("Inflations", "Published exponents take N and d₀ out.", scaled),
+        ("Inflations", "Axes rescaled with N, d₀ and the published exponents.", scaled),
         (
             "Contact changes",
             "Contacts made and broken by the inflation, and the share of them that return on deflation.",
             radial::contacts(subject),
         ),
         ("Periodic box", "No rim is held; the centre of mass stays.", radial::modes(subject)),
-        ("Below jamming", "How far the inflation is felt.", lengths::jamming(subject)),
+        ("Below jamming", "How far displacements extend from the inflated disk.", lengths::jamming(subject)),
     ]
 }
 
@@ -126,7 +126,7 @@ fn introduction(merged: &Merged) -> String {
         0 => String::new(),
         missing => format!(" {} samples of the plan are missing.", count(missing)),
     };
-    let mixed = merged.mixed_vectors().map_or(String::new(), |mixed| format!(" Not all alike: {}.", escaped(&mixed)));
+    let mixed = merged.mixed_vectors().map_or(String::new(), |mixed| format!(" Note: {}.", escaped(&mixed)));
     format!("{} samples in {} cells.{left_out}{missing}{mixed}", count(merged.record_count), merged.cells.len())
 }
 
@@ -172,7 +172,7 @@ pub(super) fn pressure(found: TransitionPressure) -> String {
         TransitionPressure::Between(between) => format!("between {}", ends(between).replace(" to ", " and ")),
         TransitionPressure::Above(highest) => format!("above {}", significant(highest, 2)),
         TransitionPressure::Below(lowest) => format!("below {}", significant(lowest, 2)),
-        TransitionPressure::Unordered => "not in one place".into(),
+        TransitionPressure::Unordered => "no single transition".into(),
         TransitionPressure::Uninformative { reason } => format!("cannot tell: {}", reason.words()),
     }
 }
@@ -194,7 +194,7 @@ fn estimates(transition: &Transition) -> String {
     }
     let text = format!(
         "κ and Δp: where half of the samples have κ above κ₁/2, or Δp below zero. G*, θ*, slope: where the mean passes its value for S ∼ f^(−1.5). \
-         f†: where it falls below 0.1, a power law from f = 1 on. A cell counts with {LEAST_SAMPLES} samples."
+         f†: where it falls below 0.1, so that S(f) is a power law from f = 1 on. A cell needs at least {LEAST_SAMPLES} samples."
     );
     table("Transition pressure p̂_c", &text, &["Series", "By", "p̂_c or value (interval)"], &rows)
 }
@@ -210,9 +210,9 @@ fn slopes(transition: &Transition) -> String {
         series.spectra.iter().map(row).collect::<Vec<_>>()
     };
     let rows: Vec<Vec<String>> = transition.series.iter().flat_map(of_series).collect();
-    let text = "s of S ∼ f^(−s), f from 2 to 24, by least squares in logarithms and by maximum likelihood. Both weigh every f alike where the powers lie near the line. \
-                A power far above it, as a strong f = 2, pulls the likelihood more; one far below it, as removed leakage leaves at high f, pulls least squares more. \
-                Where they differ by more than their intervals the spectrum has no one slope.";
+    let text = "s of S ∼ f^(−s), f from 2 to 24, by least squares in logarithms and by maximum likelihood. Both give every f the same weight where the powers lie near the line. \
+                A power far above the line, such as a strong f = 2, changes the likelihood estimate more. A power far below the line, such as at high f after the removal of leakage, changes least squares more. \
+                If they differ by more than their intervals, the spectrum has no single slope.";
     table(
         "Slope of S(f)",
         text,
@@ -278,8 +278,8 @@ fn exponents(transition: &Transition) -> String {
             ]
         })
         .collect();
-    let text = "a and b with which the curves against p N^a d₀^(−b) lie on one. S is 1 where curves agree within their errors; in brackets the points it is made of.";
-    let heads = ["Law and relaxer", "Of", "a", "b", "S at the best", "S at the published"];
+    let text = "Exponents a and b with which the curves against p N^a d₀^(−b) collapse onto one curve. S is 1 if the curves agree within their errors; the number of points used is in brackets.";
+    let heads = ["Law and relaxer", "Of", "a", "b", "S, best exponents", "S, published exponents"];
     table("Collapse", text, &heads, &rows)
 }
 
@@ -288,7 +288,7 @@ fn comparisons(transition: &Transition) -> String {
         let value = match (one.value, one.verdict) {
             (Some(value), _) => significant(value, 3),
             (None, Verdict::Uninformative) => "none".into(),
-            (None, _) => "a bound only".into(),
+            (None, _) => "only a bound".into(),
         };
         vec![
             one.quantity.clone(),
@@ -302,11 +302,11 @@ fn comparisons(transition: &Transition) -> String {
     let rows: Vec<Vec<String>> = transition.comparisons.iter().map(row).collect();
     let heads = ["Quantity", "Of", "Found", "Interval", "Published", ""];
     let text = format!(
-        "A published value agrees where the interval holds it; else its distance is told in half widths of the interval. Nothing is told without an interval, from cells of fewer \
-         than {LEAST_SAMPLES} samples, or where an interval that holds the value is too wide: a pressure by more than a factor of 10, any other number by more than the published value, or 0.1 \
-         where that is more."
+        "A published value agrees if it lies in the interval; otherwise its distance is given in half widths of the interval. There is no verdict without an interval, from cells of fewer \
+         than {LEAST_SAMPLES} samples, or if an interval that contains the value is too wide: for a pressure wider than a factor of 10, for any other number wider than the published value, or than 0.1 \
+         if that is larger."
     );
-    table("Beside the literature", &text, &heads, &rows)
+    table("Comparison with the literature", &text, &heads, &rows)
 }
 
 fn verdict(one: &Comparison) -> String {
@@ -378,7 +378,7 @@ fn cells(merged: &Merged) -> String {
         "G*",
         "θ* (rad)",
     ];
-    table("Cells", "Means over the samples that came to a result, with standard errors.", &heads, &rows)
+    table("Cells", "Means over the samples with a result, with standard errors.", &heads, &rows)
 }
 
 fn mean(found: &NumberStatistics) -> String {

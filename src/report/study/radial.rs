@@ -208,7 +208,7 @@ pub(super) fn contacts(subject: &Subject<'_>) -> Vec<Figure> {
         guides: Vec::new(),
     };
     let both = [
-        plot("Contacts changed by the inflation", "contacts a sample", changes, true),
+        plot("Contacts changed by the inflation", "contacts per sample", changes, true),
         plot("Share of changed contacts that return on deflation", "share", returns, false),
     ];
     both.into_iter().filter_map(Plot::draw).collect()

@@ -423,7 +423,7 @@ fn pressure(of: TransitionPressure) -> String {
         TransitionPressure::Between([low, high]) => format!("between {} and {}", power(low), power(high)),
         TransitionPressure::Above(highest) => format!("above {}", power(highest)),
         TransitionPressure::Below(lowest) => format!("below {}", power(lowest)),
-        TransitionPressure::Unordered => "not in one place".into(),
+        TransitionPressure::Unordered => "no single transition".into(),
         TransitionPressure::Uninformative { .. } => "cannot tell".into(),
     }
 }

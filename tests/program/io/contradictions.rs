@@ -91,7 +91,7 @@ fn header_lines_and_sections_that_stand_twice_are_refused() {
         let keyword = line.trim_start_matches(|c: char| !c.is_ascii_alphabetic());
         for second in [line.to_owned(), line.replacen(|c: char| c.is_ascii_digit(), "7", 1)] {
             let shown = format!("header line `{keyword}`");
-            assert_change_refused::<2>(DATA, line, &format!("{line}\n{second}"), &["stands already in line", &shown]);
+            assert_change_refused::<2>(DATA, line, &format!("{line}\n{second}"), &["is already in line", &shown]);
         }
     }
     let tilts = "-0.5 0.5 zlo zhi\n0 0 0 xy xz yz\n0 0 0 xy xz yz";
@@ -137,16 +137,11 @@ fn keys_that_are_malformed_or_stand_twice_are_refused() {
     for again in ["Lattice=\"8 0 0 0 8 0 0 0 1\"", "PBC=\"F F F\"", "properties=pos:R:3", "pbc"] {
         let key = again.split('=').next().expect("a key");
         let shown = format!("key `{key}`");
-        assert_change_refused::<2>(
-            XYZ,
-            "id:I:1\n",
-            &format!("id:I:1 {again}\n"),
-            &["line 2", &shown, "stands already"],
-        );
+        assert_change_refused::<2>(XYZ, "id:I:1\n", &format!("id:I:1 {again}\n"), &["line 2", &shown, "is already"]);
     }
     for key in ["dimension=2", "Origin=\"0 0 0\""] {
         let name = format!("key `{}`", key.split('=').next().expect("a key"));
-        assert_change_refused::<2>(XYZ, "pbc", &format!("{key} {key} pbc"), &["line 2", &name, "stands already"]);
+        assert_change_refused::<2>(XYZ, "pbc", &format!("{key} {key} pbc"), &["line 2", &name, "is already"]);
     }
 }
 

@@ -64,7 +64,7 @@ fn the_last_frame_is_taken_unless_another_is_asked_for() {
     assert_eq!(last.positions()[0], [0.5401464079704972, 1.019330793868422]);
     assert_eq!(read_frame::<2>(&path, Frame::Index(1)).expect("second"), last);
     let message = read_frame::<2>(&path, Frame::Index(2)).expect_err("no third frame").to_string();
-    assert!(message.contains("disks_two_frames.dump: no frame 2 (counted from 0), the file has 2"), "{message}");
+    assert!(message.contains("disks_two_frames.dump: no frame 2 (counted from 0); the file has 2 frames"), "{message}");
 }
 
 #[test]
