@@ -1,12 +1,13 @@
 //! Inner list: the nearest pairs of a Verlet list, stored as a second list with a narrower skin (dual pair list).
 //!
 //! ```text
-//! |r_ij| < R_i + R_j + s        time per step ∼ 1 + a s/R + P/n,  n = s/(2 v) steps until some disk has moved by s/2
-//! s = √(2 P v R/a)
+//! |r_ij| < R_i + R_j + s        time per step ∼ 1 + c s/R_min + P/n,  n = s/(2 v) steps until some disk has moved by s/2
+//! s = √(2 P v R_min/c)
 //! ```
 //!
 //! A list with a wide skin lasts long, but holds many pairs without contact. While disks move slowly, only the pairs
-//! within a narrow skin s can touch. v is the displacement of the fastest disk per step. These pairs are copied, with
+//! within a narrow skin s can touch. v is the displacement of the fastest disk per step, R_min the smallest radius, c the share
+//! of pairs that a skin of one radius adds, P the cost of pruning in force evaluations. These pairs are copied, with
 //! their geometry at the anchors, at the cost of a few force evaluations. The loop runs over them until a disk has
 //! moved by s/2; then they are selected again. The outer list is rebuilt only when it expires itself.
 //!

@@ -69,7 +69,7 @@ pub fn spatial_order<const D: usize>(
 /// A box too small for the minimum-image convention, or two disks with the same centre.
 ///
 /// # Cost
-/// Linear in the number of disks; about 25 steps of FIRE.
+/// Linear in the number of disks; 10 to 25 force evaluations.
 pub fn build_pairs<const D: usize>(
     disks: &Disks<'_, D>,
     skin: f64,

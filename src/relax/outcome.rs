@@ -46,7 +46,7 @@ pub enum Stop {
     #[cfg(feature = "linear")]
     #[serde(alias = "restless")]
     Stagnation,
-    /// The factors of Newton's matrix do not fit in memory.
+    /// The factors of the matrix of Newton's method or of an implicit step do not fit in memory.
     #[cfg(feature = "linear")]
     OutOfMemory,
     /// No step, however short, lowers the energy, and the residual is above the rounding floor.

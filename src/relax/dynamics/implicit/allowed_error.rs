@@ -11,9 +11,9 @@ const OFF_BACKBONE: f64 = 3.0;
 
 /// The error allowed in a step.
 pub(crate) struct AllowedError<'a> {
-    /// Mean overlap \[length\].
+    /// Median overlap of the contacts \[length\].
     pub(crate) overlap: f64,
-    /// Allowed error over the mean overlap.
+    /// Allowed error over the median overlap \[1\].
     pub(crate) tolerance: f64,
     /// The disks of the backbone, in working order.
     pub(crate) backbone: &'a [bool],

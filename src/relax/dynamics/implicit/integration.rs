@@ -41,10 +41,11 @@ const INDEFINITE_RATIO: f64 = 0.5;
 /// Ratio of step lengths after a step that violated the energy balance.
 const UNBALANCED_RATIO: f64 = 0.5;
 
-/// Overlap over a radius that replaces the mean overlap in a packing without contacts \[1\].
+/// Floor of the median overlap over the smallest radius, for every packing \[1\]; its value in a packing without
+/// contacts.
 const SMALLEST_OVERLAP: f64 = 1e-6;
 
-/// Largest (hγ)² λ, or hγ λ/ζ, of the stiffest contacts; a step does not grow beyond it. Disks without contacts have
+/// Largest (hg)² λ, or hg λ/ζ, of the stiffest contacts; a step does not grow beyond it. Disks without contacts have
 /// only the mass term, and the pivots of the matrix must stay well above rounding.
 const LONGEST_STEP: f64 = 1e12;
 

@@ -24,7 +24,7 @@ pub struct ImplicitDynamics {
     pub limit: ForceLimit,
     /// Net force to which the limit applies. Changes results.
     pub net_force: NetForce,
-    /// Error allowed in one step, over the mean overlap \[1\]. Changes results where minima lie close together.
+    /// Error allowed in one step, over the median overlap \[1\]. Changes results where minima lie close together.
     pub tolerance: f64,
     /// How the motion ends.
     pub finish: Finish,
@@ -39,7 +39,7 @@ pub struct ImplicitDynamics {
 pub struct GradientFlow {
     /// Criterion of mechanical equilibrium. Changes results.
     pub limit: ForceLimit,
-    /// Error allowed in one step, over the mean overlap \[1\]. Changes results where minima lie close together.
+    /// Error allowed in one step, over the median overlap \[1\]. Changes results where minima lie close together.
     pub tolerance: f64,
     /// How the flow ends.
     pub finish: Finish,

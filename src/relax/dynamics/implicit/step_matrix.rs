@@ -1,7 +1,7 @@
 //! [`StepMatrix`]: the matrix of an implicit step, and the solution of its systems.
 //!
 //! ```text
-//! (m/(hγ)² + (ζ + C)/(hγ) + K) U = r
+//! (m/(hg)² + (ζ + C)/(hg) + K) U = r
 //! ```
 //!
 //! The matrix contains the present contacts and those that may close during the step. Each disk may approach others by
@@ -40,7 +40,7 @@ pub(crate) struct Link<const D: usize> {
 
 /// The terms that a step adds to the matrix.
 pub(crate) struct StepTerms<'a, C> {
-    /// hγ.
+    /// hg, step times diagonal coefficient of the tableau \[time\].
     pub(crate) scale: f64,
     pub(crate) inertia: Inertia,
     pub(crate) damping: &'a C,
@@ -61,7 +61,7 @@ pub(crate) struct StepMatrix<const D: usize> {
     /// Displacement of each mobile disk in the last accepted step; infinite before the first.
     last_distances: Vec<f64>,
     margins: Vec<f64>,
-    /// Stiffness of each pair in the matrix, with its damping over hγ.
+    /// Stiffness of each pair in the matrix, with its damping over hg.
     along: Vec<f64>,
     links: Vec<Link<D>>,
 }
