@@ -51,7 +51,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         Self::with_skin(packing, law, SKIN)
     }
 
-    /// Like [`Assembly::new`], with an inner list and incremental updates ([`Assembly::prune_lists`]). The lists of a
+    /// Like [`Assembly::new`], with an inner list and incremental updates ([`Assembly::set_pruning`]). The lists of a
     /// large packing have a narrower skin, unless all disks move.
     ///
     /// # Errors
@@ -143,7 +143,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     }
 
     /// Number of builds of the outer list, the first one included.
-    pub fn rebuild_count(&self) -> usize {
+    pub fn build_count(&self) -> usize {
         self.lists.build_count()
     }
 
@@ -265,7 +265,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// Sets whether an inner list is used while disks move slowly. The caller must call [`Assembly::update_list`] once
     /// per evaluation. Data that the caller keeps for each pair must be rebuilt whenever that call returns true.
-    pub fn prune_lists(&mut self, prunes: bool) {
+    pub fn set_pruning(&mut self, prunes: bool) {
         self.lists.set_pruning(&self.layout.disks(&self.displacements), prunes);
     }
 

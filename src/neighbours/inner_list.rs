@@ -158,7 +158,7 @@ mod tests {
     /// fraction with a rebuild of the outer list.
     fn move_disks(assembly: &mut Assembly<2, Hertzian>, displacement: f64, steps: usize) -> (f64, f64) {
         let mobile = assembly.mobile_count();
-        let (mut near, made) = (0, assembly.rebuild_count());
+        let (mut near, made) = (0, assembly.build_count());
         for step in 0..steps {
             for disk in 0..mobile {
                 let angle = (disk * (step / 40 + 1)) as f64;
@@ -182,7 +182,7 @@ mod tests {
                 }
             }
         }
-        (near as f64 / steps as f64, (assembly.rebuild_count() - made) as f64 / steps as f64)
+        (near as f64 / steps as f64, (assembly.build_count() - made) as f64 / steps as f64)
     }
 
     #[test]
@@ -190,7 +190,7 @@ mod tests {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz");
         let packing = read_packing::<2>(file).expect("a stored packing");
         let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("no coincidence");
-        assembly.prune_lists(true);
+        assembly.set_pruning(true);
         let radius = 0.5;
         let (near, made) = move_disks(&mut assembly, 1e-4 * radius, 400);
         assert!(near > 0.9 && made == 0.0, "slowly: {near} {made}");
@@ -202,7 +202,7 @@ mod tests {
         assert!(near < 0.5 && made > 0.02, "fast: {near} {made}");
         let (near, _) = move_disks(&mut assembly, 1e-4 * radius, 400);
         assert!(near > 0.7, "slowly again: {near}");
-        assembly.prune_lists(false);
+        assembly.set_pruning(false);
         let (near, _) = move_disks(&mut assembly, 1e-2 * radius, 100);
         assert!(near < 0.3, "not any more: {near}");
     }

@@ -278,8 +278,8 @@ impl Monitor {
     ) -> Outcome<Packing<D>> {
         let energies = cost.energies.or(self.energies());
         let (residual, rounding_floor) = self.finish(&assembly, &assembly.forces[..assembly.mobile_count()]);
-        let (rebuild_count, seconds) = (assembly.rebuild_count(), start.elapsed().as_secs_f64());
-        let cost = Cost { rebuild_count, seconds, energies, ..cost };
+        let (build_count, seconds) = (assembly.build_count(), start.elapsed().as_secs_f64());
+        let cost = Cost { build_count, seconds, energies, ..cost };
         Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost }
     }
 

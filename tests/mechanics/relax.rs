@@ -385,8 +385,8 @@ fn a_relaxation_in_other_units_takes_the_same_steps_to_the_same_bits() {
         let same = |one: Outcome<Packing<2>>, two: Outcome<Packing<2>>| {
             assert!(matches!(one.stop, Stop::Converged(_)), "{:?}", one.stop);
             assert_eq!(
-                (one.stop, one.cost.step_count, one.cost.rebuild_count),
-                (two.stop, two.cost.step_count, two.cost.rebuild_count)
+                (one.stop, one.cost.step_count, one.cost.build_count),
+                (two.stop, two.cost.step_count, two.cost.build_count)
             );
             assert_eq!(scale(one.state.positions()), two.state.positions());
             assert_eq!(scale(one.state.corrections()), two.state.corrections());
@@ -450,7 +450,7 @@ fn the_work_of_fixed_scenes_stays_what_it_was() {
             counts.0,
             counts.1
         );
-        assert!(near(cost.rebuild_count, lists), "{what}: {} lists, {lists} then", cost.rebuild_count);
+        assert!(near(cost.build_count, lists), "{what}: {} lists, {lists} then", cost.build_count);
     };
     let law = Hertzian::default();
     counted("FIRE, random points at 0.9", relax(&fire(1e-8), points(256, 0.9, 16), &law), 940, 962, 54);

@@ -40,9 +40,9 @@ impl Fire {
         monitor: &mut Monitor,
         trace: &mut impl Trace,
     ) -> Result<(Stop, Cost), PackingError> {
-        assembly.prune_lists(true);
+        assembly.set_pruning(true);
         let ended = self.run_from_rest(assembly, monitor, trace);
-        assembly.prune_lists(false);
+        assembly.set_pruning(false);
         ended
     }
 

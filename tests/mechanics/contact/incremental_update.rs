@@ -23,7 +23,7 @@ impl<const D: usize> Crossing<D> {
     /// The `count` disks nearest to `middle`, seen from the corner of the box, are fast.
     fn new(packing: &Packing<D>, (count, middle): (usize, Vector<D>), lengths: (f64, f64)) -> Self {
         let mut assembly = Assembly::new(packing, Hertzian::default()).expect("no coincidence");
-        assembly.prune_lists(true);
+        assembly.set_pruning(true);
         let away = |&disk: &usize| norm(difference(assembly.place(disk), middle));
         let mut fast: Vec<usize> = (0..packing.len()).collect();
         fast.sort_by(|one, two| away(one).total_cmp(&away(two)));
@@ -81,7 +81,7 @@ impl<const D: usize> Crossing<D> {
                 self.check();
             }
         }
-        assert_eq!(self.assembly.rebuild_count(), 1);
+        assert_eq!(self.assembly.build_count(), 1);
         assert!(inner_count > 1000, "an inner list in {inner_count} of 1500 steps");
     }
 
@@ -134,7 +134,7 @@ fn a_list_with_incremental_updates_for_fast_disks_misses_no_contact() {
     let mut crossing = Crossing::new(&packing, (60, middle), (0.03, 0.0));
     crossing.run();
     // Without updates a list would be built for each of some eight displacements of half a skin.
-    assert!(crossing.assembly.rebuild_count() <= 4, "{} lists", crossing.assembly.rebuild_count());
+    assert!(crossing.assembly.build_count() <= 4, "{} lists", crossing.assembly.build_count());
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn a_list_of_balls_with_incremental_updates_misses_no_contact() {
     // Through the corner of the box, where images meet.
     let mut crossing = Crossing::new(&balls(0.0), (16, [0.0; 3]), (0.03, 0.0));
     crossing.run();
-    assert!(crossing.assembly.rebuild_count() <= 4, "{} lists", crossing.assembly.rebuild_count());
+    assert!(crossing.assembly.build_count() <= 4, "{} lists", crossing.assembly.build_count());
 }
 
 #[test]
@@ -151,7 +151,7 @@ fn a_list_updated_before_it_expires_misses_no_contact() {
     let mut crossing = Crossing::new(&packing, (60, middle), (0.01, 1e-5));
     crossing.by_tiles = true;
     crossing.run();
-    assert_eq!((crossing.assembly.rebuild_count(), crossing.expired_count), (1, 0));
+    assert_eq!((crossing.assembly.build_count(), crossing.expired_count), (1, 0));
 }
 
 #[test]
@@ -202,7 +202,7 @@ fn computed_displacements_replace_displacement_bounds() {
     let (packing, middle) = three_tiles();
     let mut assembly = Crossing::new(&packing, (1, middle), (0.0, 0.0)).assembly;
     // No speed checks: the outer list is in use, with a skin of half a radius, and is complete for displacements of an eighth of a diameter.
-    assembly.prune_lists(false);
+    assembly.set_pruning(false);
     let mut velocities = vec![[0.0; 2]; assembly.mobile_count()];
     velocities[0] = [LENGTH, 0.0];
     for step in 1..=125 {
@@ -272,7 +272,7 @@ fn steps_tile_by_tile_miss_no_contact_of_fast_disks() {
     assert!(advanced > 200 && updated > 3, "{advanced} steps, updated {updated} times");
     // By the leaps alone.
     assert_eq!(expired_count, 5);
-    assert!(crossing.assembly.rebuild_count() <= 4, "{} lists", crossing.assembly.rebuild_count());
+    assert!(crossing.assembly.build_count() <= 4, "{} lists", crossing.assembly.build_count());
 }
 
 #[test]
@@ -301,11 +301,11 @@ fn inserted_pairs_have_their_forces_in_single_precision() {
             Advanced::Moved => false,
             Advanced::Not => panic!("a long list is advanced whatever comes"),
         };
-        let made = assembly.rebuild_count();
+        let made = assembly.build_count();
         let changed = assembly.update_list_after_advance().expect("no coincidence");
         updated += usize::from(changed && holds);
         expired_count += usize::from(!holds);
-        assert_eq!(assembly.rebuild_count(), made, "step {at}: updated, not rebuilt");
+        assert_eq!(assembly.build_count(), made, "step {at}: updated, not rebuilt");
         if !changed && at % 7 != 0 {
             continue;
         }
@@ -329,7 +329,7 @@ fn an_inner_list_of_a_nearly_expired_list_misses_no_contact() {
     let packing =
         Packing::new(Domain::Open, vec![[0.0, 0.0], [1.0 + 0.25 + 1e-9, 0.0]], vec![0.5; 2]).expect("two disks");
     let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("apart");
-    assembly.prune_lists(true);
+    assembly.set_pruning(true);
     assert_eq!(assembly.pairs().len(), 0);
     // Towards each other, fast, until the list has nearly expired, then slowly: at a speed check an inner list would seem to suffice.
     for step in 1..=1200 {
@@ -352,9 +352,9 @@ fn a_list_that_all_disks_expire_is_rebuilt_with_a_wider_skin() {
     // Displacement of all disks in a step over the smallest radius, and the best skin: √(2 · 25 evaluations of a build / 0.75 · displacement).
     for (length, expected) in [(2e-4f64, 0.2), (2e-3, (50.0 / 0.75 * 2e-3f64).sqrt()), (1e-2, 0.5)] {
         let mut assembly = Assembly::with_incremental_updates(&packing, Hertzian::default()).expect("no coincidence");
-        assembly.prune_lists(true);
+        assembly.set_pruning(true);
         assert_eq!(assembly.skin(), 0.2 * smallest);
-        while assembly.rebuild_count() == 1 {
+        while assembly.build_count() == 1 {
             for (disk, displacement) in assembly.displacements.iter_mut().enumerate() {
                 let angle = 1.7 * disk as f64;
                 *displacement = sum(*displacement, [angle.cos(), angle.sin()].map(|along| length * smallest * along));
@@ -377,7 +377,7 @@ fn fast_disks_in_an_inner_list_find_each_other() {
     let places = (0..4900).map(|disk| [3.0 * f64::from(disk % 70), 3.0 * f64::from(disk / 70)]).chain(beside).collect();
     let packing = Packing::new(Domain::Open, places, vec![0.5; 4902]).expect("disks apart");
     let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("no coincidence");
-    assembly.prune_lists(true);
+    assembly.set_pruning(true);
     let [lower, upper] =
         [4900, 4901].map(|disk| assembly.order().iter().position(|&other| other == disk).expect("every disk"));
     let length = 1e-4;
@@ -394,6 +394,6 @@ fn fast_disks_in_an_inner_list_find_each_other() {
             assert!(overlap.abs() < 1e-9 || pressed == (overlap > 0.0), "step {step}: {overlap}");
         }
     }
-    assert_eq!(assembly.rebuild_count(), 1);
+    assert_eq!(assembly.build_count(), 1);
     assert!(assembly.skin() < 0.1, "by the inner list: {}", assembly.skin());
 }

@@ -73,7 +73,7 @@ impl Integration {
         cost.factorisation_count += motion.work.factorisation_count;
         cost.iteration_count += motion.work.iteration_count;
         cost.simulated_time = motion.time;
-        cost.rebuild_count = assembly.rebuild_count();
+        cost.build_count = assembly.build_count();
         cost.seconds = start.elapsed().as_secs_f64();
         Ok(Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost })
     }
