@@ -7,7 +7,7 @@ use std::ops::{Range, RangeInclusive};
 
 use crate::forces::advance::{Advanced, Movers, Reach, advance};
 use crate::forces::elastic;
-use crate::forces::elastic::{Across, Plain};
+use crate::forces::elastic::{BorderForces, Plain};
 use crate::forces::layout::Layout;
 use crate::forces::stiffness_bound::{Weight, stiffness_rows};
 use crate::forces::totals::Totals;
@@ -18,8 +18,8 @@ use crate::neighbours::pair_list::PairList;
 use crate::packing::{Packing, PackingError};
 use crate::vector::{Vector, dot, longest_difference_squared};
 
-/// Width of the skin over the smallest radius \[1\]. Changes speed, and last digits by the order of sums. With a wider
-/// skin, lists last longer but contain more pairs without contact.
+/// Width of the skin over the smallest radius \[1\]. A different skin changes the speed and, through the order of the
+/// sums, the last digits. With a wider skin, lists last longer but contain more pairs without contact.
 pub const SKIN: f64 = 0.5;
 
 /// Width of the narrowest skin of a long list with incremental updates. Such a list need not last for the few fast
@@ -32,7 +32,8 @@ pub struct Assembly<const D: usize, L> {
     law: L,
     layout: Layout<D>,
     lists: ListKeeper<D>,
-    across: Across<f64, D>,
+    /// Forces of pairs whose second disks are in other tiles.
+    border_forces: BorderForces<f64, D>,
     /// Displacements that the relaxer can restore, if it has set a checkpoint.
     checkpoint: Vec<Vector<D>>,
     /// Centre minus anchor of each disk; a relaxer moves the first [`Assembly::mobile_count`] disks \[length\].
@@ -81,7 +82,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             law,
             layout,
             lists: ListKeeper::new(smallest_radius, narrowest..=widest),
-            across: Across::default(),
+            border_forces: BorderForces::default(),
             checkpoint: Vec::new(),
             displacements,
             forces: vec![[0.0; D]; packing.len()],
@@ -159,7 +160,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// Evaluates the forces at the present displacements into [`Assembly::forces`].
     pub fn evaluate(&mut self) {
-        elastic::forces(&self.law, self.lists.in_use(), &self.displacements, &mut self.across, &mut self.forces);
+        elastic::forces(&self.law, self.lists.in_use(), &self.displacements, &mut self.border_forces, &mut self.forces);
         if self.law.has_sites() {
             let _ = self.add_on_site_forces();
         }
@@ -188,14 +189,26 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             longest_difference_squared(displacements, &reference[first..first + displacements.len()]).sqrt()
         };
         let reach = Reach { limit, bounds, longest };
-        Advanced::of(advance(&Plain { law: &self.law, pairs }, pairs, (movers, &mut self.across), reach, kick, observe))
+        Advanced::of(advance(
+            &Plain { law: &self.law, pairs },
+            pairs,
+            (movers, &mut self.border_forces),
+            reach,
+            kick,
+            observe,
+        ))
     }
 
     /// Forces as in [`Assembly::evaluate`], with energy, virial and contact count.
     pub fn evaluate_totals(&mut self) -> Totals<D> {
         let pairs = self.lists.in_use();
-        let mut totals =
-            elastic::forces_and_totals(&self.law, pairs, &self.displacements, &mut self.across, &mut self.forces);
+        let mut totals = elastic::forces_and_totals(
+            &self.law,
+            pairs,
+            &self.displacements,
+            &mut self.border_forces,
+            &mut self.forces,
+        );
         if self.law.has_sites() {
             totals.on_site_energy = self.add_on_site_forces();
             totals.energy += totals.on_site_energy;
@@ -243,6 +256,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             return Ok(());
         }
         self.displacements.clone_from(&self.checkpoint);
+        // No bound is known, so the displacements are computed, and the list is rebuilt only if it has expired.
         self.update_list(f64::INFINITY).map(|_| ())
     }
 

@@ -19,7 +19,7 @@ use pulp::Simd;
 
 use crate::forces::advance::{Advanced, Movers, Reach, advance};
 use crate::forces::assembly::Assembly;
-use crate::forces::elastic::{Across, Kernel, all_tiles};
+use crate::forces::elastic::{BorderForces, Kernel, all_tiles};
 use crate::law::kernel::{LawKernel, dispatch};
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::block::BLOCK;
@@ -90,7 +90,8 @@ pub struct Single<const D: usize> {
     offsets: Vec<[f32; D]>,
     /// Forces of the last evaluation, all disks \[`Units::force`\].
     pub forces: Vec<[f32; D]>,
-    across: Across<f32, D>,
+    /// Forces of pairs whose second disks are in other tiles.
+    border_forces: BorderForces<f32, D>,
     /// The list whose pairs are in `blocks`, by [`Assembly::list_number`]; none if the base is no longer valid.
     listing: Option<(usize, usize)>,
 }
@@ -109,7 +110,7 @@ impl<const D: usize> Single<D> {
             base: Vec::new(),
             offsets: vec![[0.0; D]; assembly.len()],
             forces: vec![[0.0; D]; assembly.len()],
-            across: Across::default(),
+            border_forces: BorderForces::default(),
             listing: None,
         })
     }
@@ -197,7 +198,7 @@ impl<const D: usize> Single<D> {
         let kernel = Pressed { law: &law, pairs, blocks: &self.blocks };
         let movers = Movers { velocities, displacements: &mut self.offsets, forces: &mut self.forces };
         let reach = Reach { limit, bounds, longest };
-        let advanced = Advanced::of(advance(&kernel, pairs, (movers, &mut self.across), reach, kick, observe));
+        let advanced = Advanced::of(advance(&kernel, pairs, (movers, &mut self.border_forces), reach, kick, observe));
         if matches!(advanced, Advanced::Moved) || assembly.checks_next() {
             // The assembly checks its displacements.
             self.settle(assembly);
@@ -214,7 +215,7 @@ impl<const D: usize> Single<D> {
         self.prepare(assembly);
         let pairs = assembly.pairs();
         let kernel = Pressed { law: assembly.law(), pairs, blocks: &self.blocks };
-        let _ = all_tiles(&kernel, pairs, &self.offsets, &mut self.across, &mut self.forces);
+        let _ = all_tiles(&kernel, pairs, &self.offsets, &mut self.border_forces, &mut self.forces);
     }
 
     /// Moves all mobile disks by `kick`, without an evaluation of forces.
@@ -271,32 +272,38 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Pressed<'_, D, L> {
         (Columns::new(), ())
     }
 
-    fn pull<'a>(
+    fn pair_forces<'a>(
         &self,
         block: usize,
         offsets: (&[[f32; D]], u32),
         (columns, ()): &'a mut (Columns<D>, ()),
     ) -> &'a [[f32; D]; BLOCK] {
         prefetch_rows(self.pairs, &self.pairs.blocks[block]);
-        gather(&mut columns.pull, self.pairs, &self.pairs.blocks[block], offsets);
+        gather(&mut columns.pair_vectors, self.pairs, &self.pairs.blocks[block], offsets);
         let (of_pairs, pair_count) = (self.blocks.block(block), self.pairs.blocks[block].pair_count);
         dispatch(self.law, Arithmetic { block: of_pairs, columns, pair_count, prefetches: self.pairs.prefetches() });
-        &columns.pull
+        &columns.pair_vectors
     }
 }
 
 /// One block of pairs, column by column, as in [`crate::forces::block_arithmetic`].
 #[repr(align(64))]
 struct Columns<const D: usize> {
-    pull: [[f32; D]; BLOCK],
-    apart: [[f32; BLOCK]; D],
+    /// Relative offset of each pair, then the force on its first disk.
+    pair_vectors: [[f32; D]; BLOCK],
+    separation: [[f32; BLOCK]; D],
     change: [f32; BLOCK],
     distance: [f32; BLOCK],
 }
 
 impl<const D: usize> Columns<D> {
     fn new() -> Self {
-        Columns { pull: [[0.0; D]; BLOCK], apart: [[0.0; BLOCK]; D], change: [0.0; BLOCK], distance: [0.0; BLOCK] }
+        Columns {
+            pair_vectors: [[0.0; D]; BLOCK],
+            separation: [[0.0; BLOCK]; D],
+            change: [0.0; BLOCK],
+            distance: [0.0; BLOCK],
+        }
     }
 }
 
@@ -317,25 +324,25 @@ impl<const D: usize> LawKernel for Arithmetic<'_, D> {
         let count = pair_count.div_ceil(S::F32_LANES).min(BLOCK / S::F32_LANES);
         let read = |column| &S::as_simd_f32s(column).0[..count];
         let (zero, one) = (simd.splat_f32s(0.0), simd.splat_f32s(1.0));
-        let pull = &mut S::as_mut_simd_f32s(columns.pull.as_flattened_mut()).0[..D * count];
-        let apart = columns.apart.each_mut().map(|column| &mut S::as_mut_simd_f32s(column).0[..count]);
+        let pair_vectors = &mut S::as_mut_simd_f32s(columns.pair_vectors.as_flattened_mut()).0[..D * count];
+        let separation = columns.separation.each_mut().map(|column| &mut S::as_mut_simd_f32s(column).0[..count]);
         let change = &mut S::as_mut_simd_f32s(&mut columns.change).0[..count];
         let distance = &mut S::as_mut_simd_f32s(&mut columns.distance).0[..count];
-        let separation = block.separation.each_ref().map(|column| read(&column[..]));
+        let anchor_separation = block.separation.each_ref().map(|column| read(&column[..]));
         let (anchor_distance, anchor_overlap) = (read(&block.distance), read(&block.overlap));
         let (coefficients, one_coefficient) = (read(&block.coefficient), simd.splat_f32s(block.coefficient[0]));
         for k in 0..count {
-            let offset = components::split_single::<S, D>(simd, &pull[D * k..D * (k + 1)]);
+            let offset = components::split_single::<S, D>(simd, &pair_vectors[D * k..D * (k + 1)]);
             let (mut square, mut changed) = (zero, zero);
             for d in 0..D {
-                let along = simd.add_f32s(separation[d][k], offset[d]);
+                let along = simd.add_f32s(anchor_separation[d][k], offset[d]);
                 let squared = simd.mul_f32s(along, along);
-                let change = simd.mul_f32s(offset[d], simd.add_f32s(separation[d][k], along));
+                let change = simd.mul_f32s(offset[d], simd.add_f32s(anchor_separation[d][k], along));
                 (square, changed) = match d {
                     0 => (squared, change),
                     _ => (simd.add_f32s(square, squared), simd.add_f32s(changed, change)),
                 };
-                apart[d][k] = along;
+                separation[d][k] = along;
             }
             if let Some(cache) = prefetches {
                 block.prefetch(cache, blocks_ahead(cache), k * S::F32_LANES, !L::ONE_COEFFICIENT);
@@ -353,9 +360,9 @@ impl<const D: usize> LawKernel for Arithmetic<'_, D> {
             let factor = simd.mul_f32s(force, simd.mul_f32s(both, inverse));
             let mut along = [factor; D];
             for d in 0..D {
-                along[d] = simd.mul_f32s(factor, apart[d][k]);
+                along[d] = simd.mul_f32s(factor, separation[d][k]);
             }
-            components::join_single(simd, &along, &mut pull[D * k..D * (k + 1)]);
+            components::join_single(simd, &along, &mut pair_vectors[D * k..D * (k + 1)]);
         }
     }
 }
@@ -381,9 +388,9 @@ mod tests {
         let mut forces = Vec::new();
         for prefetches in [None, Some(Cache::First), Some(Cache::Second)] {
             for processor in Processor::all() {
-                let columns = &mut Columns { pull: offsets, ..Columns::new() };
+                let columns = &mut Columns { pair_vectors: offsets, ..Columns::new() };
                 processor.run(|| dispatch(law, Arithmetic { block, columns, pair_count: BLOCK, prefetches }));
-                forces.push(columns.pull);
+                forces.push(columns.pair_vectors);
             }
         }
         let bits = |forces: &[[f32; 2]; BLOCK]| forces.map(|force| force.map(f32::to_bits));

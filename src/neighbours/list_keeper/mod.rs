@@ -12,7 +12,7 @@ use crate::neighbours::displacement_bounds::{DisplacementBounds, PORTION, SKIN_F
 use crate::neighbours::fast_disks::FastDisks;
 use crate::neighbours::inner_list::{best_inner_skin, best_outer_skin};
 use crate::neighbours::pair_list::PairList;
-use crate::neighbours::verlet_list::{Disks, ListRoom, build_pairs};
+use crate::neighbours::verlet_list::{Disks, ListWorkspace, build_pairs};
 use crate::packing::PackingError;
 use crate::parallel;
 use crate::vector::{Vector, larger, longest_difference_squared};
@@ -38,7 +38,7 @@ pub(crate) struct ListKeeper<const D: usize> {
     /// Displacements at the last speed check, and the value of `age` then.
     checked_displacements: Vec<Vector<D>>,
     checked_at: usize,
-    room: ListRoom<D>,
+    workspace: ListWorkspace<D>,
     smallest_radius: f64,
     /// Skin of the outer list.
     skin: f64,
@@ -88,7 +88,7 @@ impl<const D: usize> ListKeeper<D> {
             next_check: 0,
             checked_displacements: Vec::new(),
             checked_at: 0,
-            room: ListRoom::default(),
+            workspace: ListWorkspace::default(),
             smallest_radius,
             skin: *skins.start(),
             skins,
@@ -132,7 +132,7 @@ impl<const D: usize> ListKeeper<D> {
     /// # Errors
     /// As [`build_pairs`].
     pub(crate) fn build(&mut self, disks: &Disks<'_, D>, coefficient: Coefficient<'_>) -> Result<(), PackingError> {
-        build_pairs(disks, self.skin, coefficient, &mut self.room, &mut self.outer)?;
+        build_pairs(disks, self.skin, coefficient, &mut self.workspace, &mut self.outer)?;
         self.inner_skin = None;
         self.bounds_before.clear();
         self.outer_at_build.clear();

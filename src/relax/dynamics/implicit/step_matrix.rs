@@ -153,7 +153,7 @@ impl<const D: usize> StepMatrix<D> {
         for_each_pair(
             pairs,
             &assembly.displacements,
-            &mut |&MovedPair { pair, ends, apart, distance, overlap, coefficient }| {
+            &mut |&MovedPair { pair, ends, separation, distance, overlap, coefficient }| {
                 let margin = (APPROACH_FACTOR * larger(last(ends.0), last(ends.1))).min(terms.margin);
                 self.margins[pair] = margin;
                 if overlap <= -margin {
@@ -166,7 +166,7 @@ impl<const D: usize> StepMatrix<D> {
                 };
                 let along = law.stiffness(law.force(coefficient, wide), wide) + damping / terms.scale;
                 self.along[pair] = along;
-                self.links.push(Link { ends, normal: scaled(1.0 / distance, apart), damping });
+                self.links.push(Link { ends, normal: scaled(1.0 / distance, separation), damping });
             },
         );
     }
