@@ -13,7 +13,7 @@ use crate::forces::stiffness_bound::{Weight, stiffness_rows};
 use crate::forces::totals::Totals;
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::displacement_bounds::DisplacementBounds;
-use crate::neighbours::list_keeper::{Kept, ListKeeper};
+use crate::neighbours::list_keeper::{Kept, ListKeeper, ListNumber};
 use crate::neighbours::pair_list::PairList;
 use crate::packing::{Packing, PackingError};
 use crate::vector::{Vector, dot, longest_difference_squared};
@@ -331,8 +331,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.lists.checks_next()
     }
 
-    /// Identifies the list in use: its number, and the number of its incremental updates.
-    pub(crate) fn list_number(&self) -> (usize, usize) {
+    /// Identifies the list in use.
+    pub(crate) fn list_number(&self) -> ListNumber {
         self.lists.list_number()
     }
 

@@ -23,6 +23,7 @@ use crate::forces::elastic::{BorderForces, Kernel, all_tiles};
 use crate::law::kernel::{LawKernel, dispatch};
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::block::BLOCK;
+use crate::neighbours::list_keeper::ListNumber;
 use crate::neighbours::pair_list::PairList;
 use crate::neighbours::rows::{gather, prefetch_rows};
 use crate::neighbours::single_precision::{Factors, SingleBlock, SingleBlocks};
@@ -81,7 +82,7 @@ fn power_of_two(exponent: i32) -> f64 {
 }
 
 /// Disks in single precision, beside an [`Assembly`] that keeps their base. It is valid as long as only this type
-/// changes the displacements. A caller that changes them must call [`Single::forget`].
+/// changes the displacements. A caller that changes them must call [`Single::invalidate_base`].
 #[derive(Debug, Clone)]
 pub struct Single<const D: usize> {
     units: Units,
@@ -93,7 +94,7 @@ pub struct Single<const D: usize> {
     /// Forces of pairs whose second disks are in other tiles.
     border_forces: BorderForces<f32, D>,
     /// The list whose pairs are in `blocks`, by [`Assembly::list_number`]; none if the base is no longer valid.
-    listing: Option<(usize, usize)>,
+    listing: Option<ListNumber>,
 }
 
 impl<const D: usize> Single<D> {
@@ -121,8 +122,8 @@ impl<const D: usize> Single<D> {
     }
 
     /// Marks the base as outdated. The next step takes the assembly's displacements as its base, because they were
-    /// settled or changed by others.
-    pub fn forget(&mut self) {
+    /// written or changed by others.
+    pub fn invalidate_base(&mut self) {
         self.listing = None;
     }
 
@@ -138,9 +139,9 @@ impl<const D: usize> Single<D> {
     }
 
     /// Writes the present positions into the assembly.
-    pub fn settle<L: PairLaw>(&self, assembly: &mut Assembly<D, L>) {
-        if self.listing.is_none_or(|(list, _)| list != assembly.list_number().0) {
-            // Before a new list was built, the disks were settled. Their anchors may have changed since.
+    pub fn write_displacements<L: PairLaw>(&self, assembly: &mut Assembly<D, L>) {
+        if self.listing.is_none_or(|known| known.list != assembly.list_number().list) {
+            // Before a new list was built, the displacements were written. The anchors may have changed since.
             return;
         }
         let places =
@@ -150,7 +151,7 @@ impl<const D: usize> Single<D> {
     }
 
     /// The same for some of the disks.
-    fn settle_some<L: PairLaw>(&self, assembly: &mut Assembly<D, L>, disks: Range<usize>) {
+    fn write_some_displacements<L: PairLaw>(&self, assembly: &mut Assembly<D, L>, disks: Range<usize>) {
         let from = (&self.base[disks.clone()], &self.offsets[disks.clone()]);
         place(self.units.length, from, &mut assembly.displacements[disks]);
     }
@@ -158,8 +159,8 @@ impl<const D: usize> Single<D> {
     /// Makes the assembly's displacements the base if the base is outdated, and rounds the pairs of the list. Pairs
     /// inserted into a long list are rounded at the present base.
     fn prepare<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
-        let (list, amendments) = assembly.list_number();
-        let known = self.listing.replace((list, amendments));
+        let number = assembly.list_number();
+        let known = self.listing.replace(number);
         if known == self.listing {
             return;
         }
@@ -167,7 +168,7 @@ impl<const D: usize> Single<D> {
         let law = assembly.law();
         let coefficient = libm::pow(self.units.length, law.exponent() - 1.0) / self.units.force;
         let factors = Factors { length: 1.0 / self.units.length, coefficient };
-        if pairs.is_long() && known.is_some_and(|(same, _)| same == list) {
+        if pairs.is_long() && known.is_some_and(|known| known.list == number.list) {
             self.blocks.round_again(pairs.blocks_with_insertions(), pairs, &self.base, factors);
             return;
         }
@@ -201,10 +202,10 @@ impl<const D: usize> Single<D> {
         let advanced = Advanced::of(advance(&kernel, pairs, (movers, &mut self.border_forces), reach, kick, observe));
         if matches!(advanced, Advanced::Moved) || assembly.checks_next() {
             // The assembly checks its displacements.
-            self.settle(assembly);
+            self.write_displacements(assembly);
         } else {
             for disks in assembly.disks_to_check() {
-                self.settle_some(assembly, disks);
+                self.write_some_displacements(assembly, disks);
             }
         }
         advanced
@@ -239,7 +240,7 @@ fn place<const D: usize>(unit: f64, (base, offsets): (&[Vector<D>], &[[f32; D]])
     }
 }
 
-/// The largest displacement since the list was built, for disks at base + offset, with the rounding of settled
+/// The largest displacement since the list was built, for disks at base + offset, with the rounding of written
 /// positions.
 fn longest_offset<const D: usize>(
     unit: f64,

@@ -89,10 +89,10 @@ impl<const D: usize> ListKeeper<D> {
             Some(skin) => outer_updated.is_some() && self.update_inner_list(disks, coefficient, skin),
         };
         if updated {
-            self.list_number.1 += 1;
+            self.list_number.update_count += 1;
             if self.inner_skin.is_none() && !self.outer.is_long() {
                 // The speed of the disks is checked as for a new list.
-                self.set_pruning(disks, self.prunes);
+                self.restart_speed_checks(disks);
             }
         }
         updated

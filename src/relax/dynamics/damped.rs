@@ -97,7 +97,7 @@ impl Relaxer for DampedDynamics {
         self.relax_with(packing, law, &law.contact_damping(&self.damping), trace)
     }
 
-    fn passing(&self, limit: f64) -> Option<Self> {
+    fn for_intermediate_states(&self, limit: f64) -> Option<Self> {
         self.limit.loosened(limit).map(|limit| DampedDynamics { limit, ..*self })
     }
 }

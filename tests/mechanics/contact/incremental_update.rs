@@ -311,7 +311,7 @@ fn inserted_pairs_have_their_forces_in_single_precision() {
         }
         disks.evaluate(assembly);
         let mut exact = assembly.clone();
-        disks.settle(&mut exact);
+        disks.write_displacements(&mut exact);
         exact.reanchor().expect("no coincidence");
         exact.evaluate();
         let unit = disks.units().force;

@@ -21,7 +21,7 @@ pub(crate) struct AllowedError<'a> {
 
 impl AllowedError<'_> {
     /// Largest error of a disk in the last step over the allowed one \[1\]; NaN if an error is NaN.
-    pub(crate) fn share<const D: usize, L: PairLaw, C: DampingLaw>(
+    pub(crate) fn largest_ratio<const D: usize, L: PairLaw, C: DampingLaw>(
         &self,
         motion: &ImplicitMotion<D, L, C>,
         error: impl Fn(&ImplicitMotion<D, L, C>, usize) -> f64,

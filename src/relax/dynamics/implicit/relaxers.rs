@@ -94,7 +94,7 @@ impl Relaxer for ImplicitDynamics {
         run.relax(packing, law, &law.contact_damping(&self.damping), Inertia::Massive, trace)
     }
 
-    fn passing(&self, limit: f64) -> Option<Self> {
+    fn for_intermediate_states(&self, limit: f64) -> Option<Self> {
         self.limit.loosened(limit).map(|limit| ImplicitDynamics { limit, ..*self })
     }
 }
@@ -117,7 +117,7 @@ impl Relaxer for GradientFlow {
         run.relax(packing, law, &ContactDamping::Constant(ConstantDamping { rate: 0.0 }), Inertia::Friction(1.0), trace)
     }
 
-    fn passing(&self, limit: f64) -> Option<Self> {
+    fn for_intermediate_states(&self, limit: f64) -> Option<Self> {
         self.limit.loosened(limit).map(|limit| GradientFlow { limit, ..*self })
     }
 }
