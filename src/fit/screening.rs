@@ -2,8 +2,8 @@
 //!
 //! With the rim solution v(r; κ) as the shape, the model is r·d_r = B r v(r; κ). It is linear in the slope B, which
 //! is minus d_r' at the rim. For each κ, the best B and χ²(κ) therefore have closed forms (variable projection; Golub &
-//! Pereyra (1973), SIAM J. Numer. Anal. 10, 413). v has no poles in κ, so χ²(κ) is smooth through all of them. The branches are connected, and
-//! a minimum near a pole is found like any other.
+//! Pereyra (1973), SIAM J. Numer. Anal. 10, 413). v has no poles in κ, so χ²(κ) is smooth through all of them. The
+//! branches are connected, and a minimum near a pole is found like any other.
 
 use argmin::core::{CostFunction, Error, Executor, State};
 use argmin::solver::brent::BrentOpt;

@@ -6,10 +6,10 @@
 //! ```
 //!
 //! A list with a wide skin lasts long, but holds many pairs without contact. While disks move slowly, only the pairs
-//! within a narrow skin s can touch. v is the displacement of the fastest disk per step, R_min the smallest radius, c the share
-//! of pairs that a skin of one radius adds, P the cost of pruning in force evaluations. These pairs are copied, with
-//! their geometry at the anchors, at the cost of a few force evaluations. The loop runs over them until a disk has
-//! moved by s/2; then they are selected again. The outer list is rebuilt only when it expires itself.
+//! within a narrow skin s can touch. These pairs are copied, with their geometry at the anchors, at the cost of a few
+//! force evaluations. The loop runs over them until a disk has moved by s/2; then they are selected again. The outer
+//! list is rebuilt only when it expires itself. v is the displacement of the fastest disk per step, R_min the smallest
+//! radius, c the share of pairs that a skin of one radius adds, P the cost of pruning in force evaluations.
 //!
 //! # Source
 //! Dual pair list with dynamic pruning: Páll et al. (2020), J. Chem. Phys. 153, 134110, §IV.

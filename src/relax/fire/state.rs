@@ -118,7 +118,8 @@ impl<const D: usize> State<D> {
         }
     }
 
-    /// Moves the disks and writes their displacements into the assembly. Returns the largest velocity component \[length / time\].
+    /// Moves the disks and writes their displacements into the assembly. Returns the largest velocity component
+    /// \[length / time\].
     pub(super) fn kick<L: PairLaw>(&mut self, assembly: &mut Assembly<D, L>, step: Step) -> f64 {
         let mobile = assembly.mobile_count();
         match self {
