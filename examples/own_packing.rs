@@ -25,7 +25,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{:?} after {} steps", outcome.stop, outcome.cost.step_count);
     let packing = outcome.converged().map_err(|outcome| format!("not at rest: {:?}", outcome.stop))?.into_inner();
 
-    let inflated = inflate_with(&Inflation::default(), &packing, &law, &fire, 1, &mut ())?;
+    let seed = 1; // seed of the inflated disk; `&mut ()` above and below: no observer
+    let inflated = inflate_with(&Inflation::default(), &packing, &law, &fire, seed, &mut ())?;
     println!("Δp = {:.4}", inflated.after.pressure - inflated.before.pressure);
     let after = std::env::temp_dir().join("jamscope_after.xyz");
     write_packing(&after, inflated.after.packing.get(), &[], &[])?;

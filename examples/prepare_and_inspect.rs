@@ -9,6 +9,7 @@ use jamscope::preparation::Target;
 use jamscope::{ContactNetwork, Hertzian, Preparation, prepare};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // 1000 disks at p = 100 [force / length], seed 1 of the random points.
     let prepared =
         prepare(&Preparation { disk_count: 1000, target: Target::Pressure(100.0), ..Preparation::default() })?;
     let (packing, law) = (prepared.packing.get(), Hertzian::default());

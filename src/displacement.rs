@@ -54,7 +54,7 @@ pub struct DisplacementField<const D: usize> {
     pub disks: Vec<Moved<D>>,
     /// Radius of the inflated disk before, a \[length\].
     pub inner_radius: f64,
-    /// r_out, R \[length\].
+    /// R, the radius of the rim \[length\].
     pub outer_radius: f64,
     /// Which disks count.
     pub measured_on: MeasuredOn,

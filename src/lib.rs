@@ -89,16 +89,18 @@
 //! | feature | adds | with |
 //! |---|---|---|
 //! | `fit` | fits of a measured profile, of a measured spectrum, of ensembles | argmin |
-//! | `linear` | Hessian, factorisations, Newton, linear response, plastic part, moduli, modes, protocol sensitivity | faer |
+//! | `linear` | Newton, FIRE then Newton, implicit dynamics, gradient flow; Hessian, factorisations, linear response, plastic part, moduli, modes, stability, protocol sensitivity; `jamscope precision`, `inspect --modes` | faer |
 //! | `parallel` | samples of a scene in parallel, or the tiles of one large packing; never changes a bit of a result | rayon |
 //! | `plot` | figures and the HTML page of a report | plotters |
 //! | `cli` | the program `jamscope`, scenes from TOML | clap, toml, indicatif |
 //!
-//! All are on by default; every subset compiles.
+//! All are on by default; every subset compiles. Without `linear` the default
+//! [protocol](scene::ProtocolChoice) is `fire`, `fire-newton` is `fire`, and `study` and `constant` take explicit
+//! steps, so a scene may end in other minima. Without `fit` a phase rests on Δp and the changed contacts alone.
 //!
 //! # Further
 //!
-//! The book (`book/src`) has one chapter per module: the question, the equation, the method, its tests and its limits.
+//! The book (`book/src`) has a chapter for each module that computes physics: the question, the equation, the method, its tests and its limits.
 //! Its snippets are compiled and run by `cargo test --doc`.
 
 // Results must not depend on elementary functions of the system (clippy.toml); tests may use them.

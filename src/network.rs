@@ -266,7 +266,7 @@ pub fn working_contacts<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -
     let mut contacts = Vec::with_capacity(assembly.pairs().len());
     each_contact(assembly, |(first, second), columns, place| {
         let (overlap, force) = (columns.overlap[place], columns.force[place]);
-        let separation = columns.apart.each_ref().map(|column| column[place]);
+        let separation = columns.separation.each_ref().map(|column| column[place]);
         contacts.push(Contact { first, second, overlap, force, energy: law.energy(force, overlap), separation });
     });
     contacts

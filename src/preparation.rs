@@ -9,9 +9,9 @@
 //! ```
 //!
 //! so the search uses secants in that quantity. If a step ends in an unjammed packing, it is repeated from the last
-//! jammed one with half the length. Intermediate states count as at rest at a relative residual of [`PASSING`]. The
-//! state that meets the pressure is then relaxed to the relaxer's own limit. If its pressure leaves the tolerance, the
-//! search continues with the full limit for every state.
+//! jammed one with half the length. Intermediate states count as at rest at a relative residual of
+//! [`INTERMEDIATE_RESIDUAL`]. The state that meets the pressure is then relaxed to the relaxer's own limit. If its
+//! pressure leaves the tolerance, the search continues with the full limit for every state.
 //!
 //! # Source
 //! O'Hern, Silbert, Liu, Nagel (2003), Phys. Rev. E 68, 011306 (quench, scaling of the pressure).
@@ -156,7 +156,7 @@ const RELAXATION_LIMIT: usize = 60;
 
 /// Relative residual at which an intermediate state of the search for a pressure counts as at rest \[1\]; a tenth of
 /// the tolerance on the pressure, if that is smaller. Changes which packing is found, not its quality.
-pub const PASSING: f64 = 1e-3;
+pub const INTERMEDIATE_RESIDUAL: f64 = 1e-3;
 
 /// Packing fraction at jamming of random bidisperse packings, the start of a search. Source: O'Hern et al. (2003).
 fn jamming_fraction<const D: usize>() -> f64 {
@@ -333,8 +333,8 @@ impl<L: PairLaw> Search<'_, L> {
         trace: &mut impl Trace,
     ) -> Result<Prepared<D>, PreparationError> {
         let wanted = libm::pow(target, 1.0 / (self.law.exponent() - 1.0));
-        let mut passing = relaxer.passing(PASSING.min(0.1 * tolerance));
-        let (prepared, root) = self.rest(points, passing.as_ref().unwrap_or(relaxer), trace)?;
+        let mut intermediate = relaxer.for_intermediate_states(INTERMEDIATE_RESIDUAL.min(0.1 * tolerance));
+        let (prepared, root) = self.rest(points, intermediate.as_ref().unwrap_or(relaxer), trace)?;
         let mut state = State { prepared, root };
         // Slope of the root against φ: if unknown, that of a straight line from jamming.
         let mut slope = wanted.max(state.root) / (state.prepared.packing_fraction - jamming_fraction::<D>()).max(0.004);
@@ -347,7 +347,7 @@ impl<L: PairLaw> Search<'_, L> {
                 nearest = (pressure, fraction);
             }
             if (pressure / target - 1.0).abs() <= tolerance {
-                if passing.take().is_some() {
+                if intermediate.take().is_some() {
                     let (prepared, root) = self.rest(state.prepared.packing.into_inner(), relaxer, trace)?;
                     state = State { prepared, root };
                     continue;
@@ -364,7 +364,7 @@ impl<L: PairLaw> Search<'_, L> {
             }
             let next = fraction + step;
             let packing = state.prepared.packing.get().clone().rescaled(side_ratio::<D>(fraction / next));
-            let (prepared, root) = self.rest(packing, passing.as_ref().unwrap_or(relaxer), trace)?;
+            let (prepared, root) = self.rest(packing, intermediate.as_ref().unwrap_or(relaxer), trace)?;
             if root == 0.0 {
                 if state.root == 0.0 {
                     // Still unjammed while compressing: continue from here with longer steps.

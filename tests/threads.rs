@@ -162,7 +162,7 @@ fn tiles_and_packed_lists_have_the_same_bits_with_every_kernel() {
                         end.state.positions().to_vec(),
                         end.state.corrections().to_vec(),
                         end.residual,
-                        end.cost.rebuild_count,
+                        end.cost.build_count,
                     )
                 });
                 (processor, (assembly.forces, totals, ends))
@@ -186,7 +186,7 @@ fn a_relaxation_has_the_bits_of_one_thread() {
             let law = Hertzian::default();
             let here = fire.relax(start.clone(), &law, &mut ()).expect("disks apart");
             let alone = on_one_thread(|| fire.relax(start.clone(), &law, &mut ())).expect("disks apart");
-            assert!(here.cost.rebuild_count > 1 || !makes_lists, "no list was made anew");
+            assert!(here.cost.build_count > 1 || !makes_lists, "no list was made anew");
             assert_eq!(here.cost.force_evaluation_count, alone.cost.force_evaluation_count);
             assert_eq!(here.state.positions(), alone.state.positions());
             assert_eq!(here.state.corrections(), alone.state.corrections());

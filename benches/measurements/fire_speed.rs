@@ -80,7 +80,7 @@ fn timed<L: PairLaw>(
         if law.exponent() == 2.0 { "hooke" } else { "hertz" },
         cpu_seconds * 1e9 / (steps * disks) as f64,
         outcome.cost.force_evaluation_count,
-        outcome.cost.rebuild_count,
+        outcome.cost.build_count,
         ContactNetwork::new(&outcome.state, law)?.largest_net_force(),
     );
     Ok(())

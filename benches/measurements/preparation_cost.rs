@@ -26,8 +26,8 @@ impl<R: Relaxer> Relaxer for PassingAt<R> {
         self.0.relax(packing, law, trace)
     }
 
-    fn passing(&self, _limit: f64) -> Option<Self> {
-        self.0.passing(self.1?).map(|relaxer| PassingAt(relaxer, self.1))
+    fn for_intermediate_states(&self, _limit: f64) -> Option<Self> {
+        self.0.for_intermediate_states(self.1?).map(|relaxer| PassingAt(relaxer, self.1))
     }
 }
 

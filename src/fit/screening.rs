@@ -1,9 +1,9 @@
 //! The one-dimensional search for the screening wavenumber over all branches.
 //!
-//! With the rim solution v(r; κ) as the shape, the model is r·d_r = B r v(r; κ). It is linear in the amplitude B. For
-//! each κ, the best B and χ²(κ) therefore have closed forms (variable projection; Golub & Pereyra (1973), SIAM J.
-//! Numer. Anal. 10, 413). v has no poles in κ, so χ²(κ) is smooth through all of them. The branches are connected, and
-//! a minimum near a pole is found like any other.
+//! With the rim solution v(r; κ) as the shape, the model is r·d_r = B r v(r; κ). It is linear in the slope B, which
+//! is minus d_r' at the rim. For each κ, the best B and χ²(κ) therefore have closed forms (variable projection; Golub &
+//! Pereyra (1973), SIAM J. Numer. Anal. 10, 413). v has no poles in κ, so χ²(κ) is smooth through all of them. The
+//! branches are connected, and a minimum near a pole is found like any other.
 
 use argmin::core::{CostFunction, Error, Executor, State};
 use argmin::solver::brent::BrentOpt;
@@ -30,11 +30,11 @@ const LEAST_ARGUMENT: f64 = 1e-3;
 /// Step in κR of the central difference ∂v/∂κ, with errors 10⁻¹⁰/6 (third derivative) and 10⁻¹⁶/10⁻⁵ (rounding).
 const DIFFERENCE_STEP: f64 = 1e-5;
 
-/// B and χ² at one κ.
+/// The slope B and χ² at one κ.
 #[derive(Debug, Clone)]
 pub(crate) struct Projection {
     pub wavenumber: f64,
-    /// B: minus the slope d_r' at the rim \[1\].
+    /// The slope B \[1\].
     pub slope: f64,
     /// Variance of B if the errors of the rings are correct and κ is known.
     pub slope_variance: f64,
@@ -66,7 +66,7 @@ impl<'a> Landscape<'a> {
         self.shape(wavenumber).1
     }
 
-    /// The best amplitude at `wavenumber`.
+    /// The best slope B at `wavenumber`.
     pub(crate) fn project(&self, wavenumber: f64) -> Projection {
         let (shape, _) = self.shape(wavenumber);
         let slope_variance = 1.0 / self.rings.weighted(&shape, &shape);

@@ -10,7 +10,7 @@
 use std::iter::repeat_with;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::forces::elastic::{Across, Kernel, Task, add_incoming, sweep, sweep_border};
+use crate::forces::elastic::{BorderForces, Kernel, Task, add_incoming, sweep, sweep_border};
 use crate::neighbours::displacement_bounds::{Bound, DisplacementBounds, PORTION, is_within};
 use crate::neighbours::pair_list::PairList;
 use crate::neighbours::tile_schedule::Stage;
@@ -67,7 +67,7 @@ pub(crate) struct Reach<'a, F> {
 pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     kernel: &K,
     pairs: &PairList<D>,
-    (movers, across): (Movers<'_, K::Number, D>, &mut Across<K::Number, D>),
+    (movers, border_forces): (Movers<'_, K::Number, D>, &mut BorderForces<K::Number, D>),
     reach: Reach<'_, impl Fn(usize, &[[K::Number; D]]) -> f64 + Sync>,
     kick: impl Fn(&[[K::Number; D]], &mut [[K::Number; D]], &mut [[K::Number; D]]) -> f64 + Sync,
     observe: impl Fn(&[[K::Number; D]], &[[K::Number; D]]) -> P + Send + Sync,
@@ -93,7 +93,7 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     let inside = |place: usize, (forces, velocities, displacements): Moving<'_, _, D>, bounds: &mut [Bound]| {
         let (tile, mobile, first) = (&tiles[place], velocities.len(), place * size);
         let interior = tile.interior.start.min(mobile)..tile.interior.end.min(mobile);
-        let mut room = kernel.begin();
+        let mut workspace = kernel.begin();
         forces[mobile..].fill(nothing);
         for begin in (0..mobile).step_by(PORTION) {
             let disks = begin..mobile.min(begin + PORTION);
@@ -104,21 +104,21 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
             return None;
         }
         let task = Task { kernel, pairs, displacements: (displacements, first as u32), tile, offset: first as u32 };
-        sweep(&task, tile.inner.clone(), forces, &mut room);
+        sweep(&task, tile.inner.clone(), forces, &mut workspace);
         Some(observe(&forces[interior.clone()], &velocities[interior]))
     };
-    let border = |place: usize, displacements: &[[_; D]], forces: &mut [[_; D]], across: &mut [[_; D]]| {
+    let border = |place: usize, displacements: &[[_; D]], forces: &mut [[_; D]], border_forces: &mut [[_; D]]| {
         let (tile, offset) = (&tiles[place], (place * size) as u32);
         let task = Task { kernel, pairs, displacements: (displacements, 0), tile, offset };
-        sweep_border(&task, forces, across, &mut kernel.begin());
+        sweep_border(&task, forces, border_forces, &mut kernel.begin());
     };
-    let margins = |place: usize, across: &Across<_, D>, forces: &mut [[_; D]], velocities: &[[_; D]]| {
+    let margins = |place: usize, border_forces: &BorderForces<_, D>, forces: &mut [[_; D]], velocities: &[[_; D]]| {
         let (tile, mobile) = (&tiles[place], velocities.len());
-        add_incoming(tile, place * size, across, forces);
+        add_incoming(tile, place * size, border_forces, forces);
         let (begin, end) = (tile.interior.start.min(mobile), tile.interior.end.min(mobile));
         [observe(&forces[..begin], &velocities[..begin]), observe(&forces[end..mobile], &velocities[end..])]
     };
-    across.fit(pairs);
+    border_forces.fit(pairs);
     let of_tile = bounds.of_tile;
     let (mut insides, mut marginals) = (Vec::with_capacity(tiles.len()), Vec::new());
     if parallel::is_shared(tiles.len()) {
@@ -131,11 +131,13 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
             return None;
         }
         let displacements = &*displacements;
-        let arrays = forces.chunks_mut(size).zip(&mut across.0);
-        parallel::each(arrays.enumerate(), |(place, (f, across))| border(place, displacements, f, across));
-        let (across, velocities) = (&*across, &*velocities);
+        let arrays = forces.chunks_mut(size).zip(&mut border_forces.0);
+        parallel::each(arrays.enumerate(), |(place, (f, border_forces))| {
+            border(place, displacements, f, border_forces)
+        });
+        let (border_forces, velocities) = (&*border_forces, &*velocities);
         let arrays = forces.chunks_mut(size).zip(velocities.chunks(size).chain(repeat_with(Default::default)));
-        marginals = parallel::each(arrays.enumerate(), |(place, (f, v))| Some(margins(place, across, f, v)));
+        marginals = parallel::each(arrays.enumerate(), |(place, (f, v))| Some(margins(place, border_forces, f, v)));
     } else {
         let (disk_count, mobile_count) = (displacements.len(), velocities.len());
         marginals.resize_with(tiles.len(), || None);
@@ -151,8 +153,8 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
                     insides.push(inside(place, disks, &mut bounds.portions[portions]));
                 }
                 _ if is_expired() => {}
-                Stage::Border => border(place, displacements, forces, &mut across.0[place]),
-                Stage::Margins => marginals[place] = Some(margins(place, across, forces, &velocities[moving])),
+                Stage::Border => border(place, displacements, forces, &mut border_forces.0[place]),
+                Stage::Margins => marginals[place] = Some(margins(place, border_forces, forces, &velocities[moving])),
             }
         }
     }

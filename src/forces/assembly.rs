@@ -7,19 +7,19 @@ use std::ops::{Range, RangeInclusive};
 
 use crate::forces::advance::{Advanced, Movers, Reach, advance};
 use crate::forces::elastic;
-use crate::forces::elastic::{Across, Plain};
+use crate::forces::elastic::{BorderForces, Plain};
 use crate::forces::layout::Layout;
 use crate::forces::stiffness_bound::{Weight, stiffness_rows};
 use crate::forces::totals::Totals;
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::displacement_bounds::DisplacementBounds;
-use crate::neighbours::list_keeper::{Kept, ListKeeper};
+use crate::neighbours::list_keeper::{Kept, ListKeeper, ListNumber};
 use crate::neighbours::pair_list::PairList;
 use crate::packing::{Packing, PackingError};
 use crate::vector::{Vector, dot, longest_difference_squared};
 
-/// Width of the skin over the smallest radius \[1\]. Changes speed, and last digits by the order of sums. With a wider
-/// skin, lists last longer but contain more pairs without contact.
+/// Width of the skin over the smallest radius \[1\]. A different skin changes the speed and, through the order of the
+/// sums, the last digits. With a wider skin, lists last longer but contain more pairs without contact.
 pub const SKIN: f64 = 0.5;
 
 /// Width of the narrowest skin of a long list with incremental updates. Such a list need not last for the few fast
@@ -32,7 +32,8 @@ pub struct Assembly<const D: usize, L> {
     law: L,
     layout: Layout<D>,
     lists: ListKeeper<D>,
-    across: Across<f64, D>,
+    /// Forces of pairs whose second disks are in other tiles.
+    border_forces: BorderForces<f64, D>,
     /// Displacements that the relaxer can restore, if it has set a checkpoint.
     checkpoint: Vec<Vector<D>>,
     /// Centre minus anchor of each disk; a relaxer moves the first [`Assembly::mobile_count`] disks \[length\].
@@ -51,7 +52,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         Self::with_skin(packing, law, SKIN)
     }
 
-    /// Like [`Assembly::new`], with an inner list and incremental updates ([`Assembly::prune_lists`]). The lists of a
+    /// Like [`Assembly::new`], with an inner list and incremental updates ([`Assembly::set_pruning`]). The lists of a
     /// large packing have a narrower skin, unless all disks move.
     ///
     /// # Errors
@@ -81,7 +82,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             law,
             layout,
             lists: ListKeeper::new(smallest_radius, narrowest..=widest),
-            across: Across::default(),
+            border_forces: BorderForces::default(),
             checkpoint: Vec::new(),
             displacements,
             forces: vec![[0.0; D]; packing.len()],
@@ -143,7 +144,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     }
 
     /// Number of builds of the outer list, the first one included.
-    pub fn rebuild_count(&self) -> usize {
+    pub fn build_count(&self) -> usize {
         self.lists.build_count()
     }
 
@@ -159,7 +160,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// Evaluates the forces at the present displacements into [`Assembly::forces`].
     pub fn evaluate(&mut self) {
-        elastic::forces(&self.law, self.lists.in_use(), &self.displacements, &mut self.across, &mut self.forces);
+        elastic::forces(&self.law, self.lists.in_use(), &self.displacements, &mut self.border_forces, &mut self.forces);
         if self.law.has_sites() {
             let _ = self.add_on_site_forces();
         }
@@ -188,14 +189,26 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             longest_difference_squared(displacements, &reference[first..first + displacements.len()]).sqrt()
         };
         let reach = Reach { limit, bounds, longest };
-        Advanced::of(advance(&Plain { law: &self.law, pairs }, pairs, (movers, &mut self.across), reach, kick, observe))
+        Advanced::of(advance(
+            &Plain { law: &self.law, pairs },
+            pairs,
+            (movers, &mut self.border_forces),
+            reach,
+            kick,
+            observe,
+        ))
     }
 
     /// Forces as in [`Assembly::evaluate`], with energy, virial and contact count.
     pub fn evaluate_totals(&mut self) -> Totals<D> {
         let pairs = self.lists.in_use();
-        let mut totals =
-            elastic::forces_and_totals(&self.law, pairs, &self.displacements, &mut self.across, &mut self.forces);
+        let mut totals = elastic::forces_and_totals(
+            &self.law,
+            pairs,
+            &self.displacements,
+            &mut self.border_forces,
+            &mut self.forces,
+        );
         if self.law.has_sites() {
             totals.on_site_energy = self.add_on_site_forces();
             totals.energy += totals.on_site_energy;
@@ -243,6 +256,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
             return Ok(());
         }
         self.displacements.clone_from(&self.checkpoint);
+        // No bound is known, so the displacements are computed, and the list is rebuilt only if it has expired.
         self.update_list(f64::INFINITY).map(|_| ())
     }
 
@@ -265,7 +279,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// Sets whether an inner list is used while disks move slowly. The caller must call [`Assembly::update_list`] once
     /// per evaluation. Data that the caller keeps for each pair must be rebuilt whenever that call returns true.
-    pub fn prune_lists(&mut self, prunes: bool) {
+    pub fn set_pruning(&mut self, prunes: bool) {
         self.lists.set_pruning(&self.layout.disks(&self.displacements), prunes);
     }
 
@@ -317,8 +331,8 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         self.lists.checks_next()
     }
 
-    /// Identifies the list in use: its number, and the number of its incremental updates.
-    pub(crate) fn list_number(&self) -> (usize, usize) {
+    /// Identifies the list in use.
+    pub(crate) fn list_number(&self) -> ListNumber {
         self.lists.list_number()
     }
 

@@ -35,9 +35,9 @@ fn places_ahead<const D: usize>(cache: Cache) -> usize {
 #[repr(align(64))]
 pub(crate) struct Columns<const D: usize> {
     /// Relative displacement of each pair, then the force on its first disk; stored as consecutive vectors.
-    pub pull: [Vector<D>; BLOCK],
+    pub pair_vectors: [Vector<D>; BLOCK],
     /// Separation.
-    pub apart: [[f64; BLOCK]; D],
+    pub separation: [[f64; BLOCK]; D],
     /// Overlap; 0 without contact.
     pub overlap: [f64; BLOCK],
     pub force: [f64; BLOCK],
@@ -68,8 +68,8 @@ impl<const D: usize> Columns<D> {
     #[inline(always)]
     pub fn new() -> Self {
         Columns {
-            pull: [[0.0; D]; BLOCK],
-            apart: [[0.0; BLOCK]; D],
+            pair_vectors: [[0.0; D]; BLOCK],
+            separation: [[0.0; BLOCK]; D],
             overlap: [0.0; BLOCK],
             force: [0.0; BLOCK],
             inverse: [0.0; BLOCK],
@@ -78,15 +78,15 @@ impl<const D: usize> Columns<D> {
 
     /// Computes separations, overlaps and reciprocal distances from the relative displacements.
     #[inline(always)]
-    pub fn measure<S: Simd>(&mut self, simd: S, anchors: &Anchors<'_, D>) {
+    pub fn compute_overlaps<S: Simd>(&mut self, simd: S, anchors: &Anchors<'_, D>) {
         let (count, block) = (anchors.vector_count::<S>(), anchors.block);
         let cache = Cache::here();
         let ahead = places_ahead::<D>(cache);
         let read = |column| &S::as_simd_f64s(column).0[..count];
         let anchor_separation = block.separation.each_ref().map(|column| read(&column[..]));
         let anchor_overlap = read(&block.overlap);
-        let moved = &S::as_simd_f64s(self.pull.as_flattened()).0[..D * count];
-        let apart = self.apart.each_mut().map(|column| &mut S::as_mut_simd_f64s(column).0[..count]);
+        let moved = &S::as_simd_f64s(self.pair_vectors.as_flattened()).0[..D * count];
+        let separation = self.separation.each_mut().map(|column| &mut S::as_mut_simd_f64s(column).0[..count]);
         let overlap = &mut S::as_mut_simd_f64s(&mut self.overlap).0[..count];
         let inverse = &mut S::as_mut_simd_f64s(&mut self.inverse).0[..count];
         let anchor_distance = read(&block.distance);
@@ -107,7 +107,7 @@ impl<const D: usize> Columns<D> {
                         0 => (squared, changed),
                         _ => (simd.add_f64s(*square, squared), simd.add_f64s(change, changed)),
                     };
-                    apart[d][k] = along;
+                    separation[d][k] = along;
                     cache.prefetch(&block.separation[d], ahead + k * S::F64_LANES);
                 }
                 overlap[k] = change;
@@ -130,7 +130,12 @@ impl<const D: usize> Columns<D> {
 
     /// Computes the forces from the overlaps. With `RESOLVE`, it also does the work of [`Columns::resolve`].
     #[inline(always)]
-    pub fn press<S: Simd, L: PairLaw, const RESOLVE: bool>(&mut self, simd: S, law: &L, anchors: &Anchors<'_, D>) {
+    pub fn compute_forces<S: Simd, L: PairLaw, const RESOLVE: bool>(
+        &mut self,
+        simd: S,
+        law: &L,
+        anchors: &Anchors<'_, D>,
+    ) {
         let (count, block) = (anchors.vector_count::<S>(), anchors.block);
         let cache = Cache::here();
         let ahead = places_ahead::<D>(cache);
@@ -138,8 +143,8 @@ impl<const D: usize> Columns<D> {
         let one = simd.splat_f64s(block.coefficient[0]);
         let overlap = &S::as_simd_f64s(&self.overlap).0[..count];
         let inverse = &S::as_simd_f64s(&self.inverse).0[..count];
-        let apart = self.apart.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
-        let pull = &mut S::as_mut_simd_f64s(self.pull.as_flattened_mut()).0[..D * count];
+        let separation = self.separation.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
+        let pair_forces = &mut S::as_mut_simd_f64s(self.pair_vectors.as_flattened_mut()).0[..D * count];
         let force = &mut S::as_mut_simd_f64s(&mut self.force).0[..count];
         for k in (0..count).step_by(2) {
             let coefficients = match L::ONE_COEFFICIENT {
@@ -150,7 +155,13 @@ impl<const D: usize> Columns<D> {
             [force[k], force[k + 1]] = forces;
             if RESOLVE {
                 for (k, force) in [(k, forces[0]), (k + 1, forces[1])] {
-                    resolve_one(simd, force, inverse[k], apart.map(|column| column[k]), &mut pull[D * k..D * (k + 1)]);
+                    resolve_one(
+                        simd,
+                        force,
+                        inverse[k],
+                        separation.map(|column| column[k]),
+                        &mut pair_forces[D * k..D * (k + 1)],
+                    );
                 }
             }
             if !L::ONE_COEFFICIENT {
@@ -160,19 +171,25 @@ impl<const D: usize> Columns<D> {
         }
     }
 
-    /// Computes the force on each first disk from the magnitudes, into `pull`.
+    /// Computes the force on each first disk from the magnitudes, into `pair_vectors`.
     ///
     /// No other result is stored. Force over distance would have an address 4096 bytes from the separation that is read
     /// next. Processors that compare only the low 12 bits of addresses would then delay that read.
     #[inline(always)]
     pub fn resolve<S: Simd>(&mut self, simd: S) {
         let count = BLOCK / S::F64_LANES;
-        let apart = self.apart.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
+        let separation = self.separation.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
         let force = &S::as_simd_f64s(&self.force).0[..count];
         let inverse = &S::as_simd_f64s(&self.inverse).0[..count];
-        let pull = &mut S::as_mut_simd_f64s(self.pull.as_flattened_mut()).0[..D * count];
+        let pair_forces = &mut S::as_mut_simd_f64s(self.pair_vectors.as_flattened_mut()).0[..D * count];
         for k in 0..count {
-            resolve_one(simd, force[k], inverse[k], apart.map(|column| column[k]), &mut pull[D * k..D * (k + 1)]);
+            resolve_one(
+                simd,
+                force[k],
+                inverse[k],
+                separation.map(|column| column[k]),
+                &mut pair_forces[D * k..D * (k + 1)],
+            );
         }
     }
 }
@@ -182,9 +199,9 @@ fn resolve_one<S: Simd, const D: usize>(
     simd: S,
     force: S::f64s,
     inverse: S::f64s,
-    apart: [S::f64s; D],
-    pull: &mut [S::f64s],
+    separation: [S::f64s; D],
+    pair_forces: &mut [S::f64s],
 ) {
     let factor = simd.mul_f64s(force, inverse);
-    components::join(simd, &apart.map(|along| simd.mul_f64s(factor, along)), pull);
+    components::join(simd, &separation.map(|along| simd.mul_f64s(factor, along)), pair_forces);
 }

@@ -38,12 +38,12 @@ pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
     let (mut columns, mut relative_velocity) = (Columns::<D>::new(), [[0.0; D]; BLOCK]);
     for block in &pairs.blocks {
         let listed = block.pairs..block.pairs + block.pair_count;
-        gather(&mut columns.pull, pairs, block, (displacements, 0));
+        gather(&mut columns.pair_vectors, pairs, block, (displacements, 0));
         gather(&mut relative_velocity, pairs, block, (velocities, 0));
         let (relative_velocity, coefficient) = (&relative_velocity[..block.pair_count], &damping_coefficient[listed]);
         let (damping, anchors) = (Damping { law: damping, coefficient, relative_velocity }, Anchors::of(pairs, block));
         power += dispatch(law, Arithmetic { damping, columns: &mut columns, anchors });
-        scatter(&columns.pull, pairs, block, (forces, 0));
+        scatter(&columns.pair_vectors, pairs, block, (forces, 0));
     }
     power
 }
@@ -68,8 +68,8 @@ impl<const D: usize, C: DampingLaw> LawKernel for Arithmetic<'_, D, C> {
 
     #[inline(always)]
     fn run<S: pulp::Simd, L: PairLaw>(self, simd: S, law: &L) -> f64 {
-        self.columns.measure(simd, &self.anchors);
-        self.columns.press::<S, L, false>(simd, law, &self.anchors);
+        self.columns.compute_overlaps(simd, &self.anchors);
+        self.columns.compute_forces::<S, L, false>(simd, law, &self.anchors);
         let mut power = [0.0; BLOCK];
         let count = self.damping.relative_velocity.len();
         self.damping.resist(self.columns, &mut power[..count]);
@@ -84,13 +84,13 @@ impl<const D: usize, C: DampingLaw> Damping<'_, D, C> {
     fn resist(&self, columns: &mut Columns<D>, power: &mut [f64]) {
         let count = power.len();
         let (relative_velocity, coefficient) = (&self.relative_velocity[..count], &self.coefficient[..count]);
-        let apart = columns.apart.each_ref().map(|column| &column[..count]);
+        let separation = columns.separation.each_ref().map(|column| &column[..count]);
         let (overlap, force) = (&columns.overlap[..count], &mut columns.force[..count]);
         let inverse = &columns.inverse[..count];
         for k in 0..count {
             let mut along = 0.0;
             for d in 0..D {
-                along += relative_velocity[k][d] * apart[d][k];
+                along += relative_velocity[k][d] * separation[d][k];
             }
             let normal_velocity = along * inverse[k];
             let resistance = self.law.damping(coefficient[k], overlap[k]);
@@ -114,20 +114,20 @@ pub fn add_damping<const D: usize, C: DampingLaw>(
     forces: &mut [Vector<D>],
 ) -> f64 {
     let mut dissipation = 0.0;
-    for_each_pair(pairs, displacements, &mut |&MovedPair { pair, ends, apart, distance, overlap, .. }| {
+    for_each_pair(pairs, displacements, &mut |&MovedPair { pair, ends, separation, distance, overlap, .. }| {
         if overlap > 0.0 {
             let (i, j) = (ends.0 as usize, ends.1 as usize);
             let damping = law.damping(damping_coefficient[pair], overlap);
             let mut along = 0.0;
             for d in 0..D {
-                along += (velocities[i][d] - velocities[j][d]) * apart[d];
+                along += (velocities[i][d] - velocities[j][d]) * separation[d];
             }
             let normal_velocity = along / distance;
             dissipation += damping * normal_velocity * normal_velocity;
             let factor = damping * normal_velocity / distance;
             for d in 0..D {
-                forces[i][d] -= factor * apart[d];
-                forces[j][d] += factor * apart[d];
+                forces[i][d] -= factor * separation[d];
+                forces[j][d] += factor * separation[d];
             }
         }
     });
@@ -155,14 +155,14 @@ mod tests {
         let coefficients: Vec<f64> = pairs.first.iter().zip(&pairs.second).map(of_pair).collect();
         let wave = |i: usize| [(7.0 * i as f64).sin(), (11.0 * i as f64).cos()];
         let velocities: Vec<Vector<2>> = (0..assembly.len()).map(wave).collect();
-        let mut apart = vec![[0.0; 2]; assembly.len()];
-        elastic::forces(&law, pairs, at, &mut elastic::Across::default(), &mut apart);
-        let power = add_damping(damping, pairs, &coefficients, at, &velocities, &mut apart);
+        let mut separate = vec![[0.0; 2]; assembly.len()];
+        elastic::forces(&law, pairs, at, &mut elastic::BorderForces::default(), &mut separate);
+        let power = add_damping(damping, pairs, &coefficients, at, &velocities, &mut separate);
         let mut together = vec![[1.0; 2]; assembly.len()];
         let found = damped_forces((&law, damping), pairs, &coefficients, at, &velocities, &mut together);
         assert!((found - power).abs() < 1e-13 * power, "{found} for {power}");
         assert!(power > 0.0);
-        for (one, two) in apart.iter().zip(&together) {
+        for (one, two) in separate.iter().zip(&together) {
             assert!(norm(difference(*one, *two)) < 1e-10, "{one:?} {two:?}");
         }
     }

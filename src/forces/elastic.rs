@@ -19,7 +19,7 @@
 use std::ops::Range;
 
 use crate::forces::block_arithmetic::{Anchors, Columns};
-use crate::forces::totals::{Tally, Totals};
+use crate::forces::totals::{BlockTotals, Totals};
 use crate::law::kernel::{LawKernel, dispatch};
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::block::{BLOCK, Block};
@@ -29,16 +29,16 @@ use crate::neighbours::tiles::Tile;
 use crate::parallel;
 use crate::vector::{Number, Vector, difference, sum};
 
-/// Forces of border pairs on their first disks, for each tile. The buffer is reused between evaluations; its content
-/// before an evaluation is irrelevant.
+/// Forces on the first disks of border pairs, for each tile. The second disks of these pairs are in other tiles. The
+/// buffer is reused between evaluations; its content before an evaluation is irrelevant.
 #[derive(Debug, Clone, Default)]
-pub struct Across<T, const D: usize>(pub(crate) Vec<Vec<[T; D]>>);
+pub struct BorderForces<T, const D: usize>(pub(crate) Vec<Vec<[T; D]>>);
 
-impl<T: Number, const D: usize> Across<T, D> {
+impl<T: Number, const D: usize> BorderForces<T, D> {
     pub(crate) fn fit(&mut self, pairs: &PairList<D>) {
         self.0.resize(pairs.tiles.len(), Vec::new());
-        for (room, tile) in self.0.iter_mut().zip(&pairs.tiles) {
-            room.resize(tile.border_pairs.len(), [T::default(); D]);
+        for (forces, tile) in self.0.iter_mut().zip(&pairs.tiles) {
+            forces.resize(tile.border_pairs.len(), [T::default(); D]);
         }
     }
 }
@@ -54,10 +54,10 @@ pub fn forces<const D: usize, L: PairLaw>(
     law: &L,
     pairs: &PairList<D>,
     displacements: &[Vector<D>],
-    across: &mut Across<f64, D>,
+    border_forces: &mut BorderForces<f64, D>,
     forces: &mut [Vector<D>],
 ) {
-    let _ = all_tiles(&Plain { law, pairs }, pairs, displacements, across, forces);
+    let _ = all_tiles(&Plain { law, pairs }, pairs, displacements, border_forces, forces);
 }
 
 /// Forces as in [`forces`], with energy, virial, contact count and mean force in the same pass.
@@ -65,11 +65,11 @@ pub fn forces_and_totals<const D: usize, L: PairLaw>(
     law: &L,
     pairs: &PairList<D>,
     displacements: &[Vector<D>],
-    across: &mut Across<f64, D>,
+    border_forces: &mut BorderForces<f64, D>,
     forces: &mut [Vector<D>],
 ) -> Totals<D> {
     let mut totals = Totals::ZERO;
-    for part in all_tiles(&Summed { law, pairs }, pairs, displacements, across, forces) {
+    for part in all_tiles(&Summed { law, pairs }, pairs, displacements, border_forces, forces) {
         totals.add(&part);
     }
     totals
@@ -88,11 +88,11 @@ pub(crate) trait Kernel<const D: usize>: Sync {
     fn begin(&self) -> (Self::Columns, Self::Sums);
 
     /// The force of each pair of a block. The array of displacements begins with the given disk.
-    fn pull<'a>(
+    fn pair_forces<'a>(
         &self,
         block: usize,
         displacements: (&[[Self::Number; D]], u32),
-        room: &'a mut (Self::Columns, Self::Sums),
+        workspace: &'a mut (Self::Columns, Self::Sums),
     ) -> &'a [[Self::Number; D]; BLOCK];
 }
 
@@ -111,14 +111,14 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Plain<'_, D, L> {
         (Columns::new(), ())
     }
 
-    fn pull<'a>(
+    fn pair_forces<'a>(
         &self,
         block: usize,
         displacements: (&[Vector<D>], u32),
         (columns, ()): &'a mut (Columns<D>, ()),
     ) -> &'a [Vector<D>; BLOCK] {
         fill(self.law, self.pairs, displacements, &self.pairs.blocks[block], columns);
-        &columns.pull
+        &columns.pair_vectors
     }
 }
 
@@ -137,7 +137,7 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Summed<'_, D, L> {
         (Columns::new(), Totals::ZERO)
     }
 
-    fn pull<'a>(
+    fn pair_forces<'a>(
         &self,
         block: usize,
         displacements: (&[Vector<D>], u32),
@@ -145,8 +145,8 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Summed<'_, D, L> {
     ) -> &'a [Vector<D>; BLOCK] {
         let block = &self.pairs.blocks[block];
         fill(self.law, self.pairs, displacements, block, columns);
-        dispatch(self.law, Tally { columns: &*columns, count: block.pair_count, totals });
-        &columns.pull
+        dispatch(self.law, BlockTotals { columns: &*columns, count: block.pair_count, totals });
+        &columns.pair_vectors
     }
 }
 
@@ -155,25 +155,26 @@ pub(crate) fn all_tiles<const D: usize, K: Kernel<D>>(
     kernel: &K,
     pairs: &PairList<D>,
     displacements: &[[K::Number; D]],
-    across: &mut Across<K::Number, D>,
+    border_forces: &mut BorderForces<K::Number, D>,
     forces: &mut [[K::Number; D]],
 ) -> Vec<K::Sums> {
     if let [tile] = pairs.tiles.as_slice() {
         let task = Task { kernel, pairs, displacements: (displacements, 0), tile, offset: 0 };
         return vec![sweep_inner(&task, forces).1];
     }
-    across.fit(pairs);
-    let room = forces.chunks_mut(pairs.tile_size).zip(&mut across.0);
-    let sums = parallel::each(pairs.tiles.iter().zip(room).enumerate(), |(place, (tile, (forces, across)))| {
-        let offset = (place * pairs.tile_size) as u32;
-        let task = Task { kernel, pairs, displacements: (displacements, 0), tile, offset };
-        let mut room = sweep_inner(&task, forces);
-        sweep_border(&task, forces, across, &mut room);
-        room.1
-    });
+    border_forces.fit(pairs);
+    let of_tiles = forces.chunks_mut(pairs.tile_size).zip(&mut border_forces.0);
+    let sums =
+        parallel::each(pairs.tiles.iter().zip(of_tiles).enumerate(), |(place, (tile, (forces, border_forces)))| {
+            let offset = (place * pairs.tile_size) as u32;
+            let task = Task { kernel, pairs, displacements: (displacements, 0), tile, offset };
+            let mut workspace = sweep_inner(&task, forces);
+            sweep_border(&task, forces, border_forces, &mut workspace);
+            workspace.1
+        });
     let tiles = pairs.tiles.iter().zip(forces.chunks_mut(pairs.tile_size)).enumerate();
     parallel::each(tiles, |(place, (tile, forces))| {
-        add_incoming(tile, place * pairs.tile_size, across, forces);
+        add_incoming(tile, place * pairs.tile_size, border_forces, forces);
     });
     sums
 }
@@ -203,9 +204,9 @@ pub(crate) fn sweep_inner<const D: usize, K: Kernel<D>>(
     forces: &mut [[K::Number; D]],
 ) -> (K::Columns, K::Sums) {
     forces.fill([K::Number::default(); D]);
-    let mut room = task.kernel.begin();
-    sweep(task, task.tile.inner.clone(), forces, &mut room);
-    room
+    let mut workspace = task.kernel.begin();
+    sweep(task, task.tile.inner.clone(), forces, &mut workspace);
+    workspace
 }
 
 /// Adds the forces of pairs within a tile, for these blocks, to its disks.
@@ -213,11 +214,11 @@ pub(crate) fn sweep<const D: usize, K: Kernel<D>>(
     task: &Task<'_, D, K>,
     blocks: Range<usize>,
     forces: &mut [[K::Number; D]],
-    room: &mut (K::Columns, K::Sums),
+    workspace: &mut (K::Columns, K::Sums),
 ) {
     for block in filled(task.pairs, &blocks) {
-        let pull = task.kernel.pull(block, task.displacements, room);
-        scatter(pull, task.pairs, &task.pairs.blocks[block], (forces, task.offset));
+        let pair_forces = task.kernel.pair_forces(block, task.displacements, workspace);
+        scatter(pair_forces, task.pairs, &task.pairs.blocks[block], (forces, task.offset));
     }
 }
 
@@ -226,15 +227,15 @@ pub(crate) fn sweep<const D: usize, K: Kernel<D>>(
 pub(crate) fn sweep_border<const D: usize, K: Kernel<D>>(
     task: &Task<'_, D, K>,
     forces: &mut [[K::Number; D]],
-    across: &mut [[K::Number; D]],
-    room: &mut (K::Columns, K::Sums),
+    border_forces: &mut [[K::Number; D]],
+    workspace: &mut (K::Columns, K::Sums),
 ) {
     for place in filled(task.pairs, &task.tile.border) {
-        let pull = task.kernel.pull(place, task.displacements, room);
+        let pair_forces = task.kernel.pair_forces(place, task.displacements, workspace);
         let block = &task.pairs.blocks[place];
         let first = &task.pairs.first[block.pairs..block.pairs + block.pair_count];
-        let across = &mut across[block.pairs - task.tile.border_pairs.start..];
-        scatter_to_border(pull, (first, task.offset), across, forces);
+        let border_forces = &mut border_forces[block.pairs - task.tile.border_pairs.start..];
+        scatter_to_border(pair_forces, (first, task.offset), border_forces, forces);
     }
 }
 
@@ -242,12 +243,12 @@ pub(crate) fn sweep_border<const D: usize, K: Kernel<D>>(
 pub(crate) fn add_incoming<T: Number, const D: usize>(
     tile: &Tile,
     offset: usize,
-    across: &Across<T, D>,
+    border_forces: &BorderForces<T, D>,
     forces: &mut [[T; D]],
 ) {
     for &(disk, from, pair) in &tile.incoming {
         let force = &mut forces[disk as usize - offset];
-        *force = difference(*force, across.0[from as usize][pair as usize]);
+        *force = difference(*force, border_forces.0[from as usize][pair as usize]);
     }
 }
 
@@ -260,7 +261,7 @@ pub(crate) fn fill<const D: usize, L: PairLaw>(
     columns: &mut Columns<D>,
 ) {
     prefetch_rows(pairs, block);
-    gather(&mut columns.pull, pairs, block, displacements);
+    gather(&mut columns.pair_vectors, pairs, block, displacements);
     dispatch(law, Arithmetic { columns, anchors: Anchors::of(pairs, block) });
 }
 
@@ -276,22 +277,22 @@ impl<const D: usize> LawKernel for Arithmetic<'_, D> {
 
     #[inline(always)]
     fn run<S: pulp::Simd, L: PairLaw>(self, simd: S, law: &L) {
-        self.columns.measure(simd, &self.anchors);
-        self.columns.press::<S, L, true>(simd, law, &self.anchors);
+        self.columns.compute_overlaps(simd, &self.anchors);
+        self.columns.compute_forces::<S, L, true>(simd, law, &self.anchors);
     }
 }
 
 /// Scatters forces of border pairs. There are few, so rows of fixed length are not used.
 fn scatter_to_border<T: Number, const D: usize>(
-    pull: &[[T; D]; BLOCK],
+    pair_forces: &[[T; D]; BLOCK],
     (first, offset): (&[u32], u32),
-    across: &mut [[T; D]],
+    border_forces: &mut [[T; D]],
     forces: &mut [[T; D]],
 ) {
-    for ((&pull, &i), across) in pull.iter().zip(first).zip(across) {
-        *across = pull;
+    for ((&force, &i), border_force) in pair_forces.iter().zip(first).zip(border_forces) {
+        *border_force = force;
         let total = &mut forces[(i - offset) as usize];
-        *total = sum(*total, pull);
+        *total = sum(*total, force);
     }
 }
 
@@ -304,16 +305,16 @@ pub fn geometry<const D: usize>(
 ) -> (Vector<D>, f64, f64) {
     let (a, b) = (displacements[pairs.first[pair] as usize], displacements[pairs.second[pair] as usize]);
     let anchored = pairs.separation(pair);
-    let mut apart = [0.0; D];
+    let mut separation = [0.0; D];
     let mut squared = 0.0;
     let mut change = 0.0;
     for d in 0..D {
         let moved = a[d] - b[d];
-        apart[d] = anchored[d] + moved;
-        squared += apart[d] * apart[d];
-        change += moved * (anchored[d] + apart[d]);
+        separation[d] = anchored[d] + moved;
+        squared += separation[d] * separation[d];
+        change += moved * (anchored[d] + separation[d]);
     }
     let distance = squared.sqrt();
     let inverse = 1.0 / (distance * (distance + pairs.distance(pair)));
-    (apart, distance, pairs.overlap(pair) - change * (distance * inverse))
+    (separation, distance, pairs.overlap(pair) - change * (distance * inverse))
 }

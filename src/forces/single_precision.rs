@@ -19,10 +19,11 @@ use pulp::Simd;
 
 use crate::forces::advance::{Advanced, Movers, Reach, advance};
 use crate::forces::assembly::Assembly;
-use crate::forces::elastic::{Across, Kernel, all_tiles};
+use crate::forces::elastic::{BorderForces, Kernel, all_tiles};
 use crate::law::kernel::{LawKernel, dispatch};
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::block::BLOCK;
+use crate::neighbours::list_keeper::ListNumber;
 use crate::neighbours::pair_list::PairList;
 use crate::neighbours::rows::{gather, prefetch_rows};
 use crate::neighbours::single_precision::{Factors, SingleBlock, SingleBlocks};
@@ -81,7 +82,7 @@ fn power_of_two(exponent: i32) -> f64 {
 }
 
 /// Disks in single precision, beside an [`Assembly`] that keeps their base. It is valid as long as only this type
-/// changes the displacements. A caller that changes them must call [`Single::forget`].
+/// changes the displacements. A caller that changes them must call [`Single::invalidate_base`].
 #[derive(Debug, Clone)]
 pub struct Single<const D: usize> {
     units: Units,
@@ -90,9 +91,10 @@ pub struct Single<const D: usize> {
     offsets: Vec<[f32; D]>,
     /// Forces of the last evaluation, all disks \[`Units::force`\].
     pub forces: Vec<[f32; D]>,
-    across: Across<f32, D>,
+    /// Forces of pairs whose second disks are in other tiles.
+    border_forces: BorderForces<f32, D>,
     /// The list whose pairs are in `blocks`, by [`Assembly::list_number`]; none if the base is no longer valid.
-    listing: Option<(usize, usize)>,
+    listing: Option<ListNumber>,
 }
 
 impl<const D: usize> Single<D> {
@@ -109,7 +111,7 @@ impl<const D: usize> Single<D> {
             base: Vec::new(),
             offsets: vec![[0.0; D]; assembly.len()],
             forces: vec![[0.0; D]; assembly.len()],
-            across: Across::default(),
+            border_forces: BorderForces::default(),
             listing: None,
         })
     }
@@ -120,8 +122,8 @@ impl<const D: usize> Single<D> {
     }
 
     /// Marks the base as outdated. The next step takes the assembly's displacements as its base, because they were
-    /// settled or changed by others.
-    pub fn forget(&mut self) {
+    /// written or changed by others.
+    pub fn invalidate_base(&mut self) {
         self.listing = None;
     }
 
@@ -137,9 +139,9 @@ impl<const D: usize> Single<D> {
     }
 
     /// Writes the present positions into the assembly.
-    pub fn settle<L: PairLaw>(&self, assembly: &mut Assembly<D, L>) {
-        if self.listing.is_none_or(|(list, _)| list != assembly.list_number().0) {
-            // Before a new list was built, the disks were settled. Their anchors may have changed since.
+    pub fn write_displacements<L: PairLaw>(&self, assembly: &mut Assembly<D, L>) {
+        if self.listing.is_none_or(|known| known.list != assembly.list_number().list) {
+            // Before a new list was built, the displacements were written. The anchors may have changed since.
             return;
         }
         let places =
@@ -149,7 +151,7 @@ impl<const D: usize> Single<D> {
     }
 
     /// The same for some of the disks.
-    fn settle_some<L: PairLaw>(&self, assembly: &mut Assembly<D, L>, disks: Range<usize>) {
+    fn write_some_displacements<L: PairLaw>(&self, assembly: &mut Assembly<D, L>, disks: Range<usize>) {
         let from = (&self.base[disks.clone()], &self.offsets[disks.clone()]);
         place(self.units.length, from, &mut assembly.displacements[disks]);
     }
@@ -157,8 +159,8 @@ impl<const D: usize> Single<D> {
     /// Makes the assembly's displacements the base if the base is outdated, and rounds the pairs of the list. Pairs
     /// inserted into a long list are rounded at the present base.
     fn prepare<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
-        let (list, amendments) = assembly.list_number();
-        let known = self.listing.replace((list, amendments));
+        let number = assembly.list_number();
+        let known = self.listing.replace(number);
         if known == self.listing {
             return;
         }
@@ -166,7 +168,7 @@ impl<const D: usize> Single<D> {
         let law = assembly.law();
         let coefficient = libm::pow(self.units.length, law.exponent() - 1.0) / self.units.force;
         let factors = Factors { length: 1.0 / self.units.length, coefficient };
-        if pairs.is_long() && known.is_some_and(|(same, _)| same == list) {
+        if pairs.is_long() && known.is_some_and(|known| known.list == number.list) {
             self.blocks.round_again(pairs.blocks_with_insertions(), pairs, &self.base, factors);
             return;
         }
@@ -197,13 +199,13 @@ impl<const D: usize> Single<D> {
         let kernel = Pressed { law: &law, pairs, blocks: &self.blocks };
         let movers = Movers { velocities, displacements: &mut self.offsets, forces: &mut self.forces };
         let reach = Reach { limit, bounds, longest };
-        let advanced = Advanced::of(advance(&kernel, pairs, (movers, &mut self.across), reach, kick, observe));
+        let advanced = Advanced::of(advance(&kernel, pairs, (movers, &mut self.border_forces), reach, kick, observe));
         if matches!(advanced, Advanced::Moved) || assembly.checks_next() {
             // The assembly checks its displacements.
-            self.settle(assembly);
+            self.write_displacements(assembly);
         } else {
             for disks in assembly.disks_to_check() {
-                self.settle_some(assembly, disks);
+                self.write_some_displacements(assembly, disks);
             }
         }
         advanced
@@ -214,7 +216,7 @@ impl<const D: usize> Single<D> {
         self.prepare(assembly);
         let pairs = assembly.pairs();
         let kernel = Pressed { law: assembly.law(), pairs, blocks: &self.blocks };
-        let _ = all_tiles(&kernel, pairs, &self.offsets, &mut self.across, &mut self.forces);
+        let _ = all_tiles(&kernel, pairs, &self.offsets, &mut self.border_forces, &mut self.forces);
     }
 
     /// Moves all mobile disks by `kick`, without an evaluation of forces.
@@ -238,7 +240,7 @@ fn place<const D: usize>(unit: f64, (base, offsets): (&[Vector<D>], &[[f32; D]])
     }
 }
 
-/// The largest displacement since the list was built, for disks at base + offset, with the rounding of settled
+/// The largest displacement since the list was built, for disks at base + offset, with the rounding of written
 /// positions.
 fn longest_offset<const D: usize>(
     unit: f64,
@@ -271,32 +273,38 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Pressed<'_, D, L> {
         (Columns::new(), ())
     }
 
-    fn pull<'a>(
+    fn pair_forces<'a>(
         &self,
         block: usize,
         offsets: (&[[f32; D]], u32),
         (columns, ()): &'a mut (Columns<D>, ()),
     ) -> &'a [[f32; D]; BLOCK] {
         prefetch_rows(self.pairs, &self.pairs.blocks[block]);
-        gather(&mut columns.pull, self.pairs, &self.pairs.blocks[block], offsets);
+        gather(&mut columns.pair_vectors, self.pairs, &self.pairs.blocks[block], offsets);
         let (of_pairs, pair_count) = (self.blocks.block(block), self.pairs.blocks[block].pair_count);
         dispatch(self.law, Arithmetic { block: of_pairs, columns, pair_count, prefetches: self.pairs.prefetches() });
-        &columns.pull
+        &columns.pair_vectors
     }
 }
 
 /// One block of pairs, column by column, as in [`crate::forces::block_arithmetic`].
 #[repr(align(64))]
 struct Columns<const D: usize> {
-    pull: [[f32; D]; BLOCK],
-    apart: [[f32; BLOCK]; D],
+    /// Relative offset of each pair, then the force on its first disk.
+    pair_vectors: [[f32; D]; BLOCK],
+    separation: [[f32; BLOCK]; D],
     change: [f32; BLOCK],
     distance: [f32; BLOCK],
 }
 
 impl<const D: usize> Columns<D> {
     fn new() -> Self {
-        Columns { pull: [[0.0; D]; BLOCK], apart: [[0.0; BLOCK]; D], change: [0.0; BLOCK], distance: [0.0; BLOCK] }
+        Columns {
+            pair_vectors: [[0.0; D]; BLOCK],
+            separation: [[0.0; BLOCK]; D],
+            change: [0.0; BLOCK],
+            distance: [0.0; BLOCK],
+        }
     }
 }
 
@@ -317,25 +325,25 @@ impl<const D: usize> LawKernel for Arithmetic<'_, D> {
         let count = pair_count.div_ceil(S::F32_LANES).min(BLOCK / S::F32_LANES);
         let read = |column| &S::as_simd_f32s(column).0[..count];
         let (zero, one) = (simd.splat_f32s(0.0), simd.splat_f32s(1.0));
-        let pull = &mut S::as_mut_simd_f32s(columns.pull.as_flattened_mut()).0[..D * count];
-        let apart = columns.apart.each_mut().map(|column| &mut S::as_mut_simd_f32s(column).0[..count]);
+        let pair_vectors = &mut S::as_mut_simd_f32s(columns.pair_vectors.as_flattened_mut()).0[..D * count];
+        let separation = columns.separation.each_mut().map(|column| &mut S::as_mut_simd_f32s(column).0[..count]);
         let change = &mut S::as_mut_simd_f32s(&mut columns.change).0[..count];
         let distance = &mut S::as_mut_simd_f32s(&mut columns.distance).0[..count];
-        let separation = block.separation.each_ref().map(|column| read(&column[..]));
+        let anchor_separation = block.separation.each_ref().map(|column| read(&column[..]));
         let (anchor_distance, anchor_overlap) = (read(&block.distance), read(&block.overlap));
         let (coefficients, one_coefficient) = (read(&block.coefficient), simd.splat_f32s(block.coefficient[0]));
         for k in 0..count {
-            let offset = components::split_single::<S, D>(simd, &pull[D * k..D * (k + 1)]);
+            let offset = components::split_single::<S, D>(simd, &pair_vectors[D * k..D * (k + 1)]);
             let (mut square, mut changed) = (zero, zero);
             for d in 0..D {
-                let along = simd.add_f32s(separation[d][k], offset[d]);
+                let along = simd.add_f32s(anchor_separation[d][k], offset[d]);
                 let squared = simd.mul_f32s(along, along);
-                let change = simd.mul_f32s(offset[d], simd.add_f32s(separation[d][k], along));
+                let change = simd.mul_f32s(offset[d], simd.add_f32s(anchor_separation[d][k], along));
                 (square, changed) = match d {
                     0 => (squared, change),
                     _ => (simd.add_f32s(square, squared), simd.add_f32s(changed, change)),
                 };
-                apart[d][k] = along;
+                separation[d][k] = along;
             }
             if let Some(cache) = prefetches {
                 block.prefetch(cache, blocks_ahead(cache), k * S::F32_LANES, !L::ONE_COEFFICIENT);
@@ -353,9 +361,9 @@ impl<const D: usize> LawKernel for Arithmetic<'_, D> {
             let factor = simd.mul_f32s(force, simd.mul_f32s(both, inverse));
             let mut along = [factor; D];
             for d in 0..D {
-                along[d] = simd.mul_f32s(factor, apart[d][k]);
+                along[d] = simd.mul_f32s(factor, separation[d][k]);
             }
-            components::join_single(simd, &along, &mut pull[D * k..D * (k + 1)]);
+            components::join_single(simd, &along, &mut pair_vectors[D * k..D * (k + 1)]);
         }
     }
 }
@@ -381,9 +389,9 @@ mod tests {
         let mut forces = Vec::new();
         for prefetches in [None, Some(Cache::First), Some(Cache::Second)] {
             for processor in Processor::all() {
-                let columns = &mut Columns { pull: offsets, ..Columns::new() };
+                let columns = &mut Columns { pair_vectors: offsets, ..Columns::new() };
                 processor.run(|| dispatch(law, Arithmetic { block, columns, pair_count: BLOCK, prefetches }));
-                forces.push(columns.pull);
+                forces.push(columns.pair_vectors);
             }
         }
         let bits = |forces: &[[f32; 2]; BLOCK]| forces.map(|force| force.map(f32::to_bits));

@@ -30,12 +30,12 @@ pub fn stiffness_rows<const D: usize, L: PairLaw>(
 ) {
     let task = Task { law, pairs, displacements, mobile_count, weight };
     let tiles = pairs.tiles.iter().zip(row.chunks_mut(pairs.tile_size)).enumerate();
-    let across = parallel::each(tiles, |(place, (tile, row))| task.of_tile(tile, place * pairs.tile_size, row));
+    let border_values = parallel::each(tiles, |(place, (tile, row))| task.of_tile(tile, place * pairs.tile_size, row));
     if pairs.tiles.len() > 1 {
         let tiles = pairs.tiles.iter().zip(row.chunks_mut(pairs.tile_size)).enumerate();
         parallel::each(tiles, |(place, (tile, row))| {
             for &(disk, from, pair) in &tile.incoming {
-                row[disk as usize - place * pairs.tile_size] += across[from as usize][pair as usize];
+                row[disk as usize - place * pairs.tile_size] += border_values[from as usize][pair as usize];
             }
         });
     }
@@ -55,13 +55,13 @@ impl<const D: usize, L: PairLaw> Task<'_, D, L> {
     fn of_tile(&self, tile: &Tile, offset: usize, row: &mut [f64]) -> Vec<f64> {
         let (pairs, mobile) = (self.pairs, self.mobile_count);
         row.fill(0.0);
-        let mut across = vec![0.0; tile.border_pairs.len()];
+        let mut border_values = vec![0.0; tile.border_pairs.len()];
         let mut columns = Columns::<D>::new();
         let mut values = [[0.0]; BLOCK];
         for place in tile.inner.start..tile.border.end {
             let block = &pairs.blocks[place];
             prefetch_rows(pairs, block);
-            gather(&mut columns.pull, pairs, block, (self.displacements, 0));
+            gather(&mut columns.pair_vectors, pairs, block, (self.displacements, 0));
             let anchors = Anchors::of(pairs, block);
             dispatch(self.law, Arithmetic { columns: &mut columns, anchors, values: &mut values });
             for ((pair, value), &overlap) in block.pairs().zip(&mut values).zip(&columns.overlap) {
@@ -79,13 +79,13 @@ impl<const D: usize, L: PairLaw> Task<'_, D, L> {
             for (&[value], pair) in values.iter().zip(block.pairs..block.pairs + block.pair_count) {
                 row[pairs.first[pair] as usize - offset] += value;
                 if (pairs.second[pair] as usize) < mobile {
-                    across[pair - tile.border_pairs.start] = value;
+                    border_values[pair - tile.border_pairs.start] = value;
                 }
             }
         }
         let held = mobile.saturating_sub(offset).min(row.len());
         row[held..].fill(0.0);
-        across
+        border_values
     }
 }
 
@@ -101,8 +101,8 @@ impl<const D: usize> LawKernel for Arithmetic<'_, D> {
 
     #[inline(always)]
     fn run<S: pulp::Simd, L: PairLaw>(self, simd: S, law: &L) {
-        self.columns.measure(simd, &self.anchors);
-        self.columns.press::<S, L, false>(simd, law, &self.anchors);
+        self.columns.compute_overlaps(simd, &self.anchors);
+        self.columns.compute_forces::<S, L, false>(simd, law, &self.anchors);
         let (overlap, force) = (&self.columns.overlap, &self.columns.force);
         for (value, (&force, &overlap)) in self.values.iter_mut().zip(force.iter().zip(overlap)) {
             value[0] = law.stiffness(force, overlap);

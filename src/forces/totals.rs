@@ -53,31 +53,31 @@ impl<const D: usize> Totals<D> {
     }
 }
 
-/// The sums over a block.
-pub(crate) struct Tally<'a, const D: usize> {
+/// Adds energy, contact forces, contact count and virial of a block to the totals.
+pub(crate) struct BlockTotals<'a, const D: usize> {
     pub columns: &'a Columns<D>,
     pub count: usize,
     pub totals: &'a mut Totals<D>,
 }
 
-impl<const D: usize> LawKernel for Tally<'_, D> {
+impl<const D: usize> LawKernel for BlockTotals<'_, D> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: pulp::Simd, L: PairLaw>(self, simd: S, law: &L) {
-        tally(simd, law, self.columns, self.count, self.totals);
+        add_block_totals(simd, law, self.columns, self.count, self.totals);
     }
 }
 
 #[inline(always)]
-fn tally<S: pulp::Simd, const D: usize, L: PairLaw>(
+fn add_block_totals<S: pulp::Simd, const D: usize, L: PairLaw>(
     simd: S,
     law: &L,
     columns: &Columns<D>,
     count: usize,
     totals: &mut Totals<D>,
 ) {
-    let Columns { apart, overlap, force, inverse, .. } = columns;
+    let Columns { separation, overlap, force, inverse, .. } = columns;
     // First all terms of a column are computed, then those of its pairs are summed.
     let mut terms = [0.0; BLOCK];
     for k in 0..BLOCK {
@@ -89,7 +89,7 @@ fn tally<S: pulp::Simd, const D: usize, L: PairLaw>(
     for a in 0..D {
         for b in 0..=a {
             for k in 0..BLOCK {
-                terms[k] = force[k] * inverse[k] * (apart[a][k] * apart[b][k]);
+                terms[k] = force[k] * inverse[k] * (separation[a][k] * separation[b][k]);
             }
             totals.virial[a][b] += lanes::sum(simd, &terms[..count]);
             totals.virial[b][a] = totals.virial[a][b];

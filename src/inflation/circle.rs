@@ -1,7 +1,7 @@
 //! The circle cut out of a periodic packing: mobile disks inside, a held rim around, the disk to inflate in the middle.
 //!
-//! The centre of the chosen disk becomes the origin of the open plane. Disks nearer than `r_out` are mobile. All images
-//! of disks at `r_out` or beyond are held, as far as a mobile disk can reach. Images are needed if r_out plus the
+//! The centre of the chosen disk becomes the origin of the open plane. Disks nearer than R are mobile. All images
+//! of disks at R or beyond are held, as far as a mobile disk can reach. Images are needed if R plus the
 //! contact range exceeds half a side of the box: without them the rim would have holes. So a label can occur twice in
 //! the rim.
 
@@ -17,11 +17,11 @@ pub struct Circle<const D: usize> {
     pub packing: Packing<D>,
     /// Index of the centre, equal to the number of mobile disks.
     pub centre: usize,
-    /// Radius r_out within which disks are mobile \[length\].
+    /// Radius R within which disks are mobile \[length\].
     pub outer_radius: f64,
 }
 
-/// Width of the held rim over the largest radius: a mobile disk at r_out touches held ones up to 2 away, and may be
+/// Width of the held rim over the largest radius: a mobile disk at R touches held ones up to 2 away, and may be
 /// pushed outwards by up to another 2.
 pub(crate) const RIM_WIDTH: f64 = 4.0;
 
@@ -57,7 +57,7 @@ impl<const D: usize> Circle<D> {
                 }
             }
         }
-        // The images of the centre lie outside r_out if r_out is below half a side; they may belong to the rim.
+        // The images of the centre lie outside R if R is below half a side; they may belong to the rim.
         for shift in images::<D>().filter(|&shift| shift != [0.0; D]) {
             let position: Vector<D> = std::array::from_fn(|d| shift[d] * lengths[d]);
             if dot(position, position) < reach * reach {
@@ -84,14 +84,14 @@ impl<const D: usize> Circle<D> {
     }
 
     /// Label and distance from the centre of the outermost mobile disk, if it has left the circle through the rim. It
-    /// has if a disk of the largest radius fits between it and r_out.
+    /// has if a disk of the largest radius fits between it and R.
     pub(super) fn beyond_rim(&self, packing: &Packing<D>) -> Option<(u64, f64)> {
         let largest = packing.radii().iter().copied().fold(0.0, f64::max);
         let mobile = (0..self.centre).map(|disk| (packing.labels()[disk], norm(packing.positions()[disk])));
         mobile.filter(|&(_, distance)| distance > self.outer_radius + 2.0 * largest).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Pressure of the circle: virial of its disks over π r_out². Contacts with the rim count half \[force /
+    /// Pressure of the circle: virial of its disks over π R². Contacts with the rim count half \[force /
     /// length^(D−1)\].
     pub fn pressure_of(&self, network: &ContactNetwork<D>) -> f64 {
         network.cluster_pressure(ball_volume::<D>(self.outer_radius), |disk| disk > self.centre)

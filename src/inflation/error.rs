@@ -14,7 +14,7 @@ pub enum InflationError {
     /// A circle can only be cut from a periodic box.
     #[error("the packing is not periodic: a circle with a held rim can be cut only from a periodic box")]
     NotPeriodic,
-    /// r_out must be such that every mobile disk has one image.
+    /// R must be such that every mobile disk has one image.
     #[error("outer radius {outer_radius}: must be between 0 and half the shortest side of the box, {half_side}")]
     OuterRadiusOutOfRange {
         /// The outer radius given.
@@ -63,7 +63,7 @@ pub enum InflationError {
         /// The label given.
         label: u64,
     },
-    /// A mobile disk was pushed through the held rim: a disk fits between it and r_out.
+    /// A mobile disk was pushed through the held rim: a disk fits between it and R.
     #[error(
         "{stage}: disk {label} was pushed through the rim: it is at distance {distance} from the centre, and the rim is at {outer_radius}"
     )]
@@ -74,7 +74,7 @@ pub enum InflationError {
         label: u64,
         /// Its distance from the centre \[length\].
         distance: f64,
-        /// r_out \[length\].
+        /// R \[length\].
         outer_radius: f64,
     },
     /// A relaxation did not end at rest.

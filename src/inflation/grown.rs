@@ -21,7 +21,7 @@ pub struct Grown<const D: usize> {
     pub centre: usize,
     /// Radius of the inflated disk before \[length\].
     pub inner_radius: f64,
-    /// r_out, half the shortest side in the periodic variant \[length\].
+    /// R, the radius of the rim; half the shortest side in the periodic variant \[length\].
     pub outer_radius: f64,
     /// Number of mobile disks.
     pub mobile_count: usize,
@@ -131,7 +131,7 @@ impl<const D: usize> Experiment<D> {
         }
     }
 
-    /// r_out and the number of mobile disks.
+    /// R and the number of mobile disks.
     fn extent(&self) -> (f64, usize) {
         match self {
             Experiment::HeldRim(circle) => (circle.outer_radius, circle.mobile_count()),

@@ -31,7 +31,7 @@ pub struct Inflated<const D: usize> {
     pub centre: usize,
     /// Radius of the inflated disk before \[length\].
     pub inner_radius: f64,
-    /// r_out, half the shortest side in the periodic variant \[length\].
+    /// R, the radius of the rim; half the shortest side in the periodic variant \[length\].
     pub outer_radius: f64,
     /// Number of mobile disks.
     pub mobile_count: usize,

@@ -12,7 +12,7 @@ use crate::law::pair_law::PairLaw;
 pub enum Boundary {
     /// A circle is cut out. Disks outside this radius and the centre are held.
     HeldRim {
-        /// r_out over the shortest side of the box, at most 1/2 \[1\].
+        /// R over the shortest side of the box, at most 1/2 \[1\].
         outer_radius_over_side: f64,
     },
     /// The periodic box. Nothing is held; the centre of mass does not move.
@@ -20,7 +20,7 @@ pub enum Boundary {
 }
 
 impl Default for Boundary {
-    /// Source: the study, r_out/L for 5548 disks (0.486 and 0.491 for 22184 and 88776).
+    /// Source: the study, R/L for 5548 disks (0.486 and 0.491 for 22184 and 88776).
     fn default() -> Self {
         Boundary::HeldRim { outer_radius_over_side: 0.480 }
     }

@@ -109,10 +109,10 @@ impl Prestress {
 pub(crate) fn contact_block<const D: usize>(
     stiffness: f64,
     across: f64,
-    apart: Vector<D>,
+    separation: Vector<D>,
     distance: f64,
 ) -> [Vector<D>; D] {
-    let normal = scaled(1.0 / distance, apart);
+    let normal = scaled(1.0 / distance, separation);
     std::array::from_fn(|a| {
         std::array::from_fn(|b| {
             let both = normal[a] * normal[b];
@@ -229,7 +229,7 @@ impl<const D: usize> Hessian<D> {
         for_each_pair(
             pairs,
             &assembly.displacements,
-            &mut |&MovedPair { pair, ends, apart, distance, overlap, coefficient }| {
+            &mut |&MovedPair { pair, ends, separation, distance, overlap, coefficient }| {
                 let reach = reach(pair);
                 // This form makes NaN an entry, which is refused there.
                 if overlap <= -(reach + spare) {
@@ -243,7 +243,7 @@ impl<const D: usize> Hessian<D> {
                 let stiffness = if overlap.is_nan() { overlap } else { law.stiffness(force, overlap) };
                 let across = prestress.across(force, distance);
                 let (stiffness, across) = weights(&StiffContact { pair, ends, stiffness, across });
-                let block = contact_block(stiffness, across, apart, distance);
+                let block = contact_block(stiffness, across, separation, distance);
                 self.links.push(Link { ends, block });
             },
         );

@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn a_portion_is_nearly_spent_if_a_step_like_the_last_one_may_spend_it() {
+    fn a_portion_is_nearly_expired_if_a_step_like_the_last_one_may_exceed_its_limit() {
         let mut bounds = DisplacementBounds::default();
         bounds.begin(3000, 8192);
         bounds.portions =

@@ -15,7 +15,7 @@ pub struct MovedPair<const D: usize> {
     /// The two disks.
     pub ends: (u32, u32),
     /// Separation, from the second disk to the first \[length\].
-    pub apart: Vector<D>,
+    pub separation: Vector<D>,
     /// Length of the separation \[length\].
     pub distance: f64,
     /// Overlap; negative for a gap \[length\].
@@ -40,7 +40,7 @@ pub fn for_each_pair<const D: usize>(
             look(&MovedPair {
                 pair,
                 ends: (pairs.first[pair], pairs.second[pair]),
-                apart: at.apart.each_ref().map(|column| column[place]),
+                separation: at.apart.each_ref().map(|column| column[place]),
                 distance: at.distance[place],
                 overlap: at.overlap[place],
                 coefficient: listed.coefficient[place],
@@ -108,8 +108,8 @@ mod tests {
         let pairs = assembly.pairs();
         let mut met = Vec::new();
         for_each_pair(pairs, &assembly.displacements, &mut |at| {
-            let (apart, distance, overlap) = geometry(pairs, at.pair, &assembly.displacements);
-            assert_eq!((at.apart, at.distance, at.overlap), (apart, distance, overlap), "pair {}", at.pair);
+            let (separation, distance, overlap) = geometry(pairs, at.pair, &assembly.displacements);
+            assert_eq!((at.separation, at.distance, at.overlap), (separation, distance, overlap), "pair {}", at.pair);
             assert_eq!(at.ends, (pairs.first[at.pair], pairs.second[at.pair]));
             assert_eq!(at.coefficient, pairs.coefficient(at.pair));
             met.push(at.pair);

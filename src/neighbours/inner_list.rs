@@ -1,14 +1,15 @@
 //! Inner list: the nearest pairs of a Verlet list, stored as a second list with a narrower skin (dual pair list).
 //!
 //! ```text
-//! |r_ij| < R_i + R_j + s        time per step ∼ 1 + a s/R + P/n,  n = s/(2 v) steps until some disk has moved by s/2
-//! s = √(2 P v R/a)
+//! |r_ij| < R_i + R_j + s        time per step ∼ 1 + c s/R_min + P/n,  n = s/(2 v) steps until some disk has moved by s/2
+//! s = √(2 P v R_min/c)
 //! ```
 //!
 //! A list with a wide skin lasts long, but holds many pairs without contact. While disks move slowly, only the pairs
-//! within a narrow skin s can touch. v is the displacement of the fastest disk per step. These pairs are copied, with
-//! their geometry at the anchors, at the cost of a few force evaluations. The loop runs over them until a disk has
-//! moved by s/2; then they are selected again. The outer list is rebuilt only when it expires itself.
+//! within a narrow skin s can touch. These pairs are copied, with their geometry at the anchors, at the cost of a few
+//! force evaluations. The loop runs over them until a disk has moved by s/2; then they are selected again. The outer
+//! list is rebuilt only when it expires itself. v is the displacement of the fastest disk per step, R_min the smallest
+//! radius, c the share of pairs that a skin of one radius adds, P the cost of pruning in force evaluations.
 //!
 //! # Source
 //! Dual pair list with dynamic pruning: Páll et al. (2020), J. Chem. Phys. 153, 134110, §IV.
@@ -157,7 +158,7 @@ mod tests {
     /// fraction with a rebuild of the outer list.
     fn move_disks(assembly: &mut Assembly<2, Hertzian>, displacement: f64, steps: usize) -> (f64, f64) {
         let mobile = assembly.mobile_count();
-        let (mut near, made) = (0, assembly.rebuild_count());
+        let (mut near, made) = (0, assembly.build_count());
         for step in 0..steps {
             for disk in 0..mobile {
                 let angle = (disk * (step / 40 + 1)) as f64;
@@ -181,7 +182,7 @@ mod tests {
                 }
             }
         }
-        (near as f64 / steps as f64, (assembly.rebuild_count() - made) as f64 / steps as f64)
+        (near as f64 / steps as f64, (assembly.build_count() - made) as f64 / steps as f64)
     }
 
     #[test]
@@ -189,7 +190,7 @@ mod tests {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz");
         let packing = read_packing::<2>(file).expect("a stored packing");
         let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("no coincidence");
-        assembly.prune_lists(true);
+        assembly.set_pruning(true);
         let radius = 0.5;
         let (near, made) = move_disks(&mut assembly, 1e-4 * radius, 400);
         assert!(near > 0.9 && made == 0.0, "slowly: {near} {made}");
@@ -201,7 +202,7 @@ mod tests {
         assert!(near < 0.5 && made > 0.02, "fast: {near} {made}");
         let (near, _) = move_disks(&mut assembly, 1e-4 * radius, 400);
         assert!(near > 0.7, "slowly again: {near}");
-        assembly.prune_lists(false);
+        assembly.set_pruning(false);
         let (near, _) = move_disks(&mut assembly, 1e-2 * radius, 100);
         assert!(near < 0.3, "not any more: {near}");
     }

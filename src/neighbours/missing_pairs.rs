@@ -3,14 +3,14 @@
 use crate::neighbours::cell_grid::Run;
 use crate::neighbours::fast_disks::{FastDisks, UpdatedDisks};
 use crate::neighbours::pair_list::PairList;
-use crate::neighbours::verlet_list::{Anchored, Disks, ListRoom};
+use crate::neighbours::verlet_list::{Anchored, Disks, ListWorkspace};
 use crate::vector::{Vector, difference, dot, sum};
 
 /// Margin of the search over the skin \[1\]. A pair closer than the range by this margin is certainly in the list,
 /// despite rounding.
 const ROUNDING_MARGIN: f64 = 1e-3;
 
-impl<const D: usize> ListRoom<D> {
+impl<const D: usize> ListWorkspace<D> {
     /// Records that these disks have been updated to their present positions. Returns false if more than `most` disks
     /// would be recorded.
     pub(crate) fn note_updated(&mut self, disks: &Disks<'_, D>, fast: &FastDisks, most: usize) -> bool {
@@ -36,13 +36,13 @@ impl<const D: usize> ListRoom<D> {
 ///
 /// # Shape
 /// The list is complete for disks at anchor + `listed`, or is an inner list with a skin of its own. `fast` are the
-/// disks to update. `room` holds all disks updated in the outer list, including those of this call.
+/// disks to update. `workspace` holds all disks updated in the outer list, including those of this call.
 pub(crate) fn insert_missing_pairs<const D: usize>(
     disks: &Disks<'_, D>,
     (listed, skin): (&[Vector<D>], f64),
     fast: &FastDisks,
     coefficient: impl Fn(f64, f64) -> f64 + Sync,
-    room: &mut ListRoom<D>,
+    workspace: &mut ListWorkspace<D>,
     pairs: &mut PairList<D>,
 ) -> bool {
     let lengths = disks.domain.lengths();
@@ -60,7 +60,7 @@ pub(crate) fn insert_missing_pairs<const D: usize>(
         }
         dot(apart, apart)
     };
-    let ListRoom { grid, updated, queried, .. } = room;
+    let ListWorkspace { grid, updated, queried, .. } = workspace;
     let (mut missing, mut runs) = (Vec::new(), Vec::new());
     for &disk in fast.disks() {
         let (there, here) = (before(disk), disks.centre(disk as usize));

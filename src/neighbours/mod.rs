@@ -2,7 +2,17 @@
 //! contacts.
 //!
 //! Start from [`PairList`], the list, and [`verlet_list`], which builds it. An inner list holds the nearest pairs of a
-//! Verlet list. Pairs of a few fast disks are inserted without a rebuild.
+//! Verlet list. Pairs of a few fast disks are inserted without a rebuild. [`Assembly`](crate::forces::Assembly) calls
+//! `ListKeeper` after every step; it checks, updates and rebuilds the lists.
+//!
+//! | word | meaning |
+//! |---|---|
+//! | row | up to 8 pairs with the same first disk |
+//! | block | up to 128 pairs in rows of equal length, column by column in one piece of memory |
+//! | tile | neighbouring disks, 8192 or more, whose data fit into a cache; one tile if there are fewer disks |
+//! | portion | up to 1024 mobile disks of a tile, with one displacement bound |
+//! | run | cells next to each other along the first axis; their disks are contiguous in memory |
+//! | piece | 16 384 disks of a long array, processed by one thread |
 
 pub mod block;
 pub(crate) mod cell_grid;

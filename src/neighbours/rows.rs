@@ -81,12 +81,12 @@ fn gather_rows<T: Number, const D: usize, const LENGTH: usize>(
 /// Adds the force of each pair of a block to its first disk and subtracts it from the second; the array begins with
 /// disk `begin`.
 pub(crate) fn scatter<T: Number, const D: usize>(
-    pull: &[[T; D]; BLOCK],
+    pair_forces: &[[T; D]; BLOCK],
     pairs: &PairList<D>,
     block: &Block,
     forces: (&mut [[T; D]], u32),
 ) {
-    scatter_with(pull, pairs, block, forces, difference);
+    scatter_with(pair_forces, pairs, block, forces, difference);
 }
 
 /// Adds the value of each pair of a block to its first disk. The second disk gets `on_second`(its value, value of the

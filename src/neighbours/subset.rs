@@ -48,7 +48,7 @@ impl<const D: usize> Source<D> for Selected<'_, D> {
 mod tests {
     use super::*;
     use crate::forces::assembly::Assembly;
-    use crate::forces::elastic::{Across, forces};
+    use crate::forces::elastic::{BorderForces, forces};
     use crate::io::read_packing;
     use crate::law::power_laws::Hertzian;
     use crate::packing::{Mixture, Packing};
@@ -86,7 +86,7 @@ mod tests {
         let rest = selected(1, &|disk| disk);
         let of = |pairs: &PairList<2>| {
             let mut pulls = vec![[0.0; 2]; count];
-            forces(&law, pairs, &vec![[0.0; 2]; count], &mut Across::default(), &mut pulls);
+            forces(&law, pairs, &vec![[0.0; 2]; count], &mut BorderForces::default(), &mut pulls);
             pulls
         };
         let (all, half, rest): (Vec<Vector<2>>, Vec<Vector<2>>, Vec<Vector<2>>) = (of(whole), of(&half), of(&rest));

@@ -36,9 +36,9 @@ impl<const D: usize> Disks<'_, D> {
     }
 }
 
-/// Work space for building a list. It is reused, so only the first build allocates memory.
+/// Workspace for building a list. It is reused, so only the first build allocates memory.
 #[derive(Debug, Clone, Default)]
-pub struct ListRoom<const D: usize> {
+pub struct ListWorkspace<const D: usize> {
     pub(crate) grid: CellGrid,
     points: Vec<Vector<D>>,
     /// Centres and radii in the order of the cells, so the disks of a run are contiguous in memory.
@@ -69,12 +69,12 @@ pub fn spatial_order<const D: usize>(
 /// A box too small for the minimum-image convention, or two disks with the same centre.
 ///
 /// # Cost
-/// Linear in the number of disks; about 25 steps of FIRE.
+/// Linear in the number of disks; 10 to 25 force evaluations.
 pub fn build_pairs<const D: usize>(
     disks: &Disks<'_, D>,
     skin: f64,
     coefficient: impl Fn(f64, f64) -> f64 + Sync,
-    room: &mut ListRoom<D>,
+    workspace: &mut ListWorkspace<D>,
     pairs: &mut PairList<D>,
 ) -> Result<(), PackingError> {
     let largest = disks.radii.iter().copied().fold(0.0, f64::max);
@@ -85,7 +85,7 @@ pub fn build_pairs<const D: usize>(
             return Err(PackingError::BoxTooSmall { axis, length: lengths[axis], range: 2.0 * largest });
         }
     }
-    let ListRoom { grid, points, sorted, updated, .. } = room;
+    let ListWorkspace { grid, points, sorted, updated, .. } = workspace;
     updated.clear();
     points.resize(disks.anchors.len(), [0.0; D]);
     let centres = disks.anchors.chunks(PIECE).zip(disks.displacements.chunks(PIECE));

@@ -72,7 +72,7 @@ pub enum Varied {
     ForceLimit,
     /// Time step over the stability limit \[1\].
     TimeStep,
-    /// Error limit of an implicit step over the mean overlap \[1\].
+    /// Error limit of an implicit step over the median overlap \[1\].
     Tolerance,
 }
 

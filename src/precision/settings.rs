@@ -13,7 +13,7 @@ pub struct PrecisionSettings {
     pub force_limits: Vec<f64>,
     /// Time steps of damped dynamics, over the stability limit \[1\].
     pub time_steps: Vec<f64>,
-    /// Tolerances of the implicit motions, over the mean overlap \[1\].
+    /// Tolerances of the implicit motions, over the median overlap \[1\].
     pub tolerances: Vec<f64>,
     /// Step limit of relaxers with one or two force evaluations per step.
     pub explicit_step_limit: usize,

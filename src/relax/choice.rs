@@ -154,20 +154,22 @@ impl Relaxer for RelaxerChoice {
         }
     }
 
-    fn passing(&self, limit: f64) -> Option<Self> {
+    fn for_intermediate_states(&self, limit: f64) -> Option<Self> {
         Some(match self {
-            RelaxerChoice::Fire(fire) => RelaxerChoice::Fire(fire.passing(limit)?),
-            RelaxerChoice::Damped(damped) => RelaxerChoice::Damped(damped.passing(limit)?),
-            RelaxerChoice::ConjugateGradients(relaxer) => RelaxerChoice::ConjugateGradients(relaxer.passing(limit)?),
-            RelaxerChoice::QuasiNewton(relaxer) => RelaxerChoice::QuasiNewton(relaxer.passing(limit)?),
+            RelaxerChoice::Fire(fire) => RelaxerChoice::Fire(fire.for_intermediate_states(limit)?),
+            RelaxerChoice::Damped(damped) => RelaxerChoice::Damped(damped.for_intermediate_states(limit)?),
+            RelaxerChoice::ConjugateGradients(relaxer) => {
+                RelaxerChoice::ConjugateGradients(relaxer.for_intermediate_states(limit)?)
+            }
+            RelaxerChoice::QuasiNewton(relaxer) => RelaxerChoice::QuasiNewton(relaxer.for_intermediate_states(limit)?),
             #[cfg(feature = "linear")]
-            RelaxerChoice::Implicit(dynamics) => RelaxerChoice::Implicit(dynamics.passing(limit)?),
+            RelaxerChoice::Implicit(dynamics) => RelaxerChoice::Implicit(dynamics.for_intermediate_states(limit)?),
             #[cfg(feature = "linear")]
-            RelaxerChoice::GradientFlow(flow) => RelaxerChoice::GradientFlow(flow.passing(limit)?),
+            RelaxerChoice::GradientFlow(flow) => RelaxerChoice::GradientFlow(flow.for_intermediate_states(limit)?),
             #[cfg(feature = "linear")]
-            RelaxerChoice::Newton(newton) => RelaxerChoice::Newton(newton.passing(limit)?),
+            RelaxerChoice::Newton(newton) => RelaxerChoice::Newton(newton.for_intermediate_states(limit)?),
             #[cfg(feature = "linear")]
-            RelaxerChoice::Staged(staged) => RelaxerChoice::Staged(staged.passing(limit)?),
+            RelaxerChoice::Staged(staged) => RelaxerChoice::Staged(staged.for_intermediate_states(limit)?),
         })
     }
 }

@@ -24,7 +24,8 @@ const FAR_CHECKS: usize = 4;
 const FAR: f64 = 30.0;
 
 /// Mean contact force below which the residual is unknown \[force\]. Residuals come from squares of net forces. Below
-/// this force, the square of the last digit is less than the smallest normal number: √(2⁻¹⁰²²)/2⁻⁵².
+/// this force, the square of the last digit is less than the smallest normal number: √(2⁻¹⁰²²)/2⁻⁵² = 2⁻⁴⁵⁹, or
+/// 6.7·10⁻¹³⁹.
 const SMALLEST_FORCE: f64 = f64::from_bits((1023 - 511 + 52) << 52);
 
 /// The schedule of relaxers whose steps cost one evaluation.
@@ -127,9 +128,9 @@ impl Monitor {
             self.first_scale = totals.energy_scale();
         }
         self.energies = Some((first, totals.energy));
-        let (inner, outer) = self.largest(net_forces);
+        let (on_backbone, off_backbone) = self.largest(net_forces);
         let mean = totals.mean_contact_force();
-        self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
+        self.last = Residual { largest_net_force: on_backbone, mean_contact_force: mean };
         trace.checked(&Check { residual: self.last.relative(), ..report });
         if trace.interrupted() {
             return Some(Stop::Interrupted);
@@ -137,17 +138,17 @@ impl Monitor {
         if self.ran_away(assembly) {
             return Some(Stop::NoMinimum);
         }
-        if !(inner + outer + totals.energy).is_finite() {
+        if !(on_backbone + off_backbone + totals.energy).is_finite() {
             return Some(Stop::NonFinite);
         }
         if self.weak && totals.contact_count > 0 && mean < SMALLEST_FORCE {
             return Some(Stop::Underflow);
         }
-        if larger(inner, outer) <= self.unjammed_force && mean <= self.unjammed_force {
+        if larger(on_backbone, off_backbone) <= self.unjammed_force && mean <= self.unjammed_force {
             return Some(Stop::Converged(Criterion::Unjammed));
         }
-        let promising = self.within(inner, mean);
-        let due = promising || self.check_count.is_multiple_of(self.schedule.refresh_every) || self.check_count == 1;
+        let meets_limit = self.within(on_backbone, mean);
+        let due = meets_limit || self.check_count.is_multiple_of(self.schedule.refresh_every) || self.check_count == 1;
         let converged = if due { self.refresh(assembly, net_forces) } else { None };
         if converged.is_some() {
             let gained = totals.energy - first > ENERGY_GAIN * (self.first_scale + totals.energy_scale());
@@ -192,21 +193,25 @@ impl Monitor {
         }
         let members = &self.backbone;
         let mean = mean_force(&self.links, members);
-        let (inner, outer) = self.largest(net_forces);
+        let (on_backbone, off_backbone) = self.largest(net_forces);
         let row = &mut self.row;
         self.floor = floor_of(assembly, members, mean, assembly.longest_displacement(), row);
-        self.last = Residual { largest_net_force: inner, mean_contact_force: mean };
+        self.last = Residual { largest_net_force: on_backbone, mean_contact_force: mean };
         // Rounding counts if it is within a factor 20 of the residual and new anchors would lower it by more than a
         // factor 4.
         self.needs_anchors =
             self.floor > 0.05 * self.last.relative() && self.floor > 4.0 * floor_of(assembly, members, mean, 0.0, row);
         let stop = match self.limit {
-            ForceLimit::Relative(limit) => (mean > 0.0 && inner <= limit * mean && outer <= limit.sqrt() * mean)
-                .then_some(Criterion::RelativeForce),
-            ForceLimit::Absolute(limit) if rigid => {
-                (inner <= limit && outer <= limit.sqrt() * mean.max(limit)).then_some(Criterion::AbsoluteForce)
+            ForceLimit::Relative(limit) => {
+                (mean > 0.0 && on_backbone <= limit * mean && off_backbone <= limit.sqrt() * mean)
+                    .then_some(Criterion::RelativeForce)
             }
-            ForceLimit::Absolute(limit) => (larger(inner, outer) <= limit).then_some(Criterion::AbsoluteForce),
+            ForceLimit::Absolute(limit) if rigid => (on_backbone <= limit
+                && off_backbone <= limit.sqrt() * mean.max(limit))
+            .then_some(Criterion::AbsoluteForce),
+            ForceLimit::Absolute(limit) => {
+                (larger(on_backbone, off_backbone) <= limit).then_some(Criterion::AbsoluteForce)
+            }
         };
         stop.map(Stop::Converged)
     }
@@ -278,8 +283,8 @@ impl Monitor {
     ) -> Outcome<Packing<D>> {
         let energies = cost.energies.or(self.energies());
         let (residual, rounding_floor) = self.finish(&assembly, &assembly.forces[..assembly.mobile_count()]);
-        let (rebuild_count, seconds) = (assembly.rebuild_count(), start.elapsed().as_secs_f64());
-        let cost = Cost { rebuild_count, seconds, energies, ..cost };
+        let (build_count, seconds) = (assembly.build_count(), start.elapsed().as_secs_f64());
+        let cost = Cost { build_count, seconds, energies, ..cost };
         Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost }
     }
 

@@ -46,7 +46,7 @@ pub enum Stop {
     #[cfg(feature = "linear")]
     #[serde(alias = "restless")]
     Stagnation,
-    /// The factors of Newton's matrix do not fit in memory.
+    /// The factors of the matrix of Newton's method or of an implicit step do not fit in memory.
     #[cfg(feature = "linear")]
     OutOfMemory,
     /// No step, however short, lowers the energy, and the residual is above the rounding floor.
@@ -102,8 +102,9 @@ pub struct Cost {
     pub explicit_count: usize,
     /// Evaluations of all forces.
     pub force_evaluation_count: usize,
-    /// Neighbour lists built.
-    pub rebuild_count: usize,
+    /// Neighbour lists built. Files keep the earlier name `rebuild_count`.
+    #[serde(rename = "rebuild_count")]
+    pub build_count: usize,
     /// Sparse factorisations tried. Not written if 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub factorisation_count: usize,
@@ -137,7 +138,7 @@ impl Cost {
             rejected_count: self.rejected_count + other.rejected_count,
             explicit_count: self.explicit_count + other.explicit_count,
             force_evaluation_count: self.force_evaluation_count + other.force_evaluation_count,
-            rebuild_count: self.rebuild_count + other.rebuild_count,
+            build_count: self.build_count + other.build_count,
             factorisation_count: self.factorisation_count + other.factorisation_count,
             iteration_count: self.iteration_count + other.iteration_count,
             energies: match (self.energies, other.energies) {

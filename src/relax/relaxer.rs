@@ -20,7 +20,7 @@ pub trait Relaxer {
 
     /// The same relaxer for intermediate states, which count as at rest at a relative residual of `limit` \[1\]. None
     /// if its own limit is absolute or not below that.
-    fn passing(&self, limit: f64) -> Option<Self>
+    fn for_intermediate_states(&self, limit: f64) -> Option<Self>
     where
         Self: Sized,
     {

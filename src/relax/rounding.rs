@@ -11,12 +11,12 @@ pub(crate) const ENERGY_ROUNDING: f64 = 1e-13;
 /// The relative residual caused by rounding alone \[1\].
 ///
 /// ```text
-/// max_i Σ_j [F'(δ_ij) 4 u w + 4 u F(δ_ij)] / ⟨F⟩          u = 2⁻⁵³
+/// max_i Σ_j 4 u_r [w F'(δ_ij) + F(δ_ij)] / ⟨F⟩          u_r = 2⁻⁵³, the unit roundoff
 /// ```
 ///
-/// Here w is the longest displacement from the anchors. An overlap is known to about 4 u of the relative displacement,
-/// and a force to about 4 u of itself. A law with sites adds |Γ| times the longest distance from a site. If coordinates
-/// were single numbers, the floor would be about `5 F' ulp(L) / ⟨F⟩`, L the side of the box.
+/// Here w is the longest displacement from the anchors. An overlap is known to about 4 u_r of the relative
+/// displacement, and a force to about 4 u_r of itself. A law with sites adds |Γ| times the longest distance from a
+/// site. If coordinates were single numbers, the floor would be about `5 F' ulp(L) / ⟨F⟩`, L the side of the box.
 pub fn rounding_floor<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> f64 {
     let (mut links, mut members) = (Links::default(), vec![true; assembly.len()]);
     links.take(assembly);
@@ -45,8 +45,8 @@ pub(crate) fn floor_of<const D: usize, L: PairLaw>(
         return 0.0;
     }
     let exponent = assembly.law().exponent();
-    // F = F' δ / (α − 1). The row sums count a contact of two mobile disks twice (Gershgorin), hence 2 u for 4 u. Next
-    // to held disks the estimate is half as large.
+    // F = F' δ / (α − 1). The row sums count a contact of two mobile disks twice (Gershgorin), hence 2 u_r for
+    // 4 u_r. Next to held disks the estimate is half as large.
     let noise = |_: usize, overlap: f64, stiffness: f64| stiffness * (moved + overlap / (exponent - 1.0));
     assembly.row_bound(row, Some(&noise));
     let most =

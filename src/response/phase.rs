@@ -18,7 +18,10 @@
 //! one sample. Near the transition samples at the same pressure differ, so locating the transition takes many samples.
 //!
 //! # Source
-//! The study: κ_fit and Δp (its second figure), the spectrum that is scale-free at p_c and a Lorentzian below.
+//! The study (Fu, Jin, Pan, Procaccia, *Long-range angular correlations of particle displacements at a
+//! plastic-to-elastic transition in jammed amorphous solids*): the fitted κ and Δp against the pressure (its second
+//! figure); the angular spectrum, a power law at p_c and a Lorentzian below. The limits for the changed contacts come
+//! from our ensembles.
 
 use serde::{Deserialize, Serialize};
 

@@ -167,7 +167,7 @@ pub struct InflationSummary {
     pub centre_label: u64,
     /// Its radius before, a \[length\].
     pub inner_radius: f64,
-    /// r_out, R \[length\].
+    /// R, the radius of the rim \[length\].
     pub outer_radius: f64,
     /// Number of mobile disks.
     pub mobile_count: usize,

@@ -30,7 +30,7 @@ pub enum ProtocolChoice {
     Study,
     /// Damped dynamics, c_ij = γ with γ = 500: overdamped near jamming.
     Constant,
-    /// FIRE followed by Newton's method: a minimum near the start.
+    /// FIRE, then Newton's method: a minimum near the start.
     FireNewton,
     /// FIRE alone.
     #[cfg_attr(not(feature = "linear"), default)]

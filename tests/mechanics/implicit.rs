@@ -225,7 +225,7 @@ fn a_stabilised_step_of_many_stages_is_stable_where_an_explicit_one_of_its_lengt
 }
 
 #[test]
-fn an_error_is_estimated_where_a_contact_opens_on_the_way() {
+fn an_error_is_estimated_where_a_contact_opens_within_a_step() {
     // Two pressed disks without damping fly apart. As long as they touch the estimate is that of a smooth motion; in the step
     // in which they part, F kinks and the estimate must tell: it stands out against those before and after.
     let (stiffness, first) = (2e5f64, 0.01);

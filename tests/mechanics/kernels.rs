@@ -84,7 +84,7 @@ fn check_relaxer<const D: usize, L: PairLaw>(relaxer: &(impl Relaxer + Debug), s
     let (.., evaluations) = one(&format!("{relaxer:?}, {law:?}, D = {D}"), || {
         let outcome = relaxer.relax(start.clone(), &law, &mut ()).expect("disks apart");
         let (state, cost) = (&outcome.state, outcome.cost);
-        let counts = [cost.step_count, cost.rebuild_count, cost.factorisation_count, cost.iteration_count];
+        let counts = [cost.step_count, cost.build_count, cost.factorisation_count, cost.iteration_count];
         let reached = [outcome.residual.largest_net_force, outcome.residual.mean_contact_force];
         let numbers = [reached[0], reached[1], outcome.rounding_floor, cost.simulated_time];
         let ends = (bits(state.positions()), bits(state.corrections()));

@@ -138,7 +138,7 @@ fn a_packing_without_enough_stiffness_runs_away_and_a_tied_one_does_not() {
 }
 
 #[test]
-fn the_way_from_a_site_survives_new_anchors_without_rounding() {
+fn the_displacement_from_a_site_survives_new_anchors_without_rounding() {
     let packing = random_points::<2>(40, &Mixture::default(), 0.9, 5).expect("possible");
     let coupling = 3.0;
     let mut assembly = Assembly::new(&packing, OnSite { law: Hookean { stiffness: 0.0 }, coupling }).expect("apart");

@@ -62,8 +62,8 @@ impl Relaxer for Recorded<'_> {
         self.0.relax(packing, law, trace)
     }
 
-    fn passing(&self, limit: f64) -> Option<Self> {
-        self.0.passing(limit).map(|fire| Recorded(fire, self.1))
+    fn for_intermediate_states(&self, limit: f64) -> Option<Self> {
+        self.0.for_intermediate_states(limit).map(|fire| Recorded(fire, self.1))
     }
 }
 
@@ -84,7 +84,7 @@ fn states_on_the_way_to_a_pressure_are_passed_through_and_the_last_is_at_rest() 
         assert!((prepared.pressure / 100.0 - 1.0).abs() <= tolerance && prepared.residual.relative() <= 1e-8);
     }
     // Who asks for no less has nothing to pass through.
-    assert!(Fire { limit: ForceLimit::Relative(1e-3), ..Fire::default() }.passing(1e-3).is_none());
+    assert!(Fire { limit: ForceLimit::Relative(1e-3), ..Fire::default() }.for_intermediate_states(1e-3).is_none());
 }
 
 #[test]

@@ -385,8 +385,8 @@ fn a_relaxation_in_other_units_takes_the_same_steps_to_the_same_bits() {
         let same = |one: Outcome<Packing<2>>, two: Outcome<Packing<2>>| {
             assert!(matches!(one.stop, Stop::Converged(_)), "{:?}", one.stop);
             assert_eq!(
-                (one.stop, one.cost.step_count, one.cost.rebuild_count),
-                (two.stop, two.cost.step_count, two.cost.rebuild_count)
+                (one.stop, one.cost.step_count, one.cost.build_count),
+                (two.stop, two.cost.step_count, two.cost.build_count)
             );
             assert_eq!(scale(one.state.positions()), two.state.positions());
             assert_eq!(scale(one.state.corrections()), two.state.corrections());
@@ -402,10 +402,8 @@ fn a_relaxation_in_other_units_takes_the_same_steps_to_the_same_bits() {
     check([Hookean { stiffness: 2e5 }, Hookean { stiffness: 2e5 / 256.0 }], 4.0, 16.0);
 }
 
-/// Steps, evaluations and lists of fixed scenes. They may move with the method, not by accident: within a quarter of what
-/// was counted when this was written.
 #[test]
-fn looks_are_rare_until_forces_are_small() {
+fn checks_are_rare_until_forces_are_small() {
     let limit = 1e-8;
     let mut checks: Vec<Check> = Vec::new();
     let mut trace = |check: &Check| checks.push(*check);
@@ -435,6 +433,8 @@ fn a_damped_motion_cut_short_tells_the_residual_where_it_is() {
     assert!((told - there).abs() < 1e-12 * there, "{told} told, {there} there");
 }
 
+/// Steps, evaluations and lists of fixed scenes. They may change with the method, not by accident: within a quarter of what
+/// was counted when this was written.
 #[test]
 fn the_work_of_fixed_scenes_stays_what_it_was() {
     let counted = |what: &str, outcome: Outcome<Packing<2>>, steps: usize, evaluations: usize, lists: usize| {
@@ -450,7 +450,7 @@ fn the_work_of_fixed_scenes_stays_what_it_was() {
             counts.0,
             counts.1
         );
-        assert!(near(cost.rebuild_count, lists), "{what}: {} lists, {lists} then", cost.rebuild_count);
+        assert!(near(cost.build_count, lists), "{what}: {} lists, {lists} then", cost.build_count);
     };
     let law = Hertzian::default();
     counted("FIRE, random points at 0.9", relax(&fire(1e-8), points(256, 0.9, 16), &law), 940, 962, 54);

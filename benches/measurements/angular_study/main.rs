@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Hertzian disks from random points, brought to the pressure p = p̂/N^(3/2), N = n π (R/L)² those inside the circle of R/L = 0.480
-//! (0.486 and 0.491 from 10 000 and 50 000 disks on). A small disk is inflated by 0.1, then deflated. Everything relaxes by FIRE and
-//! Newton in turn (`Staged`), to 10⁻⁸ of the mean contact force; with `--relaxer damped` by the damped dynamics of the study
+//! (0.486 and 0.491 from 10 000 and 50 000 disks on). A small disk is inflated by 0.1, then deflated. Everything relaxes by FIRE,
+//! then Newton (`Staged`), to 10⁻⁸ of the mean contact force; with `--relaxer damped` by the damped dynamics of the study
 //! (`ImplicitDynamics`). With `--packing-fraction` packings are quenched there, as in the study, and p̂ asked for is only their name.
 //!
 //! Each sample is a row of `DIR/samples.jsonl`, written when it is done, the ring r̂ = 0.5 ± 0.03 of its displacement field with it. A run

@@ -69,7 +69,7 @@ pub fn radius_of(ring: usize) -> f64 {
     FROM * (RING * (ring as f64 + 0.5)).exp()
 }
 
-/// Prepared by FIRE and Newton in turn.
+/// Prepared by FIRE, then Newton.
 pub fn prepared(disk_count: usize, seeds: Range<u64>, pressure: f64) -> Result<Vec<Packing<2>>, Box<dyn Error>> {
     let one = |seed: u64| {
         let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));

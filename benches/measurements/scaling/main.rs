@@ -176,7 +176,7 @@ fn measured(packing: &Packing<2>, one: &rayon::ThreadPool) -> Result<Row, Failur
     let relax = |precision, step_limit| -> Result<_, Failure> {
         let fire = Fire { limit: ForceLimit::Relative(0.0), step_limit, precision, ..Fire::default() };
         let outcome = fire.relax(start.clone(), &law, &mut ())?;
-        Ok((outcome.cost.seconds, outcome.cost.rebuild_count, outcome.state))
+        Ok((outcome.cost.seconds, outcome.cost.build_count, outcome.state))
     };
     let steps = |precision| -> Result<_, Failure> {
         let (mut least, mut lists, mut last) = ([f64::INFINITY; 2], 0, None);

@@ -89,10 +89,10 @@ impl<const D: usize> ListKeeper<D> {
             Some(skin) => outer_updated.is_some() && self.update_inner_list(disks, coefficient, skin),
         };
         if updated {
-            self.list_number.1 += 1;
+            self.list_number.update_count += 1;
             if self.inner_skin.is_none() && !self.outer.is_long() {
                 // The speed of the disks is checked as for a new list.
-                self.set_pruning(disks, self.prunes);
+                self.restart_speed_checks(disks);
             }
         }
         updated
@@ -108,9 +108,9 @@ impl<const D: usize> ListKeeper<D> {
         }
         self.fast_disks.set(fast, disks.radii.len());
         let most = disks.radii.len() / self.tuning().updated_one_of;
-        let ListKeeper { outer, room, fast_disks, outer_at_build, skin, .. } = self;
-        let updated = room.note_updated(disks, fast_disks, most)
-            && insert_missing_pairs(disks, (outer_at_build, *skin), fast_disks, coefficient, room, outer);
+        let ListKeeper { outer, workspace, fast_disks, outer_at_build, skin, .. } = self;
+        let updated = workspace.note_updated(disks, fast_disks, most)
+            && insert_missing_pairs(disks, (outer_at_build, *skin), fast_disks, coefficient, workspace, outer);
         if !updated {
             return None;
         }
@@ -130,8 +130,8 @@ impl<const D: usize> ListKeeper<D> {
         let fast = self.fast_disks_of(disks, &portions, &self.inner_at_build, skin);
         let Some(fast) = fast.filter(|fast| !fast.is_empty()) else { return false };
         self.fast_disks.set(fast, disks.radii.len());
-        let ListKeeper { inner, room, fast_disks, inner_at_build, .. } = self;
-        if !insert_missing_pairs(disks, (inner_at_build, skin), fast_disks, coefficient, room, inner) {
+        let ListKeeper { inner, workspace, fast_disks, inner_at_build, .. } = self;
+        if !insert_missing_pairs(disks, (inner_at_build, skin), fast_disks, coefficient, workspace, inner) {
             return false;
         }
         for &disk in fast_disks.disks() {

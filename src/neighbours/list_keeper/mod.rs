@@ -12,7 +12,7 @@ use crate::neighbours::displacement_bounds::{DisplacementBounds, PORTION, SKIN_F
 use crate::neighbours::fast_disks::FastDisks;
 use crate::neighbours::inner_list::{best_inner_skin, best_outer_skin};
 use crate::neighbours::pair_list::PairList;
-use crate::neighbours::verlet_list::{Disks, ListRoom, build_pairs};
+use crate::neighbours::verlet_list::{Disks, ListWorkspace, build_pairs};
 use crate::packing::PackingError;
 use crate::parallel;
 use crate::vector::{Vector, larger, longest_difference_squared};
@@ -32,13 +32,15 @@ pub(crate) struct ListKeeper<const D: usize> {
     inner_skin: Option<f64>,
     /// Whether an inner list may be used.
     prunes: bool,
-    /// Number of steps since the list in use was built, and the number at which the speed of the disks is checked.
+    /// Number of steps since the speed checks were restarted: since the list in use was built, since a short outer list
+    /// was updated, or since [`ListKeeper::set_pruning`].
     age: usize,
+    /// Value of `age` at which the speed of the disks is checked.
     next_check: usize,
     /// Displacements at the last speed check, and the value of `age` then.
     checked_displacements: Vec<Vector<D>>,
     checked_at: usize,
-    room: ListRoom<D>,
+    workspace: ListWorkspace<D>,
     smallest_radius: f64,
     /// Skin of the outer list.
     skin: f64,
@@ -55,9 +57,24 @@ pub(crate) struct ListKeeper<const D: usize> {
     /// Bound on the displacements in the outer list up to the build of the inner list, for each portion; empty if the
     /// inner list is not in use.
     bounds_before: Vec<f64>,
-    /// Number of lists used so far, and number of incremental updates of the present one.
-    list_number: (usize, usize),
+    list_number: ListNumber,
     build_count: usize,
+}
+
+/// Identifies a list in use and its state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct ListNumber {
+    /// Number of lists used so far.
+    pub list: usize,
+    /// Number of incremental updates of the present list.
+    pub update_count: usize,
+}
+
+impl ListNumber {
+    /// The next list, without updates.
+    fn following(self) -> Self {
+        ListNumber { list: self.list + 1, update_count: 0 }
+    }
 }
 
 /// What became of the list in use after a step.
@@ -88,7 +105,7 @@ impl<const D: usize> ListKeeper<D> {
             next_check: 0,
             checked_displacements: Vec::new(),
             checked_at: 0,
-            room: ListRoom::default(),
+            workspace: ListWorkspace::default(),
             smallest_radius,
             skin: *skins.start(),
             skins,
@@ -97,7 +114,7 @@ impl<const D: usize> ListKeeper<D> {
             fast_disks: FastDisks::default(),
             bounds: DisplacementBounds::default(),
             bounds_before: Vec::new(),
-            list_number: (0, 0),
+            list_number: ListNumber::default(),
             build_count: 0,
         }
     }
@@ -122,8 +139,8 @@ impl<const D: usize> ListKeeper<D> {
         self.build_count
     }
 
-    /// Identifies the list in use: its number, and the number of its incremental updates.
-    pub(crate) fn list_number(&self) -> (usize, usize) {
+    /// Identifies the list in use.
+    pub(crate) fn list_number(&self) -> ListNumber {
         self.list_number
     }
 
@@ -132,13 +149,13 @@ impl<const D: usize> ListKeeper<D> {
     /// # Errors
     /// As [`build_pairs`].
     pub(crate) fn build(&mut self, disks: &Disks<'_, D>, coefficient: Coefficient<'_>) -> Result<(), PackingError> {
-        build_pairs(disks, self.skin, coefficient, &mut self.room, &mut self.outer)?;
+        build_pairs(disks, self.skin, coefficient, &mut self.workspace, &mut self.outer)?;
         self.inner_skin = None;
         self.bounds_before.clear();
         self.outer_at_build.clear();
         self.outer_at_build.extend_from_slice(disks.displacements);
-        self.list_number = (self.list_number.0 + 1, 0);
-        self.begin_list(disks);
+        self.list_number = self.list_number.following();
+        self.reset_bounds_and_checks(disks);
         self.build_count += 1;
         Ok(())
     }
@@ -146,7 +163,12 @@ impl<const D: usize> ListKeeper<D> {
     /// Sets whether an inner list is used while disks move slowly.
     pub(crate) fn set_pruning(&mut self, disks: &Disks<'_, D>, prunes: bool) {
         self.prunes = prunes;
-        if prunes {
+        self.restart_speed_checks(disks);
+    }
+
+    /// Restarts the speed checks from the present displacements.
+    fn restart_speed_checks(&mut self, disks: &Disks<'_, D>) {
+        if self.prunes {
             self.checked_displacements.clear();
             self.checked_displacements.extend_from_slice(disks.displacements);
         }
@@ -235,7 +257,7 @@ impl<const D: usize> ListKeeper<D> {
             // While the outer list is still complete, it is used itself.
             self.inner_skin = None;
             self.bounds_before.clear();
-            self.list_number = (self.list_number.0 + 1, 0);
+            self.list_number = self.list_number.following();
             let bounds = self.longest_displacements_from(disks, self.reference_displacements());
             self.bounds.portions.iter_mut().zip(bounds).for_each(|(bound, displacement)| bound.total = displacement);
         }
@@ -261,33 +283,34 @@ impl<const D: usize> ListKeeper<D> {
         self.try_prune(disks, best_inner_skin, self.skin);
     }
 
-    /// Prunes the outer list to this skin, or to the widest skin for which the outer list is complete, if that costs
-    /// less than a list with the skin `other`. Returns whether it did.
-    fn try_prune(&mut self, disks: &Disks<'_, D>, best: f64, other: f64) -> bool {
-        if best >= self.tuning().widest_inner * other {
+    /// Prunes the outer list to the skin `best`, or to the widest skin for which the outer list is complete, if that
+    /// costs less than the alternative, a list of skin `alternative_skin`. Returns whether it did.
+    fn try_prune(&mut self, disks: &Disks<'_, D>, best: f64, alternative_skin: f64) -> bool {
+        if best >= self.tuning().widest_inner * alternative_skin {
             return false;
         }
         // If disks have moved by at most w since the list was built, the outer list of skin S contains all pairs within
         // S − 2 w.
-        let longest = self.skin - self.largest_displacement_since(disks, &self.outer_at_build) / SKIN_FRACTION;
-        if best >= 2.0 * longest {
+        let widest = self.skin - self.largest_displacement_since(disks, &self.outer_at_build) / SKIN_FRACTION;
+        // With less than half of the best skin, the inner list would expire in less than half of the best time.
+        if best >= 2.0 * widest {
             return false;
         }
-        let skin = best.min(longest);
+        let skin = best.min(widest);
         self.inner.prune(&self.outer, disks.displacements, skin);
         self.inner_skin = Some(skin);
         self.inner_at_build.clear();
         self.inner_at_build.extend_from_slice(disks.displacements);
         self.bounds_before = self.longest_displacements_from(disks, &self.outer_at_build);
-        self.list_number = (self.list_number.0 + 1, 0);
-        self.begin_list(disks);
+        self.list_number = self.list_number.following();
+        self.reset_bounds_and_checks(disks);
         true
     }
 
     /// Resets bounds and counters for another list in use.
-    fn begin_list(&mut self, disks: &Disks<'_, D>) {
+    fn reset_bounds_and_checks(&mut self, disks: &Disks<'_, D>) {
         self.bounds.begin(disks.mobile_count, self.in_use().tile_size);
-        self.set_pruning(disks, self.prunes);
+        self.restart_speed_checks(disks);
     }
 
     /// Reference displacements of the list in use: those at its build, or at the last update of a disk.

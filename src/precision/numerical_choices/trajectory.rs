@@ -74,7 +74,7 @@ pub(super) fn skins<L: PairLaw, C: DampingLaw>(
             motion.step(time_step)?;
         }
         let seconds = start.elapsed().as_secs_f64();
-        let lists = motion.assembly.rebuild_count() as f64;
+        let lists = motion.assembly.build_count() as f64;
         Ok((motion.assembly.placed(grown.packing.clone()), [pairs, lists, seconds]))
     };
     let reference = go(SKIN)?.0;

@@ -97,7 +97,7 @@ impl Relaxer for DampedDynamics {
         self.relax_with(packing, law, &law.contact_damping(&self.damping), trace)
     }
 
-    fn passing(&self, limit: f64) -> Option<Self> {
+    fn for_intermediate_states(&self, limit: f64) -> Option<Self> {
         self.limit.loosened(limit).map(|limit| DampedDynamics { limit, ..*self })
     }
 }
@@ -172,11 +172,11 @@ impl DampedDynamics {
                 None => fixed,
                 Some(control) => control.next(&mut motion),
             };
-            let list_count = motion.assembly.rebuild_count();
+            let list_count = motion.assembly.build_count();
             motion.step(time_step)?;
             step_count += 1;
             evaluation_count += 1;
-            if motion.assembly.rebuild_count() > list_count && monitor.ran_away(&motion.assembly) {
+            if motion.assembly.build_count() > list_count && monitor.ran_away(&motion.assembly) {
                 break Stop::NoMinimum;
             }
         };
@@ -196,7 +196,7 @@ impl DampedDynamics {
             rejected_count,
             energies: monitor_energies.zip(balance).map(|(energies, balance)| balance.account(energies.after)),
             force_evaluation_count: evaluation_count,
-            rebuild_count: motion.assembly.rebuild_count(),
+            build_count: motion.assembly.build_count(),
             seconds: start.elapsed().as_secs_f64(),
             ..Cost::default()
         };

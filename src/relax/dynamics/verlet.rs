@@ -217,11 +217,11 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
         for_each_pair(
             assembly.pairs(),
             &assembly.displacements,
-            &mut |&MovedPair { pair, ends, apart, distance, overlap, coefficient }| {
+            &mut |&MovedPair { pair, ends, separation, distance, overlap, coefficient }| {
                 let (i, j) = (ends.0 as usize, ends.1 as usize);
                 let closing = |of: &[Vector<D>]| {
                     let other = if j < mobile { of[j] } else { [0.0; D] };
-                    (-dot(difference(of[i], other), apart) / distance).max(0.0)
+                    (-dot(difference(of[i], other), separation) / distance).max(0.0)
                 };
                 let ahead = overlap + time * (closing(velocities) + 0.5 * time * closing(accelerations));
                 if ahead > 0.0 {

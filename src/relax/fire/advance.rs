@@ -12,7 +12,7 @@ use crate::relax::fire::step::Step;
 
 impl Run<'_> {
     /// Lengthens the time step and lowers the mixing after a step downhill.
-    pub(super) fn lengthen(&mut self) {
+    pub(super) fn grow_step(&mut self) {
         self.downhill += 1;
         self.uphill = 0;
         if self.downhill > self.settings.delay {
@@ -43,7 +43,7 @@ impl Run<'_> {
             assembly.update_list_after_advance()?
         };
         if let Advanced::Evaluated(parts) = advanced {
-            self.taken = Some(state.sum(&parts));
+            self.present_products = Some(state.sum(&parts));
         }
         Ok(rebuilt)
     }

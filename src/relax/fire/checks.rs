@@ -30,14 +30,14 @@ impl Run<'_> {
     ) -> (Option<Totals<D>>, Products) {
         let totals = if self.due { Some(assembly.evaluate_totals()) } else { None };
         self.evaluation_count += 1;
-        let mut sums = match self.taken.take() {
+        let mut sums = match self.present_products.take() {
             Some(sums) => sums,
             None if self.due => state.products(assembly),
             None => state.evaluate(assembly),
         };
         if state.is_single() && !sums.is_finite() {
             // Disks whose centres nearly coincide are out of the range of single precision.
-            state.settle(assembly);
+            state.write_displacements(assembly);
             state.switch_to_double();
             sums = state.evaluate(assembly);
         }
@@ -71,11 +71,11 @@ impl Run<'_> {
         }
         if monitor.takes_new_anchors() {
             assembly.reanchor()?;
-            state.forget();
+            state.invalidate_base();
         }
         let residual = monitor.residual().relative();
         if residual <= BASE_LIMIT {
-            state.forget();
+            state.invalidate_base();
         }
         if residual <= SINGLE_LIMIT {
             state.switch_to_double();
@@ -86,7 +86,7 @@ impl Run<'_> {
     /// Recomputes the bound on the time step every [`BOUND_INTERVAL`] steps.
     pub(super) fn check_bound<const D: usize, L: PairLaw>(&mut self, assembly: &mut Assembly<D, L>, state: &State<D>) {
         if self.step_count.is_multiple_of(BOUND_INTERVAL) && self.step_count > 0 {
-            state.settle(assembly);
+            state.write_displacements(assembly);
             self.set_largest_step(assembly);
             self.time_step = self.time_step.min(self.largest_step);
         }

@@ -1,5 +1,8 @@
 //! The descent by FIRE: checks, restarts and steps.
+//!
+//! Stops by [`Monitor::check`], the step limit, a failed restart, or a runaway.
 
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::forces::assembly::Assembly;
@@ -27,7 +30,7 @@ impl Relaxer for Fire {
         Ok(monitor.outcome(assembly, packing, (stop, cost), start))
     }
 
-    fn passing(&self, limit: f64) -> Option<Self> {
+    fn for_intermediate_states(&self, limit: f64) -> Option<Self> {
         self.limit.loosened(limit).map(|limit| Fire { limit, ..*self })
     }
 }
@@ -40,9 +43,9 @@ impl Fire {
         monitor: &mut Monitor,
         trace: &mut impl Trace,
     ) -> Result<(Stop, Cost), PackingError> {
-        assembly.prune_lists(true);
+        assembly.set_pruning(true);
         let ended = self.run_from_rest(assembly, monitor, trace);
-        assembly.prune_lists(false);
+        assembly.set_pruning(false);
         ended
     }
 
@@ -57,7 +60,7 @@ impl Fire {
         let stop = run.descend(assembly, &mut state, monitor, trace)?;
         if state.is_single() {
             // The assembly keeps the final positions, with forces in double precision.
-            state.settle(assembly);
+            state.write_displacements(assembly);
             assembly.evaluate();
             run.evaluation_count += 1;
         }
@@ -75,7 +78,7 @@ impl Run<'_> {
     ) -> Result<Stop, PackingError> {
         loop {
             let (totals, mut sums) = self.evaluate(assembly, state);
-            let climbed = sums.power <= 0.0 && self.step_count > 0;
+            let uphill = sums.power <= 0.0 && self.step_count > 0;
             if let Some(totals) = &totals
                 && let Some(stop) = self.check(assembly, state, monitor, (totals, &sums), trace)?
             {
@@ -85,13 +88,13 @@ impl Run<'_> {
                 return Ok(Stop::StepLimit);
             }
             self.check_bound(assembly, state);
-            if climbed {
+            if uphill {
                 match self.restart(assembly, state, monitor, (totals, &sums), trace)? {
-                    Ok(rested) => sums = rested,
-                    Err(stop) => return Ok(stop),
+                    ControlFlow::Continue(rested) => sums = rested,
+                    ControlFlow::Break(stop) => return Ok(stop),
                 }
             } else {
-                self.lengthen();
+                self.grow_step();
             }
             let rebuilt = self.advance(assembly, state, monitor, &sums)?;
             if rebuilt && monitor.ran_away(assembly) {

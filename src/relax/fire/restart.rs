@@ -1,5 +1,7 @@
 //! Restarts of FIRE: after an uphill step, all velocities are set to zero.
 
+use std::ops::ControlFlow;
+
 use crate::forces::assembly::Assembly;
 use crate::forces::totals::Totals;
 use crate::law::pair_law::PairLaw;
@@ -23,14 +25,14 @@ impl Run<'_> {
         monitor: &Monitor,
         (totals, sums): (Option<Totals<D>>, &Products),
         trace: &mut impl Trace,
-    ) -> Result<Result<Products, Stop>, PackingError> {
-        state.settle(assembly);
-        state.forget();
+    ) -> Result<ControlFlow<Stop, Products>, PackingError> {
+        state.write_displacements(assembly);
+        state.invalidate_base();
         self.uphill += 1;
         if let Uphill::StepBack(back) = self.settings.uphill {
             if self.uphill > back.uphill_limit {
                 let floor = monitor.near_the_floor();
-                return Ok(Err(if floor { Stop::RoundingFloor } else { Stop::NoDescent }));
+                return Ok(ControlFlow::Break(if floor { Stop::RoundingFloor } else { Stop::NoDescent }));
             }
             state.step_back(assembly, self.time_step);
             assembly.update_list(0.5 * self.time_step * sums.speed_squared.sqrt())?;
@@ -58,8 +60,8 @@ impl Run<'_> {
         self.report(trace);
         state.rest();
         let sums = state.products(assembly);
-        self.shorten(higher);
-        Ok(Ok(sums))
+        self.cut_step(higher);
+        Ok(ControlFlow::Continue(sums))
     }
 
     /// Whether the energy is above that at the last restart.
@@ -89,7 +91,7 @@ impl Run<'_> {
     }
 
     /// Shortens the time step after a restart, and resets the mixing.
-    fn shorten(&mut self, higher: bool) {
+    fn cut_step(&mut self, higher: bool) {
         let settings = self.settings;
         let kept = matches!(settings.uphill, Uphill::StepBack(back) if self.step_count < back.start_delay && !higher);
         if !kept {

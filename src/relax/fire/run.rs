@@ -30,7 +30,7 @@ pub(super) struct Run<'a> {
     /// Whether a check of the residual is due.
     pub(super) due: bool,
     /// The products at the present state, if the last step has computed them.
-    pub(super) taken: Option<Products>,
+    pub(super) present_products: Option<Products>,
     /// Work space for the rows of the stiffness bound.
     row: Vec<f64>,
 }
@@ -50,7 +50,7 @@ impl<'a> Run<'a> {
             rest_energy: f64::INFINITY,
             rest_scale: f64::INFINITY,
             due: true,
-            taken: None,
+            present_products: None,
             row: Vec::new(),
         };
         run.set_largest_step(assembly);

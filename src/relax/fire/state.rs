@@ -32,7 +32,7 @@ impl<const D: usize> State<D> {
         matches!(self, State::Single(..))
     }
 
-    /// Switches to double precision. The assembly must be settled.
+    /// Switches to double precision. The assembly must have the present displacements.
     pub(super) fn switch_to_double(&mut self) {
         if let State::Single(disks, velocities) = self {
             let unit = disks.units().speed();
@@ -41,17 +41,17 @@ impl<const D: usize> State<D> {
     }
 
     /// Writes the displacements into the assembly.
-    pub(super) fn settle<L: PairLaw>(&self, assembly: &mut Assembly<D, L>) {
+    pub(super) fn write_displacements<L: PairLaw>(&self, assembly: &mut Assembly<D, L>) {
         if let State::Single(disks, _) = self {
-            disks.settle(assembly);
+            disks.write_displacements(assembly);
         }
     }
 
     /// Marks the base as outdated: the displacements of the assembly become the base of the next step. Needed after
-    /// they were settled or moved, or after a change of the list.
-    pub(super) fn forget(&mut self) {
+    /// they were written or moved, or after a change of the list.
+    pub(super) fn invalidate_base(&mut self) {
         if let State::Single(disks, _) = self {
-            disks.forget();
+            disks.invalidate_base();
         }
     }
 
@@ -118,7 +118,8 @@ impl<const D: usize> State<D> {
         }
     }
 
-    /// Moves the disks and settles them. Returns the largest velocity component \[length / time\].
+    /// Moves the disks and writes their displacements into the assembly. Returns the largest velocity component
+    /// \[length / time\].
     pub(super) fn kick<L: PairLaw>(&mut self, assembly: &mut Assembly<D, L>, step: Step) -> f64 {
         let mobile = assembly.mobile_count();
         match self {
@@ -130,7 +131,7 @@ impl<const D: usize> State<D> {
                 let fastest = disks.kick(assembly, velocities, |forces, velocities, displacements| {
                     step.kick(forces, velocities, displacements)
                 });
-                disks.settle(assembly);
+                disks.write_displacements(assembly);
                 disks.units().speed() * fastest
             }
         }
@@ -149,7 +150,7 @@ impl<const D: usize> State<D> {
                 }
             }
         }
-        self.forget();
+        self.invalidate_base();
     }
 }
 

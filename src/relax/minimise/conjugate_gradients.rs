@@ -60,7 +60,7 @@ impl Relaxer for NonlinearConjugateGradients {
         descent.relax(Conjugate { last: None }, packing, law, trace)
     }
 
-    fn passing(&self, limit: f64) -> Option<Self> {
+    fn for_intermediate_states(&self, limit: f64) -> Option<Self> {
         self.limit.loosened(limit).map(|limit| NonlinearConjugateGradients { limit, ..*self })
     }
 }

@@ -68,7 +68,7 @@ impl Relaxer for Staged {
         Ok(monitor.outcome(assembly, packing, (stop, cost), start))
     }
 
-    fn passing(&self, limit: f64) -> Option<Self> {
+    fn for_intermediate_states(&self, limit: f64) -> Option<Self> {
         self.limit.loosened(limit).map(|limit| Staged { limit, ..*self })
     }
 }

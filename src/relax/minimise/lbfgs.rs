@@ -59,7 +59,7 @@ impl Relaxer for QuasiNewton {
         descent.relax(StepMemory::new(memory), packing, law, trace)
     }
 
-    fn passing(&self, limit: f64) -> Option<Self> {
+    fn for_intermediate_states(&self, limit: f64) -> Option<Self> {
         self.limit.loosened(limit).map(|limit| QuasiNewton { limit, ..*self })
     }
 }

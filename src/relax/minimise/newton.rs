@@ -67,7 +67,7 @@ impl Relaxer for Newton {
         Ok(monitor.outcome(assembly, packing, (stop, descent.cost), start))
     }
 
-    fn passing(&self, limit: f64) -> Option<Self> {
+    fn for_intermediate_states(&self, limit: f64) -> Option<Self> {
         self.limit.loosened(limit).map(|limit| Newton { limit, ..*self })
     }
 }

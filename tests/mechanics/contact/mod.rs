@@ -149,8 +149,8 @@ fn check_against_all_pairs<const D: usize, L: PairLaw>(law: L, seed: u64, count:
     let packing = disks(seed, count, domain, 0.2);
     let mut assembly = Assembly::new(&packing, law).expect("no coincidence");
     let mut generator = Pcg64::seed_from_u64(seed ^ 1);
-    // First as listed, then in flight, each disk on its own straight way for up to half the skin a round: between two
-    // rounds the list stays or is made anew, and at the end disks have come together from well beyond the skin.
+    // First as listed, then in flight, each disk straight on by up to half the skin a round: between two
+    // rounds the list stays or is rebuilt, and at the end disks have come together from well beyond the skin.
     let mobile = assembly.mobile_count();
     let mut away = |_| std::array::from_fn(|_| 0.15 * SKIN * (2.0 * generator.random::<f64>() - 1.0));
     let flight: Vec<Vector<D>> = (0..mobile).map(&mut away).collect();
@@ -176,9 +176,9 @@ fn check_against_all_pairs<const D: usize, L: PairLaw>(law: L, seed: u64, count:
 
 mod agreement;
 mod derivatives;
+mod incremental_update;
 mod invariance;
 mod network;
 mod places;
 mod refusals;
-mod roaming;
 mod single;

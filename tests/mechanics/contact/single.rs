@@ -30,7 +30,7 @@ fn compare<const D: usize, L: PairLaw>(packing: &Packing<D>, law: L, length: f64
     let mut assembly = Assembly::new(packing, law).expect("no coincidence");
     let mut single = moved(&assembly, length);
     single.evaluate(&assembly);
-    single.settle(&mut assembly);
+    single.write_displacements(&mut assembly);
     assert!(length == 0.0 || assembly.longest_displacement() > 0.5 * length, "settled");
     assembly.evaluate();
     let stiffest = assembly.stiffness_bound(&mut Vec::new());

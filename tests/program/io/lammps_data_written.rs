@@ -31,7 +31,7 @@ fn a_file_of_lammps_written_again_is_the_same_packing() {
 }
 
 #[test]
-fn labels_that_are_no_ids_are_numbered_anew_and_types_go_by_radius() {
+fn labels_that_are_no_ids_are_renumbered_and_types_go_by_radius() {
     let domain = Domain::<2>::cube(9.0);
     let sites = vec![[1.0, 1.0], [3.0, 1.0], [5.0, 1.0]];
     let packing = Packing::new(domain, sites, vec![0.7, 0.5, 0.7]).expect("valid");

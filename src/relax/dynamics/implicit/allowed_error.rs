@@ -11,9 +11,9 @@ const OFF_BACKBONE: f64 = 3.0;
 
 /// The error allowed in a step.
 pub(crate) struct AllowedError<'a> {
-    /// Mean overlap \[length\].
+    /// Median overlap of the contacts \[length\].
     pub(crate) overlap: f64,
-    /// Allowed error over the mean overlap.
+    /// Allowed error over the median overlap \[1\].
     pub(crate) tolerance: f64,
     /// The disks of the backbone, in working order.
     pub(crate) backbone: &'a [bool],
@@ -21,7 +21,7 @@ pub(crate) struct AllowedError<'a> {
 
 impl AllowedError<'_> {
     /// Largest error of a disk in the last step over the allowed one \[1\]; NaN if an error is NaN.
-    pub(crate) fn share<const D: usize, L: PairLaw, C: DampingLaw>(
+    pub(crate) fn largest_ratio<const D: usize, L: PairLaw, C: DampingLaw>(
         &self,
         motion: &ImplicitMotion<D, L, C>,
         error: impl Fn(&ImplicitMotion<D, L, C>, usize) -> f64,

@@ -1,5 +1,6 @@
 //! [`Integration`]: integrates a motion from its start to rest, in steps as long as the allowed error permits.
 
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::forces::assembly::Assembly;
@@ -41,12 +42,13 @@ const INDEFINITE_RATIO: f64 = 0.5;
 /// Ratio of step lengths after a step that violated the energy balance.
 const UNBALANCED_RATIO: f64 = 0.5;
 
-/// Overlap over a radius that replaces the mean overlap in a packing without contacts \[1\].
+/// Floor of the median overlap over the smallest radius, for every packing \[1\]; its value in a packing without
+/// contacts.
 const SMALLEST_OVERLAP: f64 = 1e-6;
 
-/// Largest (hγ)² λ, or hγ λ/ζ, of the stiffest contacts; a step does not grow beyond it. Disks without contacts have
+/// Largest (hg)² λ, or hg λ/ζ, of the stiffest contacts; a step does not grow beyond it. Disks without contacts have
 /// only the mass term, and the pivots of the matrix must stay well above rounding.
-const LONGEST_STEP: f64 = 1e12;
+const LARGEST_SCALED_STIFFNESS: f64 = 1e12;
 
 impl Integration {
     pub(crate) fn relax<const D: usize, L: PairLaw, C: DampingLaw>(
@@ -72,7 +74,7 @@ impl Integration {
         cost.factorisation_count += motion.work.factorisation_count;
         cost.iteration_count += motion.work.iteration_count;
         cost.simulated_time = motion.time;
-        cost.rebuild_count = assembly.rebuild_count();
+        cost.build_count = assembly.build_count();
         cost.seconds = start.elapsed().as_secs_f64();
         Ok(Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost })
     }
@@ -126,9 +128,10 @@ impl Integration {
             if time_step == 0.0 {
                 time_step = first_step(motion, self.tolerance * overlap);
             }
-            // Explicit steps resolve opening and closing contacts. Without a backbone, their number is not limited.
-            let pressed = monitor.backbone()[..motion.assembly.mobile_count()].iter().any(|&member| member);
-            let method = if pressed { selection.method(time_step) } else { Method::Implicit };
+            // Explicit steps resolve opening and closing contacts. Without a backbone disks may fly freely for an
+            // unlimited number of explicit steps, so all steps are implicit.
+            let has_backbone = monitor.backbone()[..motion.assembly.mobile_count()].iter().any(|&member| member);
+            let method = if has_backbone { selection.method(time_step) } else { Method::Implicit };
             if method != Method::Implicit {
                 if cost.step_count >= self.step_limit {
                     return Ok(Stop::StepLimit);
@@ -151,14 +154,19 @@ impl Integration {
                 }
                 Method::Implicit => {
                     let account = (&mut *cost, &mut *balance);
-                    match self.advance(motion, account, &mut time_step, (&allowed, pressed.then_some(&selection)))? {
-                        Ok(Some(reached)) => {
+                    match self.advance(
+                        motion,
+                        account,
+                        &mut time_step,
+                        (&allowed, has_backbone.then_some(&selection)),
+                    )? {
+                        ControlFlow::Continue(Some(reached)) => {
                             totals = reached;
                             selection.after_implicit_step();
                         }
                         // The motion is at the start of the step again.
-                        Ok(None) => {}
-                        Err(stop) => return Ok(stop),
+                        ControlFlow::Continue(None) => {}
+                        ControlFlow::Break(stop) => return Ok(stop),
                     }
                 }
             }
@@ -173,22 +181,22 @@ impl Integration {
         (cost, balance): (&mut Cost, &mut EnergyBalance),
         time_step: &mut f64,
         (allowed, selection): (&AllowedError<'_>, Option<&MethodSelection>),
-    ) -> Result<Result<Option<Totals<D>>, Stop>, PackingError> {
+    ) -> Result<ControlFlow<Stop, Option<Totals<D>>>, PackingError> {
         motion.prestressed.copy_from_slice(allowed.backbone);
         motion.margin = allowed.overlap;
-        *time_step = time_step.min(motion.longest_step(LONGEST_STEP));
+        *time_step = time_step.min(motion.longest_step(LARGEST_SCALED_STIFFNESS));
         let mut rejected = false;
         loop {
             if cost.step_count >= self.step_limit {
-                return Ok(Err(Stop::StepLimit));
+                return Ok(ControlFlow::Break(Stop::StepLimit));
             }
             cost.step_count += 1;
             let ratio = match motion.step(*time_step)? {
-                Stepped::OutOfMemory => return Ok(Err(Stop::OutOfMemory)),
+                Stepped::OutOfMemory => return Ok(ControlFlow::Break(Stop::OutOfMemory)),
                 Stepped::Indefinite => INDEFINITE_RATIO,
                 Stepped::TooFar => SMALLEST_RATIO,
                 Stepped::Moved(reached) => {
-                    let error = allowed.share(motion, |motion, disk| motion.error(*time_step, disk));
+                    let error = allowed.largest_ratio(motion, |motion, disk| motion.error(*time_step, disk));
                     let ratio = step_ratio(error, LARGEST_RATIO);
                     let energies = || Energies::new(&reached, motion.kinetic_energy(), motion.dissipated);
                     let balanced = |balance: &mut EnergyBalance| match motion.has_masses() {
@@ -197,7 +205,7 @@ impl Integration {
                     };
                     if error <= 1.0 && balanced(balance) {
                         *time_step *= if rejected { ratio.min(1.0) } else { ratio };
-                        return Ok(Ok(Some(reached)));
+                        return Ok(ControlFlow::Continue(Some(reached)));
                     }
                     if error <= 1.0 { UNBALANCED_RATIO } else { ratio }
                 }
@@ -207,7 +215,7 @@ impl Integration {
             motion.take_back()?;
             *time_step *= ratio;
             if selection.is_some_and(|selection| selection.method(*time_step) != Method::Implicit) {
-                return Ok(Ok(None));
+                return Ok(ControlFlow::Continue(None));
             }
         }
     }

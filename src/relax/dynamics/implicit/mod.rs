@@ -6,7 +6,7 @@
 //!
 //! The equations are stiff: contacts relax in 10⁻³ of the time of the softest modes, and an explicit step must resolve
 //! the contacts. An implicit step need not. The estimated error sets its length: the largest error over the backbone,
-//! in units of the mean overlap. If a contact opens or closes within a step, the force or the damping has a kink or a
+//! in units of the median overlap. If a contact opens or closes within a step, the force or the damping has a kink or a
 //! jump. The stages then disagree, and the step is repeated with a shorter length. Near the minimum the steps grow
 //! without bound and become Newton steps. See [`ImplicitMotion`] for the step and [`tableau`] for the method. While
 //! collisions keep steps short, stabilised explicit steps replace them, and multirate steps resolve the colliding

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! u̇ = v        m v̇ = F(u) − ζ v − Σ c_ij (n·v_ij) n        Ẇ = ζ v² + Σ c_ij (n·v_ij)²
-//! (m/(hγ)² + (ζ + C)/(hγ) + K) U_i = r_v + (m/(hγ) + ζ + C) r_u        r_u, r_v the right sides of the stage
+//! (m/(hg)² + (ζ + C)/(hg) + K) U_i = r_v + (m/(hg) + ζ + C) r_u        r_u, r_v the right sides of the stage
 //! ```
 //!
 //! C is the matrix of the contact damping, K the [`Hessian`](crate::linear::hessian::Hessian). Damped dynamics has m =
@@ -201,7 +201,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         Ok(())
     }
 
-    /// The step at which (hγ)² λ or hγ λ/ζ equals `limit`, where λ bounds the contact stiffness \[time\]. Infinite
+    /// The step at which (hg)² λ or hg λ/ζ equals `limit`, where λ bounds the contact stiffness \[time\]. Infinite
     /// without contacts.
     pub fn longest_step(&mut self, limit: f64) -> f64 {
         let stiffness = self.assembly.stiffness_bound(&mut self.row);

@@ -24,7 +24,7 @@ pub struct ImplicitDynamics {
     pub limit: ForceLimit,
     /// Net force to which the limit applies. Changes results.
     pub net_force: NetForce,
-    /// Error allowed in one step, over the mean overlap \[1\]. Changes results where minima lie close together.
+    /// Error allowed in one step, over the median overlap \[1\]. Changes results where minima lie close together.
     pub tolerance: f64,
     /// How the motion ends.
     pub finish: Finish,
@@ -39,7 +39,7 @@ pub struct ImplicitDynamics {
 pub struct GradientFlow {
     /// Criterion of mechanical equilibrium. Changes results.
     pub limit: ForceLimit,
-    /// Error allowed in one step, over the mean overlap \[1\]. Changes results where minima lie close together.
+    /// Error allowed in one step, over the median overlap \[1\]. Changes results where minima lie close together.
     pub tolerance: f64,
     /// How the flow ends.
     pub finish: Finish,
@@ -94,7 +94,7 @@ impl Relaxer for ImplicitDynamics {
         run.relax(packing, law, &law.contact_damping(&self.damping), Inertia::Massive, trace)
     }
 
-    fn passing(&self, limit: f64) -> Option<Self> {
+    fn for_intermediate_states(&self, limit: f64) -> Option<Self> {
         self.limit.loosened(limit).map(|limit| ImplicitDynamics { limit, ..*self })
     }
 }
@@ -117,7 +117,7 @@ impl Relaxer for GradientFlow {
         run.relax(packing, law, &ContactDamping::Constant(ConstantDamping { rate: 0.0 }), Inertia::Friction(1.0), trace)
     }
 
-    fn passing(&self, limit: f64) -> Option<Self> {
+    fn for_intermediate_states(&self, limit: f64) -> Option<Self> {
         self.limit.loosened(limit).map(|limit| GradientFlow { limit, ..*self })
     }
 }

@@ -40,7 +40,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         stepped
     }
 
-    /// Estimated error of the last step for a mobile disk: that of its position, and that of its velocity times hγ
+    /// Estimated error of the last step for a mobile disk: that of its position, and that of its velocity times hg
     /// \[length\].
     pub fn error(&self, time_step: f64, disk: usize) -> f64 {
         let scale = time_step * ROS34PW2.diagonal;
@@ -70,7 +70,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
             let (done, rest) = self.stages.split_at_mut(index);
             let stage = &mut rest[0];
             let carried = ROS34PW2.carried[index];
-            // r_u is stored in `carried`; r_v + (m/(hγ) + ζ) r_u is summed in the stage.
+            // r_u is stored in `carried`; r_v + (m/(hg) + ζ) r_u is summed in the stage.
             for disk in 0..mobile {
                 let (mut moved, mut kick) = (self.velocities[disk], self.net_forces[disk]);
                 for (past, factor) in done.iter().zip(carried) {

@@ -1,7 +1,7 @@
 //! [`StepMatrix`]: the matrix of an implicit step, and the solution of its systems.
 //!
 //! ```text
-//! (m/(hγ)² + (ζ + C)/(hγ) + K) U = r
+//! (m/(hg)² + (ζ + C)/(hg) + K) U = r
 //! ```
 //!
 //! The matrix contains the present contacts and those that may close during the step. Each disk may approach others by
@@ -40,7 +40,7 @@ pub(crate) struct Link<const D: usize> {
 
 /// The terms that a step adds to the matrix.
 pub(crate) struct StepTerms<'a, C> {
-    /// hγ.
+    /// hg, step times diagonal coefficient of the tableau \[time\].
     pub(crate) scale: f64,
     pub(crate) inertia: Inertia,
     pub(crate) damping: &'a C,
@@ -61,7 +61,7 @@ pub(crate) struct StepMatrix<const D: usize> {
     /// Displacement of each mobile disk in the last accepted step; infinite before the first.
     last_distances: Vec<f64>,
     margins: Vec<f64>,
-    /// Stiffness of each pair in the matrix, with its damping over hγ.
+    /// Stiffness of each pair in the matrix, with its damping over hg.
     along: Vec<f64>,
     links: Vec<Link<D>>,
 }
@@ -153,7 +153,7 @@ impl<const D: usize> StepMatrix<D> {
         for_each_pair(
             pairs,
             &assembly.displacements,
-            &mut |&MovedPair { pair, ends, apart, distance, overlap, coefficient }| {
+            &mut |&MovedPair { pair, ends, separation, distance, overlap, coefficient }| {
                 let margin = (APPROACH_FACTOR * larger(last(ends.0), last(ends.1))).min(terms.margin);
                 self.margins[pair] = margin;
                 if overlap <= -margin {
@@ -166,7 +166,7 @@ impl<const D: usize> StepMatrix<D> {
                 };
                 let along = law.stiffness(law.force(coefficient, wide), wide) + damping / terms.scale;
                 self.along[pair] = along;
-                self.links.push(Link { ends, normal: scaled(1.0 / distance, apart), damping });
+                self.links.push(Link { ends, normal: scaled(1.0 / distance, separation), damping });
             },
         );
     }

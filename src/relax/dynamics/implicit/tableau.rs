@@ -18,7 +18,7 @@ pub const STAGE_COUNT: usize = 4;
 /// Coefficients of a method in the form above; on and above the diagonal they are 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tableau {
-    /// γ, on the diagonal of every stage.
+    /// γ, on the diagonal of every stage; g in the equations of a step, where γ is the damping.
     pub diagonal: f64,
     /// a_ij.
     pub argument: [[f64; STAGE_COUNT]; STAGE_COUNT],

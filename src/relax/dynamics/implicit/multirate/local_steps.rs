@@ -56,7 +56,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         }
         let mut shells = std::mem::take(&mut self.shells);
         let assembly = &self.assembly;
-        shells.set_list(assembly.pairs(), assembly.len(), assembly.rebuild_count());
+        shells.set_list(assembly.pairs(), assembly.len(), assembly.build_count());
         let shell_count = EXTRA_SHELLS + (AFFECTED_SHELLS * (fast.time_step * fast.stiffness.decay).sqrt()) as u32;
         let most = (LARGEST_SHARE * assembly.mobile_count() as f64) as usize;
         let momentum = total(&self.velocities);

@@ -36,7 +36,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         for_each_pair(
             pairs,
             &assembly.displacements,
-            &mut |&MovedPair { pair, ends, apart, distance, overlap, coefficient }| {
+            &mut |&MovedPair { pair, ends, separation, distance, overlap, coefficient }| {
                 if overlap + self.margin <= 0.0 {
                     return;
                 }
@@ -49,7 +49,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
                 let weight = if j < mobile { damping } else { 0.5 * damping } / (distance * distance);
                 for a in 0..D {
                     for b in 0..D {
-                        let value = weight * apart[a] * apart[b];
+                        let value = weight * separation[a] * separation[b];
                         blocks[i][a][b] += value;
                         blocks[j][a][b] += value;
                     }
