@@ -73,7 +73,7 @@ fn files_that_are_no_packing_at_all() {
 #[test]
 fn files_that_end_too_early_or_too_late() {
     assert_change_refused::<2>(XYZ, "2\n", "3\n", &["line 4", "after 2 of 3 disks"]);
-    assert_change_refused::<2>(XYZ, "2\n", "1\n", &["line 4", "more than the 1 announced"]);
+    assert_change_refused::<2>(XYZ, "2\n", "1\n", &["line 4", "more disks than the 1 announced"]);
     assert_change_refused::<2>(XYZ, "0.7 2\n", "0.7 2", &["line 4", "no line break"]);
     assert_change_refused::<2>(
         XYZ,
@@ -84,10 +84,10 @@ fn files_that_end_too_early_or_too_late() {
     assert_change_refused::<2>(XYZ, "2\n", "9999999999999999999\n", &["after 2 of 9999999999999999999 disks"]);
     assert_refused::<2>("0\npbc=\"F F F\" Properties=pos:R:3:radius:R:1\n", &["at least one disk"]);
     assert_change_refused::<2>(DATA, "2 atoms", "3 atoms", &["line 12", "after 2 of 3 disks of section Atoms"]);
-    assert_change_refused::<2>(DATA, "2 atoms", "1 atoms", &["line 12", "more than the 1 announced"]);
+    assert_change_refused::<2>(DATA, "2 atoms", "1 atoms", &["line 12", "more disks than the 1 announced"]);
     assert_change_refused::<2>(DATA, "Atoms # sphere", "", &["after 0 of 2 disks of section Atoms"]);
     assert_change_refused::<2>(DUMP, "ATOMS\n2", "ATOMS\n3", &["line 11", "after 2 of 3 disks of ITEM: ATOMS"]);
-    assert_change_refused::<2>(DUMP, "ATOMS\n2", "ATOMS\n1", &["line 11", "more than the 1 announced"]);
+    assert_change_refused::<2>(DUMP, "ATOMS\n2", "ATOMS\n1", &["line 11", "more disks than the 1 announced"]);
     assert_change_refused::<2>(DUMP, "-0.5 0.5\n", "", &["line 7", "after 2 of 3 sides of the box"]);
 }
 
