@@ -53,26 +53,26 @@
 //! | [`vector`] | vectors of D = 2 or 3 components, error-free sums | [`Vector`](vector::Vector) |
 //! | `sparse` (feature `linear`) | one triangle of a symmetric matrix in compressed columns | `sparse::SymmetricMatrix` |
 //! | [`memory`] | the memory limit for a count | [`Memory`](memory::Memory) |
-//! | [`packing`] | centres, radii, domain, which disks are held | [`Packing`](packing::Packing) |
-//! | [`io`] | packings in files | [`read_packing`](io::read_packing) |
-//! | [`law`] | force and energy of one contact, damping, sites | [`PairLaw`](law::PairLaw), [`Hertzian`](law::Hertzian) |
+//! | [`packing`] | centres, radii, domain, which disks are held | [`Packing`] |
+//! | [`io`] | packings in files | [`read_packing`] |
+//! | [`law`] | force and energy of one contact, damping, sites | [`PairLaw`], [`Hertzian`] |
 //! | [`neighbours`] | pairs that may touch: cells, Verlet lists | [`PairList`](neighbours::PairList) |
 //! | [`forces`] | positions and forces of a moving packing; the loop over contacts | [`Assembly`](forces::Assembly) |
-//! | [`network`] | contacts, rattlers, coordination, pressure | [`ContactNetwork`](network::ContactNetwork) |
+//! | [`network`] | contacts, rattlers, coordination, pressure | [`ContactNetwork`] |
 //! | `linear` (feature `linear`) | Hessian, factorisations, the response to an infinitesimal inflation, elastic moduli, modes | `linear::LinearResponse`, `linear::ElasticModuli` |
-//! | [`relax`] | relaxation of a packing to rest | [`Relaxer`](relax::Relaxer), [`Fire`](relax::Fire) |
+//! | [`relax`] | relaxation of a packing to rest | [`Relaxer`](relax::Relaxer), [`Fire`] |
 //! | [`certificate`] | verified properties of a state at rest | [`Certificate`](certificate::Certificate) |
 //! | [`preparation`] | from random points to a packing at a packing fraction or a pressure | [`prepare`] |
 //! | [`inflation`] | inflation of one disk and relaxation of the others; deflation | [`inflate`] |
 //! | [`lattice`] | lattices with known continuum response | [`Lattice`](lattice::Lattice) |
-//! | [`displacement`] | displacements of all disks | [`DisplacementField`](displacement::DisplacementField) |
+//! | [`displacement`] | displacements of all disks | [`DisplacementField`] |
 //! | `plastic` (feature `linear`) | the part of a response beyond the linear one, and where it begins | `plastic::PlasticPart` |
-//! | [`observe`] | radial and angular profile, angular modes, spectrum and correlation, contact forces and changes, penetration and isostatic length | [`RadialProfile`](observe::RadialProfile), [`AngularCorrelation`](observe::angular::AngularCorrelation) |
-//! | [`reference`](mod@reference) | exact solutions, elastic and screened | [`Annulus`](reference::Annulus) |
+//! | [`observe`] | radial and angular profile, angular modes, spectrum and correlation, contact forces and changes, penetration and isostatic length | [`RadialProfile`], [`AngularCorrelation`](observe::angular::AngularCorrelation) |
+//! | [`reference`](mod@reference) | exact solutions, elastic and screened | [`Annulus`] |
 //! | `fit` (feature `fit`) | a profile against both solutions, with errors and a decision; slope and crossover of an angular spectrum; crossings, powers and collapses of ensembles | `fit::profile::fit_radial_profile`, `fit::angular::fit_slope`, `fit::ensemble` |
 //! | `protocol` (feature `linear`) | whether relaxers end in the same minimum | `protocol::ProtocolSensitivity` |
 //! | [`verdict`] | whether states are at rest, so that a phase and fits may be reported | [`RestVerdict`](verdict::RestVerdict) |
-//! | [`scene`] | all settings of a run as plain data | [`Scene`](scene::Scene) |
+//! | [`scene`] | all settings of a run as plain data | [`Scene`] |
 //! | [`response`] | all observables of one inflation, and its phase | [`Response`](response::Response) |
 //! | [`analysis`] | the same for states relaxed by other programs | [`Analysis`](analysis::Analysis) |
 //! | [`run`] | from a scene to a report, one line per stage | [`run::run`] |

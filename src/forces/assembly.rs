@@ -1,7 +1,7 @@
 //! [`Assembly`]: a packing laid out for the hot loop, with its forces and its neighbour list.
 //!
-//! Three parts: where the disks stand ([`Layout`]), their displacements and forces, and the lists of pairs
-//! ([`ListKeeper`]). A relaxer moves the displacements, records by how much, and evaluates the forces.
+//! Three parts: where the disks stand (`Layout`), their displacements and forces, and the lists of pairs
+//! (`ListKeeper`). A relaxer moves the displacements, records by how much, and evaluates the forces.
 
 use std::ops::{Range, RangeInclusive};
 

@@ -8,7 +8,7 @@
 //! P is an elimination order from [`ordering`]. The symbolic analysis and the buffers of factors are reused, so further
 //! matrices with the same pattern cost only their numerical factorisation. L D Lᵀ is computed without pivoting and may
 //! lose digits. Each solution is therefore refined until its backward error no longer falls, and refused if that is
-//! above [`ACCURACY`](crate::linear::solution::ACCURACY).
+//! above [`ACCURACY`].
 //!
 //! # Source
 //! faer 0.24 (sparse simplicial and supernodal factorisations). Backward error: Rigal, Gaches (1967), J. ACM 14, 543;

@@ -29,7 +29,7 @@ pub struct Ending {
     /// Largest distance of a disk of both backbones from its position in the reference \[length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distance: Option<f64>,
-    /// Labels of the disks farther away than [`ProtocolSettings::differing`] mean overlaps, farthest first.
+    /// Labels of the disks farther away than [`ProtocolSettings::differing`](crate::protocol::ProtocolSettings::differing) mean overlaps, farthest first.
     pub differing: Vec<u64>,
     /// Number of contacts of the backbone that only one of this state and the reference has.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -20,7 +20,7 @@
 //! 4 (1 + 0.4 D/m). This is two standard errors with Bartlett's correction for a small number m of powers; 0.4 is the
 //! value for independent exponential variates, by Lawley's expansion. m/D is the number of independent powers with the
 //! same scatter: at few irregular angles the leakage of low frequencies is common to all
-//! ([`dependence`](crate::observe::angular::power_dependence)). The standard error is a fourth of the interval.
+//! ([`dependence`](crate::observe::angular::dependence)). The standard error is a fourth of the interval.
 //!
 //! Source: Whittle (1953), Ark. Mat. 2, 423; Sykulski et al. (2019), Biometrika 106, 251; Lawley (1956), Biometrika 43,
 //! 295.
