@@ -186,7 +186,7 @@ fn a_relaxation_has_the_bits_of_one_thread() {
             let law = Hertzian::default();
             let here = fire.relax(start.clone(), &law, &mut ()).expect("disks apart");
             let alone = on_one_thread(|| fire.relax(start.clone(), &law, &mut ())).expect("disks apart");
-            assert!(here.cost.build_count > 1 || !makes_lists, "no list was made anew");
+            assert!(here.cost.build_count > 1 || !makes_lists, "no list was rebuilt");
             assert_eq!(here.cost.force_evaluation_count, alone.cost.force_evaluation_count);
             assert_eq!(here.state.positions(), alone.state.positions());
             assert_eq!(here.state.corrections(), alone.state.corrections());

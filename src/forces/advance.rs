@@ -1,4 +1,4 @@
-//! One step and the forces after it, tile by tile, and within a tile group by group of its pairs. Positions are still
+//! One step and the forces after it, tile by tile. Positions are still
 //! in cache when their forces are summed, and forces are still in cache when the relaxer reads them. On one thread the
 //! border pairs follow as soon as both sides have moved.
 //!
