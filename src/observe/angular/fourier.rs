@@ -7,13 +7,9 @@
 //! 443).
 
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 use num_complex::Complex64;
-use rustfft::algorithm::butterflies::{Butterfly1, Butterfly2, Butterfly4, Butterfly8, Butterfly16, Butterfly32};
-use rustfft::algorithm::{BluesteinsAlgorithm, Radix4};
-use rustfft::num_traits::Zero;
-use rustfft::{Fft, FftDirection};
+use rustfft::{FftPlanner, num_traits::Zero};
 
 /// Frequencies between two exact evaluations of the rotation.
 const RESTART: usize = 64;
@@ -147,26 +143,5 @@ pub(super) fn transform(values: &[f64]) -> Vec<Complex64> {
 /// Like [`transform`], for complex numbers.
 pub(super) fn transform_in_place(buffer: &mut [Complex64]) {
     // Without rustfft's features all processors run the same code, so the bits are the same.
-    let size = buffer.len();
-    let fft = if size.is_power_of_two() {
-        power_of_two(size)
-    } else {
-        Arc::new(BluesteinsAlgorithm::new(size, power_of_two((2 * size - 1).next_power_of_two())))
-    };
-    fft.process(buffer);
-}
-
-/// The transform of a power of two. The planner of rustfft chooses the same, but it compiles transforms of all lengths.
-fn power_of_two(size: usize) -> Arc<dyn Fft<f64>> {
-    let forward = FftDirection::Forward;
-    match size.trailing_zeros() {
-        0 => Arc::new(Butterfly1::new(forward)),
-        1 => Arc::new(Butterfly2::new(forward)),
-        2 => Arc::new(Butterfly4::new(forward)),
-        3 => Arc::new(Butterfly8::new(forward)),
-        4 => Arc::new(Butterfly16::new(forward)),
-        5 => Arc::new(Butterfly32::new(forward)),
-        odd if odd % 2 == 1 => Arc::new(Radix4::new_with_base((odd - 3) / 2, Arc::new(Butterfly8::new(forward)))),
-        even => Arc::new(Radix4::new_with_base((even - 4) / 2, Arc::new(Butterfly16::new(forward)))),
-    }
+    FftPlanner::new().plan_fft_forward(buffer.len()).process(buffer);
 }
