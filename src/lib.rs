@@ -72,6 +72,7 @@
 //! | `fit` (feature `fit`) | a profile against both solutions, with errors and a decision; slope and crossover of an angular spectrum; crossings, powers and collapses of ensembles | `fit::profile::fit_radial_profile`, `fit::angular::fit_slope`, `fit::ensemble` |
 //! | `protocol` (feature `linear`) | whether relaxers end in the same minimum | `protocol::ProtocolSensitivity` |
 //! | [`verdict`] | whether states are at rest, so that a phase and fits may be reported | [`RestVerdict`](verdict::RestVerdict) |
+//! | [`inspection`] | the properties of a packing file | [`inspect`](inspection::inspect()) |
 //! | [`scene`] | all settings of a run as plain data | [`Scene`] |
 //! | [`response`] | all observables of one inflation, and its phase | [`Response`](response::Response) |
 //! | [`analysis`] | the same for states relaxed by other programs | [`Analysis`](analysis::Analysis) |
@@ -113,6 +114,7 @@ pub mod displacement;
 pub mod fit;
 pub mod forces;
 pub mod inflation;
+pub mod inspection;
 pub mod io;
 pub mod lattice;
 pub mod law;

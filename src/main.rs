@@ -4,15 +4,10 @@
 mod analyse;
 #[path = "cli/contact_law.rs"]
 mod contact_law;
-#[cfg(feature = "linear")]
-#[path = "cli/elasticity.rs"]
-mod elasticity;
 #[path = "cli/exact/mod.rs"]
 mod exact;
 #[path = "cli/exit_code.rs"]
 mod exit_code;
-#[path = "cli/inspect.rs"]
-mod inspect;
 #[cfg(feature = "linear")]
 #[path = "cli/precision.rs"]
 mod precision;
@@ -32,6 +27,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
+use jamscope::inspection::inspect;
 use jamscope::read_packing;
 use jamscope::relax::RelaxerChoice;
 use jamscope::report;
@@ -222,9 +218,9 @@ fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
     let mut settings = VerdictSettings::default();
     override_limit(&mut settings, arguments.not_at_rest);
     let dimension = usize::from(arguments.dimension);
-    let inspection = inspect::inspect(&arguments.packing, law, dimension, mode_count, &settings)?;
+    let inspection = inspect(&arguments.packing, law, dimension, mode_count, &settings)?;
     if arguments.json {
-        print(&format!("{}\n", serde_json::to_string_pretty(&inspection)?))?;
+        print(&format!("{}\n", inspection.to_json()?))?;
     } else {
         print(&inspection.to_string())?;
     }

@@ -124,22 +124,7 @@ fn read_study(path: &Path) -> Result<Study, Failure> {
         let how = "`jamscope study --recipe NAME --print` prints a study";
         return Err(format!("{}: the file is empty; {how}", path.display()).into());
     }
-    // A scene without samples is the default of a study, but not of a scene.
-    let mut table: toml::Table = toml::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?;
-    let scene = table.entry("scene").or_insert_with(|| toml::Value::Table(toml::Table::new()));
-    if let Some(scene) = scene.as_table_mut() {
-        scene.entry("sample").or_insert_with(|| toml::Value::Array(Vec::new()));
-    }
-    let protocol = table.remove("protocol");
-    let mut study: Study = table.try_into().map_err(|error| format!("{}: {error}", path.display()))?;
-    if let Some(protocol) = protocol {
-        let protocol: ProtocolChoice =
-            protocol.try_into().map_err(|error| format!("{}: protocol: {error}", path.display()))?;
-        if !study.relaxers.is_empty() {
-            return Err(format!("{}: protocol and relaxers: give only one of them", path.display()).into());
-        }
-        study.relaxers = vec![protocol.relaxer()];
-    }
+    let study: Study = toml::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?;
     study.check().map_err(|error| format!("{}: {error}", path.display()))?;
     refuse_cut(&text).map_err(|message| format!("{}: {message}", path.display()))?;
     Ok(study)

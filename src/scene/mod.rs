@@ -11,7 +11,7 @@ mod observables;
 mod protocol;
 pub(crate) mod reduced_pressure;
 mod scale;
-mod scene_input;
+pub(crate) mod scene_input;
 mod size;
 mod source;
 

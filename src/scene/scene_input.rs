@@ -64,6 +64,13 @@ impl<'de> Deserialize<'de> for Scene {
     }
 }
 
+/// As a [`Scene`], but without samples unless the file has some: the scene of a study.
+pub(crate) fn without_samples<'de, R: Deserializer<'de>>(reader: R) -> Result<Scene, R::Error> {
+    let mut written = Written::deserialize(reader)?;
+    written.sample.get_or_insert_default();
+    Ok(Scene::from(written))
+}
+
 impl From<Written> for Scene {
     fn from(written: Written) -> Self {
         let Written { protocol, disk_count, law, mixture, preparation, inflation, observables, verdict, sample } =

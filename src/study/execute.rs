@@ -68,7 +68,7 @@ pub fn execute(
     folder: &Path,
     shard: Shard,
     replace: bool,
-    progress: &impl StudyProgress,
+    progress: &dyn StudyProgress,
 ) -> Result<Execution, ExecuteError> {
     let plan = Plan::of(study)?;
     plan.check_memory(Memory::of_machine(), run::thread_count()).map_err(StudyError::from)?;
@@ -96,7 +96,7 @@ pub fn execute_and_merge(
     study: &Study,
     folder: &Path,
     replace: bool,
-    progress: &impl StudyProgress,
+    progress: &dyn StudyProgress,
 ) -> Result<Whole, MergeError> {
     let plan = Plan::of(study)?;
     plan.check_memory(Memory::of_machine(), run::thread_count()).map_err(StudyError::from)?;
@@ -114,7 +114,7 @@ fn execute_in(
     store: &Store,
     plan: &Plan,
     shard: Shard,
-    progress: &impl StudyProgress,
+    progress: &dyn StudyProgress,
 ) -> Result<Execution, ExecuteError> {
     let _lock = store.lock(shard)?;
     let tasks: Vec<&Task> = plan.tasks.iter().filter(|task| shard.has(task.index)).collect();

@@ -25,6 +25,7 @@ mod settings;
 mod statistics;
 mod store;
 mod store_error;
+mod study_input;
 
 pub use execute::{ExecuteError, Execution, StudyProgress, Whole, execute, execute_and_merge};
 pub use lock::StudyLock;

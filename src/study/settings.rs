@@ -10,8 +10,9 @@ use crate::scene::reduced_pressure::reduction;
 use crate::scene::{NotWritable, ProtocolChoice, Sample, Scene, SceneError, Source, finite_numbers};
 
 /// A scene and the lists of its varied parameters.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+///
+/// In a file, `protocol` may stand in place of `relaxers`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Study {
     /// Common settings of all samples. It contains no samples; the lists define them.
     pub scene: Scene,

@@ -170,12 +170,7 @@ pub fn study(path: &Path) -> Fault {
 /// As `jamscope study` reads it; [`super::commands::plan`] goes through the program itself.
 fn read_study(path: &Path) -> Result<Study, String> {
     let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
-    let mut table: toml::Table = toml::from_str(&text).map_err(|error| error.to_string())?;
-    let scene = table.entry("scene").or_insert_with(|| toml::Value::Table(toml::Table::new()));
-    if let Some(scene) = scene.as_table_mut() {
-        scene.entry("sample").or_insert_with(|| toml::Value::Array(Vec::new()));
-    }
-    let study: Study = table.try_into().map_err(|error: toml::de::Error| error.to_string())?;
+    let study: Study = toml::from_str(&text).map_err(|error| error.to_string())?;
     study.check().map_err(|error| error.to_string())?;
     scene_file::refuse_cut(&text)?;
     Ok(study)

@@ -1,22 +1,26 @@
-//! `jamscope inspect`: properties of a packing file.
+//! [`Inspection`]: the properties of a packing file, from its energy to its lowest modes, as `jamscope inspect` prints them.
+
+#[cfg(feature = "linear")]
+mod elasticity;
 
 use std::path::Path;
 
-use jamscope::certificate::Certificate;
 #[cfg(feature = "linear")]
-use jamscope::certificate::Stability;
-use jamscope::io::read_packing;
-use jamscope::law::LawChoice;
-use jamscope::memory::Limit;
-use jamscope::observe::ForceDistribution;
-use jamscope::observe::force_distribution::PERCENTILES;
-use jamscope::observe::state::State;
-use jamscope::packing::{Domain, Packing};
-use jamscope::verdict::{RestVerdict, VerdictSettings};
+pub use elasticity::{Constants, Elasticity, ModeSummary, Moduli, Vibrations};
 use serde::Serialize;
 
+use crate::certificate::Certificate;
 #[cfg(feature = "linear")]
-use crate::elasticity::{Elasticity, Vibrations};
+use crate::certificate::Stability;
+use crate::io::{ReadError, read_packing};
+use crate::law::choice::{LawChoice, LawError};
+use crate::memory::{Limit, TooLarge};
+use crate::observe::ForceDistribution;
+use crate::observe::force_distribution::PERCENTILES;
+use crate::observe::state::State;
+use crate::packing::{Domain, Packing, PackingError};
+use crate::vector::larger;
+use crate::verdict::{RestVerdict, VerdictSettings};
 
 /// The properties of a packing.
 #[derive(Debug, Serialize)]
@@ -24,127 +28,181 @@ pub struct Inspection {
     /// Whether it is at rest; otherwise the likely causes.
     pub verdict: RestVerdict,
     /// The contact law used.
-    law: LawChoice,
+    pub law: LawChoice,
     /// Dimension of space.
-    dimension: usize,
+    pub dimension: usize,
     /// Number of disks.
-    disk_count: usize,
+    pub disk_count: usize,
     /// Number of held disks.
-    held_count: usize,
+    pub held_count: usize,
     /// Sides of the box; absent in the open plane.
     #[serde(skip_serializing_if = "Option::is_none")]
-    box_sides: Option<Vec<f64>>,
+    pub box_sides: Option<Vec<f64>>,
     /// Packing fraction; absent in the open plane.
     #[serde(skip_serializing_if = "Option::is_none")]
-    packing_fraction: Option<f64>,
+    pub packing_fraction: Option<f64>,
     /// Elastic energy.
-    energy: f64,
+    pub energy: f64,
     /// Pressure; absent in the open plane, like all quantities per volume.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pressure: Option<f64>,
+    pub pressure: Option<f64>,
     /// Stress tensor, positive in compression.
     #[serde(skip_serializing_if = "Option::is_none")]
-    stress: Option<Vec<Vec<f64>>>,
+    pub stress: Option<Vec<Vec<f64>>>,
     /// Number of contacts.
-    contact_count: usize,
+    pub contact_count: usize,
     /// Number of contacts within the backbone.
-    backbone_contact_count: usize,
+    pub backbone_contact_count: usize,
     /// Number of rattlers.
-    rattler_count: usize,
+    pub rattler_count: usize,
     /// Coordination of the backbone, Z.
-    coordination: f64,
+    pub coordination: f64,
     /// Z of an isostatic packing, 2 D.
-    isostatic_coordination: usize,
+    pub isostatic_coordination: usize,
     /// Mean contact force of the backbone.
-    mean_contact_force: f64,
+    pub mean_contact_force: f64,
     /// Largest contact force.
-    largest_contact_force: f64,
+    pub largest_contact_force: f64,
     /// Largest net force on any mobile disk.
-    largest_net_force: f64,
+    pub largest_net_force: f64,
     /// Mean overlap of the contacts.
-    mean_overlap: f64,
+    pub mean_overlap: f64,
     /// Largest overlap.
-    largest_overlap: f64,
+    pub largest_overlap: f64,
     /// Its certificate.
-    certificate: Certificate,
+    pub certificate: Certificate,
     /// Contact forces of the backbone; absent without one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    forces: Option<ForceDistribution>,
+    pub forces: Option<ForceDistribution>,
     /// Elastic moduli, or why there are none.
     #[cfg(feature = "linear")]
-    moduli: Elasticity,
+    pub moduli: Elasticity,
     /// The lowest vibrational modes, or why there are none; absent if not requested.
     #[cfg(feature = "linear")]
     #[serde(skip_serializing_if = "Option::is_none")]
-    modes: Option<Vibrations>,
+    pub modes: Option<Vibrations>,
 }
 
-/// Reads a packing of either dimension and analyses it under a law.
+/// Why a packing file has no inspection.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum InspectionError {
+    /// A parameter of the law is invalid.
+    #[error(transparent)]
+    Law(#[from] LawError),
+    /// The file cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The packing has no contact network.
+    #[error("{path}: {source}")]
+    Packing {
+        /// The file.
+        path: String,
+        /// The error.
+        source: PackingError,
+    },
+    /// More modes than coordinates.
+    #[error("{path}: {source}")]
+    Modes {
+        /// The file.
+        path: String,
+        /// The error.
+        source: TooLarge,
+    },
+}
+
+/// Reads a packing of dimension 2 or 3 (any other number is taken as 2) and measures it under a law. `mode_count` is the number of vibrational
+/// modes, from the lowest; the feature `linear` must be on for any.
+///
+/// # Errors
+/// See [`InspectionError`].
 pub fn inspect(
     path: &Path,
     law: LawChoice,
     dimension: usize,
     mode_count: usize,
     settings: &VerdictSettings,
-) -> Result<Inspection, Box<dyn std::error::Error>> {
+) -> Result<Inspection, InspectionError> {
     law.check()?;
-    let inspection = if dimension == 3 {
-        with_law(&read_packing::<3>(path)?, law, mode_count, settings)
-    } else {
-        with_law(&read_packing::<2>(path)?, law, mode_count, settings)
+    let name = || path.display().to_string();
+    let modes = |coordinate_count: usize| {
+        let limit = Limit { largest: coordinate_count as u64, reason: "the number of coordinates of all disks" };
+        let checked = limit.check("--modes", mode_count, 8.0 * coordinate_count as f64);
+        checked.map_err(|source| InspectionError::Modes { path: name(), source })
     };
-    inspection.map_err(|error| format!("{}: {error}", path.display()).into())
+    let measured = if dimension == 3 {
+        let packing = read_packing::<3>(path)?;
+        modes(3 * packing.len())?;
+        Inspection::of(&packing, law, mode_count, settings)
+    } else {
+        let packing = read_packing::<2>(path)?;
+        modes(2 * packing.len())?;
+        Inspection::of(&packing, law, mode_count, settings)
+    };
+    measured.map_err(|source| InspectionError::Packing { path: name(), source })
 }
 
-#[cfg_attr(not(feature = "linear"), allow(unused_variables, reason = "modes are of the feature `linear`"))]
-fn with_law<const D: usize>(
-    packing: &Packing<D>,
-    choice: LawChoice,
-    mode_count: usize,
-    settings: &VerdictSettings,
-) -> Result<Inspection, Box<dyn std::error::Error>> {
-    let law = &choice;
-    let largest = Limit { largest: (D * packing.len()) as u64, reason: "the number of coordinates of all disks" };
-    largest.check("--modes", mode_count, 8.0 * (D * packing.len()) as f64)?;
-    let state = State::new(packing, law)?;
-    let verdict = RestVerdict::of(&[("in the file", &state)], law, &choice, None, settings);
-    let network = state.network;
-    let volume = packing.domain().volume();
-    let contacts = &network.contacts;
-    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, jamscope::vector::larger);
-    Ok(Inspection {
-        verdict,
-        law: choice,
-        dimension: D,
-        disk_count: packing.len(),
-        held_count: packing.held().iter().filter(|&&held| held).count(),
-        box_sides: match packing.domain() {
-            Domain::Periodic { lengths, .. } => Some(lengths.to_vec()),
-            Domain::Open => None,
-        },
-        packing_fraction: packing.packing_fraction(),
-        energy: network.energy(),
-        pressure: volume.map(|volume| network.pressure(volume)),
-        stress: volume.map(|volume| network.stress(volume).iter().map(|row| row.to_vec()).collect()),
-        contact_count: contacts.len(),
-        backbone_contact_count: network.backbone_contacts().count(),
-        rattler_count: network.rattlers().count(),
-        coordination: network.coordination(),
-        isostatic_coordination: 2 * D,
-        mean_contact_force: network.mean_contact_force(),
-        largest_contact_force: largest(&mut contacts.iter().map(|contact| contact.force)),
-        largest_net_force: network.largest_net_force(),
-        // From a positive zero: an empty sum of floats is a negative one.
-        mean_overlap: contacts.iter().map(|contact| contact.overlap).fold(0.0, |sum, overlap| sum + overlap)
-            / contacts.len().max(1) as f64,
-        largest_overlap: largest(&mut contacts.iter().map(|contact| contact.overlap)),
-        certificate: Certificate::of(packing, law, None)?,
-        forces: ForceDistribution::of(&network),
-        #[cfg(feature = "linear")]
-        moduli: Elasticity::of(packing, law),
-        #[cfg(feature = "linear")]
-        modes: (mode_count > 0).then(|| Vibrations::of(packing, law, mode_count)),
-    })
+impl Inspection {
+    /// The properties of a packing, with this number of vibrational modes, at most the number of coordinates.
+    ///
+    /// # Errors
+    /// See [`State::new`].
+    #[cfg_attr(not(feature = "linear"), allow(unused_variables, reason = "modes are of the feature `linear`"))]
+    pub fn of<const D: usize>(
+        packing: &Packing<D>,
+        choice: LawChoice,
+        mode_count: usize,
+        settings: &VerdictSettings,
+    ) -> Result<Self, PackingError> {
+        let law = &choice;
+        let state = State::new(packing, law)?;
+        let verdict = RestVerdict::of(&[("in the file", &state)], law, &choice, None, settings);
+        let network = state.network;
+        let volume = packing.domain().volume();
+        let contacts = &network.contacts;
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, larger);
+        Ok(Inspection {
+            verdict,
+            law: choice,
+            dimension: D,
+            disk_count: packing.len(),
+            held_count: packing.held().iter().filter(|&&held| held).count(),
+            box_sides: match packing.domain() {
+                Domain::Periodic { lengths, .. } => Some(lengths.to_vec()),
+                Domain::Open => None,
+            },
+            packing_fraction: packing.packing_fraction(),
+            energy: network.energy(),
+            pressure: volume.map(|volume| network.pressure(volume)),
+            stress: volume.map(|volume| network.stress(volume).iter().map(|row| row.to_vec()).collect()),
+            contact_count: contacts.len(),
+            backbone_contact_count: network.backbone_contacts().count(),
+            rattler_count: network.rattlers().count(),
+            coordination: network.coordination(),
+            isostatic_coordination: 2 * D,
+            mean_contact_force: network.mean_contact_force(),
+            largest_contact_force: largest(&mut contacts.iter().map(|contact| contact.force)),
+            largest_net_force: network.largest_net_force(),
+            // From a positive zero: an empty sum of floats is a negative one.
+            mean_overlap: contacts.iter().map(|contact| contact.overlap).fold(0.0, |sum, overlap| sum + overlap)
+                / contacts.len().max(1) as f64,
+            largest_overlap: largest(&mut contacts.iter().map(|contact| contact.overlap)),
+            certificate: Certificate::of(packing, law, None)?,
+            forces: ForceDistribution::of(&network),
+            #[cfg(feature = "linear")]
+            moduli: Elasticity::of(packing, law),
+            #[cfg(feature = "linear")]
+            modes: (mode_count > 0).then(|| Vibrations::of(packing, law, mode_count)),
+        })
+    }
+
+    /// The inspection as JSON, with every number in full precision.
+    ///
+    /// # Errors
+    /// See [`serde_json::to_string_pretty`].
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        serde_json::to_string_pretty(self)
+    }
 }
 
 /// The lines of a certificate.

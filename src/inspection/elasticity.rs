@@ -1,14 +1,16 @@
-//! Elastic moduli and vibrational modes of a packing file, for `jamscope inspect`.
+//! Summaries of the elastic moduli and of the lowest vibrational modes of a packing.
 
 use std::collections::BTreeMap;
 use std::fmt::Formatter;
 
-use jamscope::law::PairLaw;
-use jamscope::linear::Prestress;
-use jamscope::linear::moduli::Stiffness;
-use jamscope::linear::{ElasticModuli, VibrationalModes};
-use jamscope::packing::Packing;
 use serde::Serialize;
+
+use crate::law::PairLaw;
+use crate::linear::Prestress;
+use crate::linear::modes::Mode;
+use crate::linear::moduli::Stiffness;
+use crate::linear::{ElasticModuli, VibrationalModes};
+use crate::packing::Packing;
 
 /// Elastic moduli, or why there are none.
 #[derive(Debug, Serialize)]
@@ -23,23 +25,27 @@ pub enum Elasticity {
 /// Summary of the elastic moduli.
 #[derive(Debug, Serialize)]
 pub struct Moduli {
-    affine: Constants,
-    relaxed: Constants,
+    /// At fixed relative positions of the disks.
+    pub affine: Constants,
+    /// After the relaxation of all disks.
+    pub relaxed: Constants,
     /// Largest backward error of a solution.
-    backward_error: f64,
+    pub backward_error: f64,
 }
 
-/// Summary of the elastic constants.
+/// Summary of the elastic constants \[force / length^(D−1)\].
 #[derive(Debug, Serialize)]
-struct Constants {
-    /// -V dp/dV.
-    bulk: f64,
-    /// Mean, softest and stiffest shear modulus.
-    shear_mean: f64,
-    shear_smallest: f64,
-    shear_largest: f64,
+pub struct Constants {
+    /// −V dp/dV.
+    pub bulk: f64,
+    /// Shear modulus, the mean over all directions.
+    pub shear_mean: f64,
+    /// Shear modulus in the softest direction.
+    pub shear_smallest: f64,
+    /// Shear modulus in the stiffest direction.
+    pub shear_largest: f64,
     /// C_abcd by its indices, each independent one once.
-    constants: BTreeMap<String, f64>,
+    pub constants: BTreeMap<String, f64>,
 }
 
 impl Constants {
@@ -116,11 +122,11 @@ pub enum Vibrations {
 #[derive(Debug, Serialize)]
 pub struct ModeSummary {
     /// λ = ω² for masses 1.
-    eigenvalue: f64,
+    pub eigenvalue: f64,
     /// ‖K e − λ e‖ / ‖K‖.
-    residual: f64,
+    pub residual: f64,
     /// Participation ratio.
-    participation_ratio: f64,
+    pub participation_ratio: f64,
 }
 
 impl Vibrations {
@@ -128,7 +134,7 @@ impl Vibrations {
     pub fn of<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L, count: usize) -> Self {
         match VibrationalModes::lowest(packing, law, Prestress::Included, count) {
             Ok(found) => {
-                let summary = |mode: &jamscope::linear::modes::Mode<D>| ModeSummary {
+                let summary = |mode: &Mode<D>| ModeSummary {
                     eigenvalue: mode.eigenvalue,
                     residual: mode.residual,
                     participation_ratio: mode.participation_ratio,
