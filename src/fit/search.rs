@@ -51,27 +51,52 @@ pub(super) struct Minimum {
 }
 
 /// Minimum and interval on an ascending grid of at least three points.
-///
-/// The interval ends where the function stays above; humps inside it are included.
 pub(super) fn minimum(grid: &[f64], rise: f64, function: &dyn Fn(f64) -> f64) -> Minimum {
     let values: Vec<f64> = grid.iter().map(|&at| function(at)).collect();
-    let lowest = (0..grid.len()).fold(0, |best, i| if values[i] < values[best] { i } else { best });
-    let (low, high) = (grid[lowest.saturating_sub(1)], grid[(lowest + 1).min(grid.len() - 1)]);
-    let polished = Executor::new(Cost(function), BrentOpt::new(low, high).set_tolerance(1e-8, 1e-10))
-        .configure(|state| state.max_iters(STEP_LIMIT))
-        .run()
-        .ok()
-        .and_then(|result| result.state().get_best_param().copied())
-        .map(|at| (at, function(at)))
-        .filter(|&(_, value)| value < values[lowest]);
-    let (at, value) = polished.unwrap_or((grid[lowest], values[lowest]));
-    let level = value + rise;
-    let inside = |i: &usize| values[*i] <= level;
-    let first = (0..grid.len()).find(inside).map_or(at, |i| grid[i]).min(at);
-    let last = (0..grid.len()).rev().find(inside).map_or(at, |i| grid[i]).max(at);
-    let lower = grid.iter().rev().find(|&&point| point < first).map(|&out| edge(out, first, level, function));
-    let upper = grid.iter().find(|&&point| point > last).map(|&out| edge(out, last, level, function));
-    Minimum { at, value, lower, upper }
+    let found = GridMinimum::of(grid, &values, function);
+    let [lower, upper] = found.ends(rise);
+    Minimum { at: found.at, value: found.value, lower, upper }
+}
+
+/// The refined minimum on an ascending grid of at least three points, at which the values of the function are given.
+#[derive(Clone, Copy)]
+pub(super) struct GridMinimum<'a> {
+    grid: &'a [f64],
+    values: &'a [f64],
+    function: &'a dyn Fn(f64) -> f64,
+    pub at: f64,
+    pub value: f64,
+}
+
+impl<'a> GridMinimum<'a> {
+    pub fn of(grid: &'a [f64], values: &'a [f64], function: &'a dyn Fn(f64) -> f64) -> Self {
+        let lowest = (0..grid.len()).fold(0, |best, i| if values[i] < values[best] { i } else { best });
+        let (low, high) = (grid[lowest.saturating_sub(1)], grid[(lowest + 1).min(grid.len() - 1)]);
+        let polished = Executor::new(Cost(function), BrentOpt::new(low, high).set_tolerance(1e-8, 1e-10))
+            .configure(|state| state.max_iters(STEP_LIMIT))
+            .run()
+            .ok()
+            .and_then(|result| result.state().get_best_param().copied())
+            .map(|at| (at, function(at)))
+            .filter(|&(_, value)| value < values[lowest]);
+        let (at, value) = polished.unwrap_or((grid[lowest], values[lowest]));
+        GridMinimum { grid, values, function, at, value }
+    }
+
+    /// The ends of the connected interval around the minimum in which the rise is below `rise`; none at an end of the
+    /// grid.
+    ///
+    /// The interval ends where the function stays above; humps inside it are included.
+    pub fn ends(&self, rise: f64) -> [Option<f64>; 2] {
+        let GridMinimum { grid, values, function, at, value } = *self;
+        let level = value + rise;
+        let inside = |i: &usize| values[*i] <= level;
+        let first = (0..grid.len()).find(inside).map_or(at, |i| grid[i]).min(at);
+        let last = (0..grid.len()).rev().find(inside).map_or(at, |i| grid[i]).max(at);
+        let lower = grid.iter().rev().find(|&&point| point < first).map(|&out| edge(out, first, level, function));
+        let upper = grid.iter().find(|&&point| point > last).map(|&out| edge(out, last, level, function));
+        [lower, upper]
+    }
 }
 
 /// Where the function crosses `level` between a point above it and one not above it: false position, halving the value

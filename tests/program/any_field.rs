@@ -1,6 +1,7 @@
 //! Scenes and studies with any value in any field: refused, or written and read back as they were.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::LazyLock;
 
 use jamscope::law::{Hertzian, LawChoice, PowerLaw};
 use jamscope::observe::angular::{CorrelationEstimator, FrequencyLimit, SpectrumEstimator};
@@ -186,6 +187,9 @@ fn a_path_that_is_no_text_is_refused_before_the_work() {
     }
 }
 
+static WHOLE_SCENE: LazyLock<Value> = LazyLock::new(|| Value::try_from(full_scene()).expect("a table"));
+static WHOLE_STUDY: LazyLock<Value> = LazyLock::new(|| Value::try_from(full_study()).expect("a table"));
+
 /// Numbers people write, by accident or not.
 fn any_number() -> impl Strategy<Value = f64> {
     prop_oneof![
@@ -203,7 +207,7 @@ proptest! {
 
     #[test]
     fn a_scene_that_passes_is_written_and_read_back(changes in prop::collection::vec((any::<prop::sample::Index>(), any_number()), 1..4)) {
-        let mut value = Value::try_from(full_scene()).expect("a table");
+        let mut value = WHOLE_SCENE.clone();
         let mut paths = Vec::new();
         numbers(&value, "", &mut paths);
         changes.iter().for_each(|(place, number)| set(&mut value, &paths[place.index(paths.len())], *number));
@@ -218,7 +222,7 @@ proptest! {
 
     #[test]
     fn a_study_that_passes_is_written_and_read_back(changes in prop::collection::vec((any::<prop::sample::Index>(), any_number()), 1..4)) {
-        let mut value = Value::try_from(full_study()).expect("a table");
+        let mut value = WHOLE_STUDY.clone();
         let mut paths = Vec::new();
         numbers(&value, "", &mut paths);
         changes.iter().for_each(|(place, number)| set(&mut value, &paths[place.index(paths.len())], *number));

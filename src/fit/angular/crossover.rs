@@ -6,7 +6,7 @@ use crate::fit::angular::error::SpectrumFitError;
 use crate::fit::angular::interval::Interval;
 use crate::fit::angular::likelihood::Powers;
 use crate::fit::angular::window::SpectrumWindowSettings;
-use crate::fit::search::{golden, minimum};
+use crate::fit::search::{GridMinimum, golden};
 use crate::observe::angular::RingSample;
 
 /// Range of f†: from 1/16 to 16 times the highest f, in steps of 2^(1/4).
@@ -161,70 +161,93 @@ pub fn fit_crossover(rings: &[RingSample], settings: &CrossoverSettings) -> Resu
             (best, at(best))
         }
     };
-    let Located { outcome, crossover, scale_free_rise, white_rise } =
-        locate(highest, powers.rise(), settings.angle_factor, |crossover| profile(crossover).1);
+    let at = |crossover: Crossover| profile(crossover).1;
+    let grid = octaves(highest);
+    let values: Vec<f64> = grid.iter().map(|&octave| at(Crossover::Octave(octave))).collect();
+    let between = |octave: f64| at(Crossover::Octave(octave));
+    let inside = GridMinimum::of(&grid, &values, &between);
+    let found = CrossoverMinimum::of(inside, [at(Crossover::Zero), at(Crossover::Infinite)], powers.rise());
+    let crossover = found.best();
     let (exponent, _) = profile(crossover);
     let best = powers.best(|logarithm| Shape { crossover, exponent }.at(logarithm));
     let parameter_count = if settings.exponent == ExponentChoice::Free { 2 } else { 1 };
     Ok(CrossoverFit {
-        outcome,
+        outcome: found.outcome(settings.angle_factor),
         exponent,
         window: powers.window(),
         power_count: powers.count(),
-        scale_free_rise,
-        white_rise,
+        scale_free_rise: found.scale_free_rise,
+        white_rise: found.white_rise,
         rise: powers.rise(),
         noise: best.noise,
         dispersion: powers.dispersion(best, parameter_count),
     })
 }
 
-/// f† at the minimum of −2 ln L, and the interval.
-pub(in crate::fit) struct Located {
-    pub outcome: CrossoverOutcome,
-    pub crossover: Crossover,
+/// The logarithms of f† to base 2 at which −2 ln L is computed first, ascending.
+pub(in crate::fit) fn octaves(highest: usize) -> Vec<f64> {
+    let octaves = libm::log2(highest as f64) + 2.0 * OCTAVES_BEYOND;
+    let steps = (octaves * STEPS_PER_OCTAVE).ceil() as usize;
+    (0..=steps).map(|i| i as f64 / STEPS_PER_OCTAVE - OCTAVES_BEYOND).collect()
+}
+
+/// The minimum of −2 ln L for f† from 0 to infinity.
+pub(in crate::fit) struct CrossoverMinimum<'a> {
+    /// The best f† between.
+    inside: GridMinimum<'a>,
+    /// Rise of −2 ln L that defines the interval, above the best f† of all and above the best between.
+    rise: f64,
+    rise_inside: f64,
     pub scale_free_rise: f64,
     pub white_rise: f64,
 }
 
-/// Finds the minimum of −2 ln L for f† from 0 to infinity, and the f† within which it rises by at most `rise`; θ† =
-/// `factor`/f†.
-pub(in crate::fit) fn locate(highest: usize, rise: f64, factor: f64, deviance: impl Fn(Crossover) -> f64) -> Located {
-    let octaves = libm::log2(highest as f64) + 2.0 * OCTAVES_BEYOND;
-    let steps = (octaves * STEPS_PER_OCTAVE).ceil() as usize;
-    let grid: Vec<f64> = (0..=steps).map(|i| i as f64 / STEPS_PER_OCTAVE - OCTAVES_BEYOND).collect();
-    let inside = minimum(&grid, rise, &|octave| deviance(Crossover::Octave(octave)));
-    let (scale_free, white) = (deviance(Crossover::Zero), deviance(Crossover::Infinite));
-    let lowest = inside.value.min(scale_free).min(white);
-    let (scale_free_rise, white_rise) = (scale_free - lowest, white - lowest);
-    // The interval is recomputed if one of the limits fits better than any crossover between.
-    let interval = if lowest < inside.value {
-        minimum(&grid, rise + lowest - inside.value, &|octave| deviance(Crossover::Octave(octave)))
-    } else {
-        inside
-    };
-    let ends = [interval.lower, interval.upper].map(|end| end.map(libm::exp2));
-    // A sixteenth of f = 1 is equivalent to 0, sixteen times the highest f to infinity.
-    let down_to_zero = scale_free_rise <= rise || ends[0].is_none();
-    let up_to_infinity = white_rise <= rise || ends[1].is_none();
-    let outcome = match (down_to_zero, up_to_infinity, ends) {
-        (true, false, [_, Some(largest)]) => CrossoverOutcome::ScaleFree { largest, smallest_angle: factor / largest },
-        (false, true, [Some(smallest), _]) => CrossoverOutcome::White { smallest, largest_angle: factor / smallest },
-        (false, false, [Some(lower), Some(upper)]) => {
-            let best = libm::exp2(interval.at);
-            CrossoverOutcome::Found {
-                crossover: Interval { best, lower: Some(lower), upper: Some(upper) },
-                angle: Interval { best: factor / best, lower: Some(factor / upper), upper: Some(factor / lower) },
+impl<'a> CrossoverMinimum<'a> {
+    /// From the minimum between and −2 ln L of both limits, f† = 0 and infinity.
+    pub fn of(inside: GridMinimum<'a>, [scale_free, white]: [f64; 2], rise: f64) -> Self {
+        let lowest = inside.value.min(scale_free).min(white);
+        // The interval is about the limit that fits better than any crossover between.
+        let rise_inside = if lowest < inside.value { rise + lowest - inside.value } else { rise };
+        let (scale_free_rise, white_rise) = (scale_free - lowest, white - lowest);
+        CrossoverMinimum { inside, rise, rise_inside, scale_free_rise, white_rise }
+    }
+
+    /// The result for the spectrum; θ† = `factor`/f†.
+    pub fn outcome(&self, factor: f64) -> CrossoverOutcome {
+        let ends = self.inside.ends(self.rise_inside).map(|end| end.map(libm::exp2));
+        // A sixteenth of f = 1 is equivalent to 0, sixteen times the highest f to infinity.
+        let down_to_zero = self.scale_free_rise <= self.rise || ends[0].is_none();
+        let up_to_infinity = self.white_rise <= self.rise || ends[1].is_none();
+        match (down_to_zero, up_to_infinity, ends) {
+            (true, false, [_, Some(largest)]) => {
+                CrossoverOutcome::ScaleFree { largest, smallest_angle: factor / largest }
+            }
+            (false, true, [Some(smallest), _]) => {
+                CrossoverOutcome::White { smallest, largest_angle: factor / smallest }
+            }
+            (false, false, [Some(lower), Some(upper)]) => {
+                let best = libm::exp2(self.inside.at);
+                CrossoverOutcome::Found {
+                    crossover: Interval { best, lower: Some(lower), upper: Some(upper) },
+                    angle: Interval { best: factor / best, lower: Some(factor / upper), upper: Some(factor / lower) },
+                }
+            }
+            _ => CrossoverOutcome::Undetermined,
+        }
+    }
+
+    /// The best f†: a limit if it fits best and the spectrum is like it, otherwise that between.
+    pub fn best(&self) -> Crossover {
+        // The outcome costs as much as the minimum: it is computed only where it decides.
+        if self.scale_free_rise == 0.0 || self.white_rise == 0.0 {
+            match self.outcome(1.0) {
+                CrossoverOutcome::ScaleFree { .. } if self.scale_free_rise == 0.0 => return Crossover::Zero,
+                CrossoverOutcome::White { .. } if self.white_rise == 0.0 => return Crossover::Infinite,
+                _ => {}
             }
         }
-        _ => CrossoverOutcome::Undetermined,
-    };
-    let crossover = match outcome {
-        CrossoverOutcome::ScaleFree { .. } if scale_free_rise == 0.0 => Crossover::Zero,
-        CrossoverOutcome::White { .. } if white_rise == 0.0 => Crossover::Infinite,
-        _ => Crossover::Octave(interval.at),
-    };
-    Located { outcome, crossover, scale_free_rise, white_rise }
+        Crossover::Octave(self.inside.at)
+    }
 }
 
 /// f†, including its limits.

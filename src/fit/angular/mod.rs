@@ -32,7 +32,7 @@ mod likelihood;
 mod slope;
 mod window;
 
-pub(in crate::fit) use crossover::{Crossover, Located, Shape, locate};
+pub(in crate::fit) use crossover::{Crossover, CrossoverMinimum, Shape, octaves};
 pub use crossover::{CrossoverFit, CrossoverOutcome, CrossoverSettings, ExponentChoice, fit_crossover};
 pub use error::{LEAST_POWER_COUNT, SpectrumFitError};
 pub use interval::Interval;

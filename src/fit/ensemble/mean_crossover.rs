@@ -2,11 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::fit::angular::{Crossover, CrossoverOutcome, CrossoverSettings, Located, Shape, locate};
+use crate::fit::angular::{Crossover, CrossoverMinimum, CrossoverOutcome, CrossoverSettings, Shape, octaves};
 use crate::fit::ensemble::bootstrap;
 use crate::fit::ensemble::bootstrap::BootstrapInterval;
 use crate::fit::ensemble::error::EnsembleFitError;
-use crate::fit::ensemble::mean_powers::MeanPowers;
+use crate::fit::ensemble::mean_powers::{Best, Factor, MeanPowers, tabulated};
+use crate::fit::search::GridMinimum;
 
 /// Rise of −2 ln L at two standard errors of one parameter.
 const RISE: f64 = 4.0;
@@ -101,25 +102,64 @@ pub fn crossover_of_mean(
 ) -> Result<MeanCrossover, EnsembleFitError> {
     settings.check()?;
     let powers = MeanPowers::of(samples, window)?;
-    let exponent = settings.exponent;
-    let best = |crossover: Crossover| {
-        let shape = Shape { crossover, exponent };
-        powers.best(|logarithm| libm::log(shape.at(logarithm)))
-    };
-    // 1/E is a sum of those of the limits, so if negative powers are acceptable in both limits, they are between.
-    if best(Crossover::Zero).is_none() || best(Crossover::Infinite).is_none() {
-        return Ok(MeanCrossover::NegativePowers);
-    }
-    let deviance = |crossover: Crossover| best(crossover).map_or(f64::INFINITY, |best| best.deviance);
-    let Located { outcome, crossover, scale_free_rise, white_rise } =
-        locate(window[1], RISE, settings.angle_factor, deviance);
-    let amplitude = best(crossover).map_or(f64::NAN, |best| best.amplitude);
-    let crossover = match crossover {
+    let fitted = Lorentzians::of(window, settings.exponent).fit(&powers, |found, best| {
+        let crossover = found.best();
+        let amplitude = best(crossover).map_or(f64::NAN, |best| best.amplitude);
+        let (scale_free_rise, white_rise) = (found.scale_free_rise, found.white_rise);
+        let (outcome, crossover) = (found.outcome(settings.angle_factor), frequency(crossover));
+        MeanCrossover::Fitted { outcome, crossover, amplitude, scale_free_rise, white_rise }
+    });
+    Ok(fitted.unwrap_or(MeanCrossover::NegativePowers))
+}
+
+fn frequency(crossover: Crossover) -> f64 {
+    match crossover {
         Crossover::Zero => 0.0,
         Crossover::Octave(octave) => libm::exp2(octave),
         Crossover::Infinite => f64::INFINITY,
-    };
-    Ok(MeanCrossover::Fitted { outcome, crossover, amplitude, scale_free_rise, white_rise })
+    }
+}
+
+/// Lorentzians of one exponent in a window.
+struct Lorentzians {
+    exponent: f64,
+    octaves: Vec<f64>,
+    factors: Vec<Vec<Factor>>,
+    /// f† = 0 and infinity.
+    limits: [Vec<Factor>; 2],
+}
+
+impl Lorentzians {
+    fn of(window: [usize; 2], exponent: f64) -> Self {
+        let table = |crossover: Crossover| tabulated(window, |logarithm| log_shape(crossover, exponent, logarithm));
+        let octaves = octaves(window[1]);
+        let factors = octaves.iter().map(|&octave| table(Crossover::Octave(octave))).collect();
+        let limits = [Crossover::Zero, Crossover::Infinite].map(table);
+        Lorentzians { exponent, octaves, factors, limits }
+    }
+
+    /// Passes the minimum of −2 ln L, and the best amplitude for any f†, to `use_minimum`. None if negative powers have
+    /// too much weight in one of the limits.
+    fn fit<T>(
+        &self,
+        powers: &MeanPowers,
+        use_minimum: impl FnOnce(CrossoverMinimum<'_>, &dyn Fn(Crossover) -> Option<Best>) -> T,
+    ) -> Option<T> {
+        // 1/E is a sum of those of the limits, so if negative powers are acceptable in both limits, they are between.
+        let [scale_free, white] = self.limits.each_ref().map(|factors| powers.best_of(factors.iter().copied()));
+        let limits = [scale_free?.deviance, white?.deviance];
+        let deviance = |best: Option<Best>| best.map_or(f64::INFINITY, |best| best.deviance);
+        let values: Vec<f64> =
+            self.factors.iter().map(|factors| deviance(powers.best_of(factors.iter().copied()))).collect();
+        let best = |crossover: Crossover| powers.best(|logarithm| log_shape(crossover, self.exponent, logarithm));
+        let between = |octave: f64| deviance(best(Crossover::Octave(octave)));
+        let inside = GridMinimum::of(&self.octaves, &values, &between);
+        Some(use_minimum(CrossoverMinimum::of(inside, limits, RISE), &best))
+    }
+}
+
+fn log_shape(crossover: Crossover, exponent: f64, logarithm: f64) -> f64 {
+    libm::log(Shape { crossover, exponent }.at(logarithm))
 }
 
 /// f† over resamplings of the samples. None if the best f† of the original samples is infinite or does not exist.
@@ -131,19 +171,19 @@ pub fn crossover_of_mean(
 /// See [`crossover_of_mean`].
 ///
 /// # Cost
-/// One [`crossover_of_mean`] per resampling.
+/// Per resampling samples × powers, then powers × evaluations of a one-dimensional search.
 pub fn crossover_interval(
     samples: &[&[f64]],
     window: [usize; 2],
     settings: &MeanCrossoverSettings,
     resamplings: usize,
 ) -> Result<Option<BootstrapInterval>, EnsembleFitError> {
-    crossover_of_mean(samples, window, settings)?;
+    settings.check()?;
+    MeanPowers::of(samples, window)?;
+    let lorentzians = Lorentzians::of(window, settings.exponent);
     Ok(bootstrap(&[samples.len()], resamplings, |groups| {
         let chosen: Vec<&[f64]> = groups[0].iter().map(|&i| samples[i]).collect();
-        match crossover_of_mean(&chosen, window, settings).ok()? {
-            MeanCrossover::Fitted { crossover, .. } => Some(crossover),
-            MeanCrossover::NegativePowers => None,
-        }
+        let powers = MeanPowers::of(&chosen, window).ok()?;
+        lorentzians.fit(&powers, |found, _| frequency(found.best()))
     }))
 }

@@ -55,8 +55,7 @@ impl MeanPowers {
             }
         }
         powers.iter_mut().for_each(|power| *power /= samples.len() as f64);
-        let logarithms = (lowest..=highest).map(|f| libm::log(f as f64)).collect();
-        Ok(MeanPowers { sample_count: samples.len(), lowest, powers, logarithms })
+        Ok(MeanPowers { sample_count: samples.len(), lowest, powers, logarithms: logarithms(window).collect() })
     }
 
     /// The first f whose mean is not positive.
@@ -67,16 +66,20 @@ impl MeanPowers {
     /// A and −2 ln L for a shape, given as the logarithm of e_f at ln f. None if negative means have too much weight,
     /// or all powers vanish.
     pub fn best(&self, shape: impl Fn(f64) -> f64) -> Option<Best> {
+        self.best_of(self.logarithms.iter().map(|&at| Factor::of(shape(at))))
+    }
+
+    /// [`best`](Self::best) for a shape of which a table is [made](tabulated).
+    pub fn best_of(&self, factors: impl Iterator<Item = Factor>) -> Option<Best> {
         let (mut positive, mut negative, mut logarithm) = (0.0, 0.0, 0.0);
-        for (power, &at) in self.powers.iter().zip(&self.logarithms) {
-            let of_shape = shape(at);
-            let ratio = power * libm::exp(-of_shape);
+        for (power, factor) in self.powers.iter().zip(factors) {
+            let ratio = power * factor.inverse;
             if ratio > 0.0 {
                 positive += ratio
             } else {
                 negative -= ratio
             }
-            logarithm += of_shape;
+            logarithm += factor.logarithm;
         }
         let sum = positive - negative;
         if !(sum > 0.0 && sum.is_finite()) || negative > NEGATIVE_SHARE * (positive + negative) {
@@ -87,4 +90,29 @@ impl MeanPowers {
         let deviance = 2.0 * self.sample_count as f64 * (logarithm + count * (libm::log(amplitude) + 1.0));
         Some(Best { amplitude, deviance })
     }
+}
+
+/// A shape at one f.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Factor {
+    /// 1/e_f.
+    inverse: f64,
+    /// ln e_f.
+    logarithm: f64,
+}
+
+impl Factor {
+    fn of(logarithm: f64) -> Self {
+        Factor { inverse: libm::exp(-logarithm), logarithm }
+    }
+}
+
+/// A shape, given as the logarithm of e_f at ln f, in a window: for all resamplings the same.
+pub(super) fn tabulated(window: [usize; 2], shape: impl Fn(f64) -> f64) -> Vec<Factor> {
+    logarithms(window).map(|at| Factor::of(shape(at))).collect()
+}
+
+/// ln f.
+fn logarithms([lowest, highest]: [usize; 2]) -> impl Iterator<Item = f64> {
+    (lowest..=highest).map(|f| libm::log(f as f64))
 }

@@ -6,8 +6,8 @@ use crate::fit::Estimate;
 use crate::fit::angular::Interval;
 use crate::fit::ensemble::bootstrap::{BootstrapInterval, bootstrap_all};
 use crate::fit::ensemble::error::EnsembleFitError;
-use crate::fit::ensemble::mean_powers::MeanPowers;
-use crate::fit::search::minimum;
+use crate::fit::ensemble::mean_powers::{Best, Factor, MeanPowers, tabulated};
+use crate::fit::search::GridMinimum;
 
 /// Search range of the exponent: −2 to 6 in steps of 1/4.
 const FIRST: f64 = -2.0;
@@ -120,7 +120,7 @@ impl LikelihoodSlope {
 /// ```
 pub fn slope_of_mean(samples: &[&[f64]], window: [usize; 2]) -> Result<MeanSlope, EnsembleFitError> {
     let powers = MeanPowers::of(samples, window)?;
-    let (least_squares, likelihood) = (least_squares(&powers), likelihood(&powers));
+    let (least_squares, likelihood) = (least_squares(&powers), likelihood(&powers, &PowerLaws::of(window)));
     Ok(MeanSlope { least_squares, likelihood, sample_count: powers.sample_count, window })
 }
 
@@ -143,25 +143,52 @@ fn least_squares(powers: &MeanPowers) -> LeastSquaresSlope {
     }
 }
 
-fn likelihood(powers: &MeanPowers) -> LikelihoodSlope {
-    let deviance = |exponent: f64| powers.best(|logarithm| -exponent * logarithm).map_or(f64::INFINITY, |b| b.deviance);
-    let grid: Vec<f64> = (0..=STEPS).map(|step| FIRST + STEP * f64::from(step)).collect();
-    let values: Vec<f64> = grid.iter().map(|&exponent| deviance(exponent)).collect();
-    let lowest = (0..grid.len()).fold(0, |best, i| if values[i] < values[best] { i } else { best });
-    // The exponents around the minimum that negative powers allow.
-    let first = (0..=lowest).rev().take_while(|&i| values[i].is_finite()).last();
-    let last = (lowest..grid.len()).take_while(|&i| values[i].is_finite()).last();
-    let (Some(first), Some(last)) = (first, last) else { return LikelihoodSlope::NegativePowers };
-    if lowest == first && first > 0 || lowest == last && last + 1 < grid.len() {
-        return LikelihoodSlope::NegativePowers;
+/// Power laws in a window, each with its exponent.
+struct PowerLaws {
+    exponents: Vec<f64>,
+    factors: Vec<Vec<Factor>>,
+}
+
+impl PowerLaws {
+    fn of(window: [usize; 2]) -> Self {
+        let exponents: Vec<f64> = (0..=STEPS).map(|step| FIRST + STEP * f64::from(step)).collect();
+        let factors = exponents.iter().map(|exponent| tabulated(window, |logarithm| -exponent * logarithm)).collect();
+        PowerLaws { exponents, factors }
     }
-    if lowest == first || lowest == last {
-        return LikelihoodSlope::Undetermined;
+
+    /// Passes the minimum of −2 ln L to `use_minimum`.
+    fn fit<T>(
+        &self,
+        powers: &MeanPowers,
+        use_minimum: impl FnOnce(GridMinimum<'_>) -> T,
+    ) -> Result<T, LikelihoodSlope> {
+        let grid = &self.exponents;
+        let deviance = |best: Option<Best>| best.map_or(f64::INFINITY, |best| best.deviance);
+        let values: Vec<f64> =
+            self.factors.iter().map(|factors| deviance(powers.best_of(factors.iter().copied()))).collect();
+        let lowest = (0..grid.len()).fold(0, |best, i| if values[i] < values[best] { i } else { best });
+        // The exponents around the minimum that negative powers allow.
+        let first = (0..=lowest).rev().take_while(|&i| values[i].is_finite()).last();
+        let last = (lowest..grid.len()).take_while(|&i| values[i].is_finite()).last();
+        let (Some(first), Some(last)) = (first, last) else { return Err(LikelihoodSlope::NegativePowers) };
+        if lowest == first && first > 0 || lowest == last && last + 1 < grid.len() {
+            return Err(LikelihoodSlope::NegativePowers);
+        }
+        if lowest == first || lowest == last {
+            return Err(LikelihoodSlope::Undetermined);
+        }
+        let at = |exponent: f64| deviance(powers.best(|logarithm| -exponent * logarithm));
+        Ok(use_minimum(GridMinimum::of(&grid[first..=last], &values[first..=last], &at)))
     }
-    let found = minimum(&grid[first..=last], RISE, &deviance);
-    let amplitude = powers.best(|logarithm| -found.at * logarithm).map_or(f64::NAN, |best| best.amplitude);
-    let exponent = Interval { best: found.at, lower: found.lower, upper: found.upper };
-    LikelihoodSlope::Found { exponent, amplitude }
+}
+
+fn likelihood(powers: &MeanPowers, laws: &PowerLaws) -> LikelihoodSlope {
+    let fitted = laws.fit(powers, |found| {
+        let [lower, upper] = found.ends(RISE);
+        let amplitude = powers.best(|logarithm| -found.at * logarithm).map_or(f64::NAN, |best| best.amplitude);
+        LikelihoodSlope::Found { exponent: Interval { best: found.at, lower, upper }, amplitude }
+    });
+    fitted.unwrap_or_else(|outcome| outcome)
 }
 
 /// s over resamplings of the samples, by least squares and by likelihood; none if the original samples have no s.
@@ -170,18 +197,19 @@ fn likelihood(powers: &MeanPowers) -> LikelihoodSlope {
 /// See [`slope_of_mean`].
 ///
 /// # Cost
-/// One [`slope_of_mean`] per resampling.
+/// Per resampling samples × powers, then powers × evaluations of a one-dimensional search.
 pub fn slope_interval(
     samples: &[&[f64]],
     window: [usize; 2],
     resamplings: usize,
 ) -> Result<[Option<BootstrapInterval>; 2], EnsembleFitError> {
     let whole = slope_of_mean(samples, window)?;
-    let exponents = |fit: MeanSlope| [fit.least_squares.exponent(), fit.likelihood.exponent()];
-    let there = exponents(whole).map(|exponent| exponent.is_some());
+    let there = [whole.least_squares.exponent(), whole.likelihood.exponent()].map(|exponent| exponent.is_some());
+    let laws = PowerLaws::of(window);
     let found = bootstrap_all(&[samples.len()], resamplings, |groups| {
         let chosen: Vec<&[f64]> = groups[0].iter().map(|&i| samples[i]).collect();
-        let both = exponents(slope_of_mean(&chosen, window).ok()?);
+        let powers = MeanPowers::of(&chosen, window).ok()?;
+        let both = [least_squares(&powers).exponent(), laws.fit(&powers, |found| found.at).ok()];
         // Numbers that the original data do not have are left out below.
         Some(both.iter().zip(there).map(|(s, there)| if there { s.unwrap_or(f64::NAN) } else { 0.0 }).collect())
     });

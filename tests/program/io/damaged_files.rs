@@ -1,6 +1,7 @@
 //! Files cut or altered at random: never a panic, never a packing that the whole file does not hold.
 
 use std::fs;
+use std::sync::LazyLock;
 
 use jamscope::io::{Column, read_packing, write_packing};
 use jamscope::packing::{Domain, Packing};
@@ -22,10 +23,13 @@ fn written() -> String {
     fs::read_to_string(scratch.path()).expect("text")
 }
 
-fn whole_files() -> Vec<String> {
-    let names = ["disks.data", "disks_wrapped.dump", "disks_scaled.dump", "disks_two_frames.dump"];
-    let read = |name| fs::read_to_string(fixture("formats").join(name)).expect("fixture");
-    names.into_iter().map(read).chain([written()]).collect()
+fn whole_files() -> &'static [String] {
+    static FILES: LazyLock<Vec<String>> = LazyLock::new(|| {
+        let names = ["disks.data", "disks_wrapped.dump", "disks_scaled.dump", "disks_two_frames.dump"];
+        let read = |name| fs::read_to_string(fixture("formats").join(name)).expect("fixture");
+        names.into_iter().map(read).chain([written()]).collect()
+    });
+    &FILES
 }
 
 #[test]
