@@ -215,7 +215,7 @@ pub fn prepare_with<const D: usize, L: PairLaw>(
     preparation: &Preparation,
     law: &L,
     relaxer: &impl Relaxer,
-    trace: &mut impl Trace,
+    trace: &mut dyn Trace,
 ) -> Result<Prepared<D>, PreparationError> {
     let Preparation { disk_count, mixture, target, tolerance, seed } = preparation;
     match *target {
@@ -292,7 +292,7 @@ impl<L: PairLaw> Search<'_, L> {
         &mut self,
         packing: Packing<D>,
         relaxer: &impl Relaxer,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<(Prepared<D>, f64), PreparationError> {
         let packing_fraction = packing.packing_fraction().unwrap_or(0.0);
         let outcome = relaxer.relax(packing, self.law, trace)?;
@@ -330,7 +330,7 @@ impl<L: PairLaw> Search<'_, L> {
         points: Packing<D>,
         (target, tolerance): (f64, f64),
         relaxer: &impl Relaxer,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Prepared<D>, PreparationError> {
         let wanted = libm::pow(target, 1.0 / (self.law.exponent() - 1.0));
         let mut intermediate = relaxer.for_intermediate_states(INTERMEDIATE_RESIDUAL.min(0.1 * tolerance));

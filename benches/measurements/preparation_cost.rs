@@ -21,7 +21,7 @@ impl<R: Relaxer> Relaxer for PassingAt<R> {
         &self,
         packing: Packing<D>,
         law: &L,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         self.0.relax(packing, law, trace)
     }

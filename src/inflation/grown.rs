@@ -42,7 +42,7 @@ impl<const D: usize> Grown<D> {
         law: &L,
         relaxer: &impl Relaxer,
         seed: u64,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Self, InflationError> {
         let chosen = choose_centre(packing, law, inflation.centre, seed)?;
         let inner_radius = packing.radii()[chosen];
@@ -75,7 +75,7 @@ impl<const D: usize> Grown<D> {
         packing: Packing<D>,
         law: &L,
         relaxer: &impl Relaxer,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         self.experiment.relax(packing, law, relaxer, trace)
     }
@@ -91,7 +91,7 @@ impl<const D: usize> Grown<D> {
         packing: Packing<D>,
         law: &L,
         relaxer: &impl Relaxer,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Rest<D>, InflationError> {
         self.experiment.rest(stage, packing, law, relaxer, trace)
     }
@@ -147,7 +147,7 @@ impl<const D: usize> Experiment<D> {
         packing: Packing<D>,
         law: &L,
         relaxer: &impl Relaxer,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         match self {
             // Contact forces add up to zero. With sites the centre of mass must stay where it was; without, its
@@ -176,7 +176,7 @@ impl<const D: usize> Experiment<D> {
         packing: Packing<D>,
         law: &L,
         relaxer: &impl Relaxer,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Rest<D>, InflationError> {
         let outcome = self.relax(packing, law, relaxer, trace)?;
         let Outcome { stop, residual, rounding_floor, cost, .. } = outcome;

@@ -73,7 +73,7 @@ pub fn inflate_with<const D: usize, L: PairLaw>(
     law: &L,
     relaxer: &impl Relaxer,
     seed: u64,
-    trace: &mut impl Trace,
+    trace: &mut dyn Trace,
 ) -> Result<Inflated<D>, InflationError> {
     let law = &inflation.checked_law_with_sites(law)?;
     let grown = Grown::new(inflation, packing, law, relaxer, seed, trace)?;

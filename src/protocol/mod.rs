@@ -59,7 +59,7 @@ impl<const D: usize> Compared<D> {
         settings: &ProtocolSettings,
         pressure_before: f64,
         pressure: impl Fn(&crate::network::ContactNetwork<D>) -> f64,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Self, PackingError> {
         let mut end_states = Vec::with_capacity(protocols.len());
         for protocol in protocols {
@@ -81,7 +81,7 @@ impl<const D: usize> Compared<D> {
         law: &L,
         protocols: &[Protocol],
         settings: &ProtocolSettings,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Self, PackingError> {
         let centre = inflated.centre;
         let radius = inflated.after.packing.get().radii()[centre];

@@ -74,7 +74,7 @@ pub(super) fn descend<const D: usize, L: PairLaw>(
     protocol: &Protocol,
     settings: &ProtocolSettings,
     pressure: &impl Fn(&ContactNetwork<D>) -> f64,
-    trace: &mut impl Trace,
+    trace: &mut dyn Trace,
 ) -> Result<EndState<D>, PackingError> {
     let first = protocol.relaxer.relax(start.clone(), law, trace)?;
     let (stop, cost) = (first.stop, first.cost);

@@ -136,7 +136,7 @@ impl Relaxer for RelaxerChoice {
         &self,
         packing: Packing<D>,
         law: &L,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         match self {
             RelaxerChoice::Fire(fire) => fire.relax(packing, law, trace),

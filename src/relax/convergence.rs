@@ -120,7 +120,7 @@ impl Monitor {
         net_forces: &[Vector<D>],
         totals: &Totals<D>,
         report: Check,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Option<Stop> {
         self.check_count += 1;
         let first = self.energies.map_or(totals.energy, |(first, _)| first);

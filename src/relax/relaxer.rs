@@ -15,7 +15,7 @@ pub trait Relaxer {
         &self,
         packing: Packing<D>,
         law: &L,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError>;
 
     /// The same relaxer for intermediate states, which count as at rest at a relative residual of `limit` \[1\]. None

@@ -3,7 +3,9 @@
 /// A listener to a relaxer; `()` ignores everything and costs nothing.
 pub trait Trace {
     /// Whether it listens. The caller then leaves out work that only a listener needs.
-    const ACTIVE: bool = true;
+    fn is_active(&self) -> bool {
+        true
+    }
 
     /// Called at every check of the residual.
     fn checked(&mut self, check: &Check);
@@ -32,7 +34,10 @@ pub struct Check {
 }
 
 impl Trace for () {
-    const ACTIVE: bool = false;
+    fn is_active(&self) -> bool {
+        false
+    }
+
     fn checked(&mut self, _check: &Check) {}
 }
 

@@ -239,7 +239,7 @@ fn protocol_of<L: PairLaw>(
     (inflated, verdict): (&Inflated<2>, &RestVerdict),
     law: &L,
     settings: &ProtocolSettings,
-    trace: &mut impl Trace,
+    trace: &mut dyn Trace,
 ) -> Result<ProtocolSensitivity, PackingError> {
     let protocols = Protocol::all(&sample.relaxer);
     #[cfg(not(feature = "fit"))]
@@ -260,7 +260,7 @@ pub(crate) fn packing_of<L: PairLaw>(
     scene: &Scene,
     sample: &Sample,
     law: &L,
-    trace: &mut impl Trace,
+    trace: &mut dyn Trace,
 ) -> Result<(Packing<2>, PackingSummary), RunError> {
     let target = match &sample.source {
         Source::File(path) => return packing_from(path, scene, law, trace),
@@ -296,7 +296,7 @@ fn packing_from<L: PairLaw>(
     path: &Path,
     scene: &Scene,
     law: &L,
-    trace: &mut impl Trace,
+    trace: &mut dyn Trace,
 ) -> Result<(Packing<2>, PackingSummary), RunError> {
     let named = |source| RunError::PackingOfFile { path: path.into(), source };
     let read = read_packing(path)?;

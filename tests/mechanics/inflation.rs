@@ -176,7 +176,7 @@ impl Relaxer for Drifting {
         &self,
         packing: Packing<D>,
         law: &L,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let moved = packing.positions().iter().map(|position| position.map(|x| x + 0.25)).collect();
         let moved = Packing::new(*packing.domain(), moved, packing.radii().to_vec())?

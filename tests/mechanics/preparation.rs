@@ -56,7 +56,7 @@ impl Relaxer for Recorded<'_> {
         &self,
         packing: Packing<D>,
         law: &L,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         self.1.borrow_mut().push(self.0.limit.value());
         self.0.relax(packing, law, trace)

@@ -92,7 +92,7 @@ impl Relaxer for DampedDynamics {
         &self,
         packing: Packing<D>,
         law: &L,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         self.relax_with(packing, law, &law.contact_damping(&self.damping), trace)
     }
@@ -108,7 +108,7 @@ impl DampedDynamics {
         packing: Packing<D>,
         law: &L,
         damping: &C,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();
         let mut motion = Motion::new(&packing, law, damping)?;

@@ -51,7 +51,7 @@ impl Run<'_> {
         state: &mut State<D>,
         monitor: &mut Monitor,
         (totals, sums): (&Totals<D>, &Products),
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Option<Stop>, PackingError> {
         let check = Check {
             step_count: self.step_count,

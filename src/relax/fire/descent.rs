@@ -21,7 +21,7 @@ impl Relaxer for Fire {
         &self,
         packing: Packing<D>,
         law: &L,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();
         let mut assembly = Assembly::with_incremental_updates(&packing, *law)?;
@@ -41,7 +41,7 @@ impl Fire {
         &self,
         assembly: &mut Assembly<D, L>,
         monitor: &mut Monitor,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<(Stop, Cost), PackingError> {
         assembly.set_pruning(true);
         let ended = self.run_from_rest(assembly, monitor, trace);
@@ -53,7 +53,7 @@ impl Fire {
         &self,
         assembly: &mut Assembly<D, L>,
         monitor: &mut Monitor,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<(Stop, Cost), PackingError> {
         let mut state = State::new(assembly, self.precision == Precision::Mixed);
         let mut run = Run::new(self, assembly);
@@ -74,7 +74,7 @@ impl Run<'_> {
         assembly: &mut Assembly<D, L>,
         state: &mut State<D>,
         monitor: &mut Monitor,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Stop, PackingError> {
         loop {
             let (totals, mut sums) = self.evaluate(assembly, state);

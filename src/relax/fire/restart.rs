@@ -24,7 +24,7 @@ impl Run<'_> {
         state: &mut State<D>,
         monitor: &Monitor,
         (totals, sums): (Option<Totals<D>>, &Products),
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<ControlFlow<Stop, Products>, PackingError> {
         state.write_displacements(assembly);
         state.invalidate_base();
@@ -76,8 +76,8 @@ impl Run<'_> {
     }
 
     /// Reports the restart.
-    fn report<T: Trace>(&self, trace: &mut T) {
-        if T::ACTIVE {
+    fn report(&self, trace: &mut dyn Trace) {
+        if trace.is_active() {
             let check = Check {
                 step_count: self.step_count,
                 energy: self.rest_energy,

@@ -53,7 +53,7 @@ impl Relaxer for NonlinearConjugateGradients {
         &self,
         packing: Packing<D>,
         law: &L,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let NonlinearConjugateGradients { limit, step_limit, largest_step, flatness } = *self;
         let descent = Descent { limit, step_limit, largest_step, flatness };

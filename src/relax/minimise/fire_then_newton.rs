@@ -60,7 +60,7 @@ impl Relaxer for Staged {
         &self,
         packing: Packing<D>,
         law: &L,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();
         let mut assembly = Assembly::with_incremental_updates(&packing, *law)?;
@@ -77,7 +77,7 @@ impl Staged {
     fn run<const D: usize, L: PairLaw>(
         &self,
         assembly: &mut Assembly<D, L>,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<(Stop, Cost, Monitor), PackingError> {
         let mut hand_over = self.hand_over;
         let mut cost = Cost::default();
@@ -120,17 +120,19 @@ impl Staged {
 }
 
 /// A trace whose step counts begin at `first`.
-fn offset_trace<T: Trace>(trace: &mut T, first: usize) -> OffsetTrace<'_, T> {
+fn offset_trace(trace: &mut dyn Trace, first: usize) -> OffsetTrace<'_> {
     OffsetTrace { trace, first }
 }
 
-struct OffsetTrace<'a, T> {
-    trace: &'a mut T,
+struct OffsetTrace<'a> {
+    trace: &'a mut dyn Trace,
     first: usize,
 }
 
-impl<T: Trace> Trace for OffsetTrace<'_, T> {
-    const ACTIVE: bool = T::ACTIVE;
+impl Trace for OffsetTrace<'_> {
+    fn is_active(&self) -> bool {
+        self.trace.is_active()
+    }
 
     fn checked(&mut self, check: &Check) {
         self.trace.checked(&Check { step_count: self.first + check.step_count, ..*check });

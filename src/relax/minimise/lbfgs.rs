@@ -52,7 +52,7 @@ impl Relaxer for QuasiNewton {
         &self,
         packing: Packing<D>,
         law: &L,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let QuasiNewton { limit, step_limit, largest_step, memory, flatness } = *self;
         let descent = Descent { limit, step_limit, largest_step, flatness };

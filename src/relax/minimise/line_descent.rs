@@ -77,7 +77,7 @@ impl Descent {
         mut rule: impl DirectionRule,
         packing: Packing<D>,
         law: &L,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();
         let mut assembly = Assembly::new(&packing, *law)?;
@@ -92,7 +92,7 @@ impl Descent {
         rule: &mut impl DirectionRule,
         assembly: &mut Assembly<D, L>,
         monitor: &mut Monitor,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<(Stop, Cost), PackingError> {
         let mobile = assembly.mobile_count();
         let mut direction = vec![0.0; mobile * D];

@@ -54,7 +54,7 @@ impl Relaxer for Newton {
         &self,
         packing: Packing<D>,
         law: &L,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();
         let mut assembly = Assembly::new(&packing, *law)?;

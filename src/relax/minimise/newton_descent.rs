@@ -80,7 +80,7 @@ impl NewtonDescent {
         &mut self,
         assembly: &mut Assembly<D, L>,
         monitor: &mut Monitor,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<End, PackingError> {
         let mobile = assembly.mobile_count();
         let mut totals = self.evaluate(assembly);

@@ -57,7 +57,7 @@ impl Integration {
         law: &L,
         damping: &C,
         inertia: Inertia,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();
         let mut motion = ImplicitMotion::new(&packing, law, damping, inertia)?;
@@ -85,7 +85,7 @@ impl Integration {
         motion: &mut ImplicitMotion<D, L, C>,
         monitor: &mut Monitor,
         (cost, balance): (&mut Cost, &mut EnergyBalance),
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Stop, PackingError> {
         let mut newton_finish = match self.finish {
             Finish::Motion => None,

@@ -60,13 +60,15 @@ const LONGEST_STEP: f64 = 0.1;
 const FACTORISATION_LIMIT: usize = 100;
 
 /// A trace that hides a trial, because the trial may be rejected, and keeps its last check.
-struct HiddenTrace<'a, T> {
-    trace: &'a mut T,
+struct HiddenTrace<'a> {
+    trace: &'a mut dyn Trace,
     last: Option<Check>,
 }
 
-impl<T: Trace> Trace for HiddenTrace<'_, T> {
-    const ACTIVE: bool = T::ACTIVE;
+impl Trace for HiddenTrace<'_> {
+    fn is_active(&self) -> bool {
+        self.trace.is_active()
+    }
 
     fn checked(&mut self, check: &Check) {
         self.last = Some(*check);
@@ -122,7 +124,7 @@ impl<const D: usize> NewtonFinish<D> {
         monitor: &mut Monitor,
         cost: &mut Cost,
         at: &FinishState,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Option<Stop>, PackingError> {
         let before = motion.assembly.clone();
         let smallest = before.radii().iter().copied().fold(f64::INFINITY, f64::min);

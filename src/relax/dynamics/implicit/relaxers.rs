@@ -82,7 +82,7 @@ impl Relaxer for ImplicitDynamics {
         &self,
         packing: Packing<D>,
         law: &L,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let run = Integration {
             limit: self.limit,
@@ -104,7 +104,7 @@ impl Relaxer for GradientFlow {
         &self,
         packing: Packing<D>,
         law: &L,
-        trace: &mut impl Trace,
+        trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let run = Integration {
             limit: self.limit,
