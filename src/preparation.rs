@@ -20,8 +20,8 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
+use crate::law::choice::LawChoice;
 use crate::law::pair_law::PairLaw;
-use crate::law::power_laws::Hertzian;
 use crate::network::ContactNetwork;
 use crate::packing::{Domain, Mixture, Packing, PackingError, ball_volume};
 use crate::relax::{Cost, Criterion, Fire, Outcome, Relaxed, Relaxer, Residual, Stop, Trace};
@@ -204,7 +204,7 @@ pub fn random_points<const D: usize>(
 /// # Ok::<(), jamscope::preparation::PreparationError>(())
 /// ```
 pub fn prepare(preparation: &Preparation) -> Result<Prepared<2>, PreparationError> {
-    prepare_with(preparation, &Hertzian::default(), &Fire::default(), &mut ())
+    prepare_with(preparation, &LawChoice::default(), &Fire::default(), &mut ())
 }
 
 /// Prepares a packing with this law and relaxer; `trace` observes the relaxations.

@@ -71,7 +71,7 @@ pub fn read_scene(path: &Path) -> Result<Scene, SceneFileError> {
             message: "the file is empty; `jamscope scene` prints a scene".into(),
         });
     }
-    let scene: Scene = toml::from_str(&text)
+    let scene = Scene::from_toml(&text)
         .map_err(|error| SceneFileError::Toml { path: name.clone(), message: error.to_string() })?;
     scene.check().map_err(|source| SceneFileError::Scene { path: name.clone(), source })?;
     refuse_cut(&text).map_err(|message| SceneFileError::Toml { path: name, message })?;
@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn the_commented_scene_is_the_built_in_one() {
-        let scene: Scene = toml::from_str(&commented_scene()).expect("the printed scene parses");
+        let scene = Scene::from_toml(&commented_scene()).expect("the printed scene parses");
         assert_eq!(scene, Scene::default());
     }
 
@@ -98,7 +98,7 @@ mod tests {
 
     #[test]
     fn an_unknown_field_is_named() {
-        let error = toml::from_str::<Scene>("sede = 1\n").expect_err("no such field").to_string();
+        let error = Scene::from_toml("sede = 1\n").expect_err("no such field").to_string();
         assert!(error.contains("sede"), "{error}");
     }
 }

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use jamscope::relax::RelaxerChoice;
-use jamscope::scene::ProtocolChoice;
+use jamscope::scene::{ProtocolChoice, relaxer_by_name};
 use jamscope::study::{self, FailureKind, Merged, Plan, Problem, Recipe, Scale, Shard, Study};
 
 use crate::scene_file::refuse_cut;
@@ -78,8 +78,7 @@ fn protocols() -> impl TypedValueParser<Value = ProtocolChoice> {
 
 /// A relaxer by the name it has in a scene.
 fn relaxer(name: &str) -> Result<RelaxerChoice, String> {
-    let choice = format!("{name} = {{}}");
-    toml::from_str(&choice).map_err(|error| error.message().to_string())
+    relaxer_by_name(name).map_err(|error| error.message)
 }
 
 /// The scales by their names.
@@ -124,7 +123,7 @@ fn read_study(path: &Path) -> Result<Study, Failure> {
         let how = "`jamscope study --recipe NAME --print` prints a study";
         return Err(format!("{}: the file is empty; {how}", path.display()).into());
     }
-    let study: Study = toml::from_str(&text).map_err(|error| format!("{}: {error}", path.display()))?;
+    let study = Study::from_toml(&text).map_err(|error| format!("{}: {error}", path.display()))?;
     study.check().map_err(|error| format!("{}: {error}", path.display()))?;
     refuse_cut(&text).map_err(|message| format!("{}: {message}", path.display()))?;
     Ok(study)
@@ -151,7 +150,7 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
         }
     };
     if arguments.print {
-        return print(&toml::to_string(&study).map_err(|error| error.to_string())?);
+        return print(&study.to_toml()?);
     }
     let shard = match arguments.shard {
         Some(shard) => shard,

@@ -19,8 +19,8 @@ pub(crate) use grown::displacement;
 pub use rest::{Rest, Stage};
 pub use settings::{Boundary, Centre, Inflation};
 
+use crate::law::choice::LawChoice;
 use crate::law::pair_law::PairLaw;
-use crate::law::power_laws::Hertzian;
 use crate::packing::Packing;
 use crate::relax::{Fire, Relaxer, Trace};
 
@@ -60,7 +60,7 @@ pub struct Inflated<const D: usize> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn inflate(inflation: &Inflation, packing: &Packing<2>) -> Result<Inflated<2>, InflationError> {
-    inflate_with(inflation, packing, &Hertzian::default(), &Fire::default(), 1, &mut ())
+    inflate_with(inflation, packing, &LawChoice::default(), &Fire::default(), 1, &mut ())
 }
 
 /// Inflates a disk of a packing and relaxes the rest with this law and relaxer. `seed` draws the disk; `trace` observes the relaxations.

@@ -14,6 +14,8 @@ mod scale;
 pub(crate) mod scene_input;
 mod size;
 mod source;
+#[cfg(feature = "cli")]
+pub(crate) mod toml_text;
 
 pub use check::SceneError;
 pub use definition::{PreparationSettings, Sample, Scene};
@@ -28,6 +30,8 @@ pub use observables::{PlasticPartSettings, ProtocolSettings};
 pub use observables::{ProfileFitSettings, SpectrumFitSettings};
 pub use protocol::ProtocolChoice;
 pub use source::Source;
+#[cfg(feature = "cli")]
+pub use toml_text::{TomlError, relaxer_by_name};
 
 #[cfg(test)]
 mod tests {

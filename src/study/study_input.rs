@@ -6,6 +6,8 @@ use serde::{Deserialize, Deserializer};
 use crate::law::choice::LawChoice;
 use crate::relax::RelaxerChoice;
 use crate::scene::scene_input::without_samples;
+#[cfg(feature = "cli")]
+use crate::scene::toml_text::{self, TomlError};
 use crate::scene::{ProtocolChoice, Scene};
 use crate::study::settings::{Part, Seeds, Study, Target};
 
@@ -52,5 +54,24 @@ impl Written {
             None => relaxers,
         };
         Ok(Study { scene, disk_counts, targets, increases, laws, relaxers, seeds, parts, time_limit })
+    }
+}
+
+#[cfg(feature = "cli")]
+impl Study {
+    /// Reads a study, which is not yet [checked](Self::check). Absent fields have their defaults.
+    ///
+    /// # Errors
+    /// No TOML, an unknown field, a value of the wrong type, a protocol beside relaxers.
+    pub fn from_toml(text: &str) -> Result<Self, TomlError> {
+        toml_text::read(text)
+    }
+
+    /// The text of this study, with every field.
+    ///
+    /// # Errors
+    /// A number or a path that TOML cannot express; none in a study that is [checked](Self::check).
+    pub fn to_toml(&self) -> Result<String, TomlError> {
+        toml_text::write(self)
     }
 }

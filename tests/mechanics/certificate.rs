@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::scenes::laws::{hertzian, hookean};
 use crate::scenes::published::{BALLS, DISKS, HARMONIC, published};
 #[cfg(feature = "linear")]
 use crate::scenes::random_disks;
@@ -10,7 +11,7 @@ use jamscope::certificate::Stability;
 use jamscope::certificate::{Certificate, Support};
 use jamscope::inflation::{Circle, choose_centre};
 use jamscope::io::read_packing;
-use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::law::{Hookean, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::Criterion;
@@ -70,12 +71,8 @@ fn counts_are_those_stored_with_the_packings_and_energies_tell_the_same_virial_a
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/packings/expected.json");
     let expected: serde_json::Value = serde_json::from_slice(&std::fs::read(path).expect("a fixture")).expect("JSON");
     for (name, stored) in expected.as_object().expect("a table by name") {
-        let (packing, hookean) = (fixture(name), name.starts_with("hooke"));
-        let found = if hookean {
-            certificate(&packing, &Hookean::default())
-        } else {
-            certificate(&packing, &Hertzian::default())
-        };
+        let (packing, is_hookean) = (fixture(name), name.starts_with("hooke"));
+        let found = if is_hookean { certificate(&packing, &hookean()) } else { certificate(&packing, &hertzian()) };
         assert_eq!(Some(found.rattler_count as u64), stored["rattlers"].as_u64(), "{name}");
         let count = found.contacts.map_or(0, |contacts| contacts.contact_count);
         assert_eq!(Some(count as u64), stored["contacts_backbone"].as_u64(), "{name}");
@@ -88,7 +85,7 @@ fn counts_are_those_stored_with_the_packings_and_energies_tell_the_same_virial_a
         }
         let virial = found.virial.expect("contacts");
         let off = virial.relative_difference.abs();
-        assert!(off < tolerance(hookean, count), "{name}: {virial:?}");
+        assert!(off < tolerance(is_hookean, count), "{name}: {virial:?}");
         assert!(found.contacts.expect("jammed").excess > 0, "{name}");
         #[cfg(feature = "linear")]
         assert_eq!(found.stability.negative_eigenvalue_count(), Some(0), "{name}");
@@ -97,7 +94,7 @@ fn counts_are_those_stored_with_the_packings_and_energies_tell_the_same_virial_a
 
 #[test]
 fn the_residual_is_that_of_the_backbone_beside_its_floor() {
-    let (packing, law) = (fixture("hertz_N1000_p10"), Hertzian::default());
+    let (packing, law) = (fixture("hertz_N1000_p10"), hertzian());
     let network = ContactNetwork::new(&packing, &law).expect("apart");
     let found = certificate(&packing, &law);
     // LAMMPS left 1e-10 of a force of 11.
@@ -128,7 +125,7 @@ fn the_residual_is_that_of_the_backbone_beside_its_floor() {
 
 #[test]
 fn bucklers_are_disks_of_the_backbone_with_three_contacts_on_it() {
-    let law = Hertzian::default();
+    let law = hertzian();
     for name in ["hertz_N1000_p005", "hertz_N1000_p100"] {
         let packing = fixture(name);
         let network = ContactNetwork::new(&packing, &law).expect("apart");
@@ -183,7 +180,7 @@ fn a_disk_between_three_held_ones_is_a_buckler_and_snaps_through_where_it_is_pre
 
 #[test]
 fn what_holds_the_packing_decides_how_many_contacts_it_needs() {
-    let (packing, law) = (fixture("hertz_N1000_p100"), Hertzian::default());
+    let (packing, law) = (fixture("hertz_N1000_p100"), hertzian());
     let count = |packing: &Packing<2>, criterion| {
         Certificate::of(packing, &law, criterion).expect("apart").contacts.expect("a backbone")
     };

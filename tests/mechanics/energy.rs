@@ -3,7 +3,6 @@
 
 use jamscope::inflation::{Boundary, Inflation, inflate_with};
 use jamscope::io::read_packing;
-use jamscope::law::Hertzian;
 use jamscope::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
@@ -13,13 +12,15 @@ use jamscope::relax::{
     QuasiNewton, Relaxer, RelaxerChoice, Staged, Stop, TimeStep,
 };
 
+use crate::scenes::laws::hertzian;
+
 const DAMPINGS: [DampingChoice; 2] = [
     DampingChoice::Constant(ConstantDamping { rate: 500.0 }),
     DampingChoice::Viscoelastic(ViscoelasticDamping { rate: 500.0 }),
 ];
 
 fn energy(packing: &Packing<2>) -> f64 {
-    ContactNetwork::new(packing, &Hertzian::default()).expect("no coincidence").energy()
+    ContactNetwork::new(packing, &hertzian()).expect("no coincidence").energy()
 }
 
 /// A circle at rest whose centre has just grown by 0.1: seed 2001 of 5548 disks.
@@ -37,7 +38,7 @@ fn blow(name: &str) -> (f64, Packing<2>) {
 fn watched(relaxer: &impl Relaxer, start: Packing<2>) -> (Vec<(f64, f64)>, Outcome<Packing<2>>) {
     let mut energies = Vec::new();
     let mut trace = |check: &Check| energies.push((check.energy, check.kinetic_energy));
-    let outcome = relaxer.relax(start, &Hertzian::default(), &mut trace).expect("no coincidence");
+    let outcome = relaxer.relax(start, &hertzian(), &mut trace).expect("no coincidence");
     (energies, outcome)
 }
 
@@ -134,7 +135,7 @@ fn every_relaxer_ends_lower_than_it_began_and_inside_the_rim() {
     for name in ["hertz_N1000_p005", "hertz_N1000_p1", "hertz_N1000_p100"] {
         for relaxer in relaxers.iter() {
             let inflation = Inflation { boundary, ..Inflation::default() };
-            let inflated = inflate_with(&inflation, &small_start(name), &Hertzian::default(), relaxer, 3, &mut ());
+            let inflated = inflate_with(&inflation, &small_start(name), &hertzian(), relaxer, 3, &mut ());
             let inflated = inflated.unwrap_or_else(|error| panic!("{name}, {}: {error}", relaxer.name()));
             let account = inflated.after.cost.energies.expect("energies");
             assert!(account.after <= account.before, "{name}, {}: {account:?}", relaxer.name());
@@ -160,7 +161,7 @@ fn newton_finishes_where_the_motion_leads() {
             let relaxer = ImplicitDynamics { damping, finish, ..ImplicitDynamics::default() };
             let boundary = Boundary::HeldRim { outer_radius_over_side: 0.45 };
             let inflation = Inflation { boundary, ..Inflation::default() };
-            let inflated = inflate_with(&inflation, &small_start(name), &Hertzian::default(), &relaxer, 5, &mut ());
+            let inflated = inflate_with(&inflation, &small_start(name), &hertzian(), &relaxer, 5, &mut ());
             inflated.unwrap_or_else(|error| panic!("{name}: {error}")).after.energy
         };
         let (early, late) = (end(Finish::default()), end(Finish::Newton(1e-4)));

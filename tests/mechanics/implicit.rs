@@ -4,7 +4,7 @@
 use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
 use jamscope::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
-use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::law::{Hookean, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::implicit::{Finish, ImplicitMotion, Inertia, Stepped};
@@ -13,12 +13,14 @@ use jamscope::relax::{
 };
 use jamscope::vector::{Vector, difference, larger, norm, sum};
 
+use crate::scenes::laws::hertzian;
+
 /// A small disk of a stored packing, of its backbone if there is one, grown by 0.1 in a circle with a held rim.
 fn inflated(name: &str, index: usize) -> Packing<2> {
     let packing = read_packing::<2>(format!("{}/fixtures/packings/{name}.xyz", env!("CARGO_MANIFEST_DIR")));
     let packing = packing.expect("a fixture");
     let side = packing.domain().lengths().expect("periodic")[0];
-    let backbone = ContactNetwork::new(&packing, &Hertzian::default()).expect("no coincidence").backbone;
+    let backbone = ContactNetwork::new(&packing, &hertzian()).expect("no coincidence").backbone;
     let jammed = backbone.contains(&true);
     let chosen = |&disk: &usize| packing.radii()[disk] == 0.5 && (backbone[disk] || !jammed);
     let small: Vec<usize> = (0..packing.len()).filter(chosen).collect();
@@ -140,15 +142,15 @@ fn smooth_scene() -> Packing<2> {
     };
     let limit = ForceLimit::Relative(1e-12);
     let relaxer = Staged { limit, ..Staged::default() };
-    let prepared = prepare_with::<2, _>(&preparation, &Hertzian::default(), &relaxer, &mut ()).expect("a packing");
+    let prepared = prepare_with::<2, _>(&preparation, &hertzian(), &relaxer, &mut ()).expect("a packing");
     let packing = prepared.packing.into_inner();
     let contacts = |packing: &Packing<2>| {
-        let network = ContactNetwork::new(packing, &Hertzian::default()).expect("no coincidence");
+        let network = ContactNetwork::new(packing, &hertzian()).expect("no coincidence");
         network.contacts.iter().map(|contact| (contact.first, contact.second)).collect::<Vec<_>>()
     };
     let grown = packing.radii()[0] + 1e-3;
     let start = packing.clone().with_radius(0, grown).expect("a positive radius");
-    let end = Staged::default().relax(start.clone(), &Hertzian::default(), &mut ()).expect("no coincidence").state;
+    let end = Staged::default().relax(start.clone(), &hertzian(), &mut ()).expect("no coincidence").state;
     assert_eq!(contacts(&start), contacts(&end), "the scene was chosen to keep its contacts");
     start
 }
@@ -165,7 +167,7 @@ fn distance(a: &Packing<2>, b: &Packing<2>) -> f64 {
 
 #[test]
 fn a_hundred_disks_move_to_third_order_and_keep_account_of_their_energy() {
-    let (start, law, rate, time) = (smooth_scene(), Hertzian::default(), 500.0, 0.02);
+    let (start, law, rate, time) = (smooth_scene(), hertzian(), 500.0, 0.02);
     let energy = |packing: &Packing<2>| ContactNetwork::new(packing, &law).expect("no coincidence").energy();
     let run = |step_count: usize| moved(&start, &law, rate, Inertia::Massive, (time, step_count));
     let runs = [run(20), run(40), run(80), run(640)];
@@ -188,7 +190,7 @@ fn a_hundred_disks_move_to_third_order_and_keep_account_of_their_energy() {
 
 #[test]
 fn stabilised_steps_move_a_hundred_disks_to_second_order_and_keep_account_of_their_energy() {
-    let (start, law, rate, time) = (smooth_scene(), Hertzian::default(), 500.0, 0.02);
+    let (start, law, rate, time) = (smooth_scene(), hertzian(), 500.0, 0.02);
     let energy = |packing: &Packing<2>| ContactNetwork::new(packing, &law).expect("no coincidence").energy();
     // hλ is 3.6 at 20 steps, λ = 3600: three stages are stable from there on.
     let run = |step_count: usize| stabilised(&start, &law, rate, (time, step_count), 3);
@@ -211,7 +213,7 @@ fn stabilised_steps_move_a_hundred_disks_to_second_order_and_keep_account_of_the
 #[test]
 fn a_stabilised_step_of_many_stages_is_stable_where_an_explicit_one_of_its_length_is_not() {
     // 0.01 units of time are 60 explicit steps; λ = 3600 asks for 8 stages: 0.653 (8² − 1) = 41 ≥ 36.
-    let (start, law) = (smooth_scene(), Hertzian::default());
+    let (start, law) = (smooth_scene(), hertzian());
     let first = ContactNetwork::new(&start, &law).expect("no coincidence").energy();
     let (end, _, kinetic) = stabilised(&start, &law, 500.0, (2.0, 200), 8);
     let last = ContactNetwork::new(&end, &law).expect("no coincidence").energy();
@@ -251,7 +253,7 @@ fn an_error_is_estimated_where_a_contact_opens_within_a_step() {
 #[test]
 fn a_step_taken_back_leaves_no_trace() {
     let packing = inflated("hertz_N1000_p100", 0);
-    let (law, damping) = (Hertzian::default(), ConstantDamping { rate: 500.0 });
+    let (law, damping) = (hertzian(), ConstantDamping { rate: 500.0 });
     let start = || ImplicitMotion::new(&packing, &law, &damping, Inertia::Massive).expect("no coincidence");
     let (mut once, mut twice) = (start(), start());
     for motion in [&mut once, &mut twice] {
@@ -272,7 +274,7 @@ fn a_step_taken_back_leaves_no_trace() {
 
 /// The largest distance on the backbone, after Newton has taken both to rounding.
 fn apart(a: Packing<2>, b: Packing<2>) -> f64 {
-    let law = Hertzian::default();
+    let law = hertzian();
     let newton = Newton { limit: ForceLimit::Relative(1e-12), ..Newton::default() };
     let [a, b] = [a, b].map(|state| newton.relax(state, &law, &mut ()).expect("no coincidence").state);
     let backbone = ContactNetwork::new(&a, &law).expect("no coincidence").backbone;
@@ -280,7 +282,7 @@ fn apart(a: Packing<2>, b: Packing<2>) -> f64 {
 }
 
 fn relaxed(relaxer: &impl Relaxer, start: &Packing<2>) -> Outcome<Packing<2>> {
-    relaxer.relax(start.clone(), &Hertzian::default(), &mut ()).expect("no coincidence")
+    relaxer.relax(start.clone(), &hertzian(), &mut ()).expect("no coincidence")
 }
 
 #[test]
@@ -325,7 +327,7 @@ fn gradient_flow_goes_downhill_at_every_step() {
         last = check.energy;
     };
     let flow = GradientFlow::default();
-    let outcome = flow.relax(start, &Hertzian::default(), &mut check).expect("no coincidence");
+    let outcome = flow.relax(start, &hertzian(), &mut check).expect("no coincidence");
     assert!(matches!(outcome.stop, Stop::Converged(_)), "{:?}", outcome.stop);
     // 201 where this was written.
     assert!(outcome.cost.factorisation_count <= 300, "{:?}", outcome.cost);
@@ -376,7 +378,7 @@ fn what_never_comes_to_rest_ends_with_a_name() {
 
 #[test]
 fn nothing_to_do_takes_no_step() {
-    let law = Hertzian::default();
+    let law = hertzian();
     let apart = Packing::new(Domain::<2>::Open, vec![[0.0, 0.0], [2.0, 0.0]], vec![0.5, 0.7]).expect("valid");
     for outcome in [
         ImplicitDynamics::default().relax(apart.clone(), &law, &mut ()).expect("disks apart"),

@@ -6,12 +6,14 @@ use jamscope::displacement::{DisplacementField, MeasuredOn};
 use jamscope::inflation::{
     Boundary, Centre, Circle, Inflated, Inflation, InflationError, Stage, choose_centre, inflate_with,
 };
-use jamscope::law::{Hertzian, PairLaw};
+use jamscope::law::PairLaw;
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Mixture, Packing, PackingError};
 use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::{Criterion, Fire, ForceLimit, Outcome, Relaxer, Stop, Trace};
 use jamscope::vector::{Vector, difference, dot, larger, norm, sum};
+
+use crate::scenes::laws::hertzian;
 
 const LIMIT: f64 = 1e-12;
 
@@ -32,12 +34,12 @@ fn loose() -> &'static Packing<2> {
 
 fn made(target: Target) -> Packing<2> {
     let preparation = Preparation { disk_count: 300, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
-    let prepared = prepare_with::<2, _>(&preparation, &Hertzian::default(), &fire(), &mut ()).expect("a packing");
+    let prepared = prepare_with::<2, _>(&preparation, &hertzian(), &fire(), &mut ()).expect("a packing");
     prepared.packing.into_inner()
 }
 
 fn inflated(inflation: &Inflation, packing: &Packing<2>) -> Inflated<2> {
-    inflate_with(inflation, packing, &Hertzian::default(), &fire(), 1, &mut ()).expect("an inflation")
+    inflate_with(inflation, packing, &hertzian(), &fire(), 1, &mut ()).expect("an inflation")
 }
 
 fn periodic(increase: f64) -> Inflation {
@@ -113,7 +115,7 @@ fn forces_in_the_cut_are_those_in_the_periodic_packing() {
     for disk in (0..packing.len()).step_by(2) {
         swollen = swollen.with_radius(disk, packing.radii()[disk] * 1.02).expect("positive");
     }
-    let law = Hertzian::default();
+    let law = hertzian();
     let whole = ContactNetwork::new(&swollen, &law).expect("no coincidence");
     let circle = Circle::cut(&swollen, 3, 0.48 * side).expect("a circle");
     let cut = ContactNetwork::new(&circle.packing, &law).expect("no coincidence");
@@ -187,7 +189,7 @@ impl Relaxer for Drifting {
 
 #[test]
 fn nothing_held_keeps_the_centre_of_mass_whatever_the_relaxer() {
-    let law = Hertzian::default();
+    let law = hertzian();
     let drifting = inflate_with(&periodic(0.1), dense(), &law, &Drifting(fire()), 1, &mut ()).expect("an inflation");
     for (run, drift) in [(inflated(&periodic(0.1), dense()), 0.0), (drifting, 0.25 * 2f64.sqrt())] {
         let (before, after) = (run.before.packing.get(), run.after.packing.get());
@@ -236,7 +238,7 @@ fn a_packing_turned_by_a_quarter_answers_with_the_field_turned() {
     let turned = Packing::new(domain, turn(packing.positions()), packing.radii().to_vec())
         .and_then(|turned| turned.with_corrections(turn(packing.corrections())))
         .expect("valid");
-    let label = choose_centre(packing, &Hertzian::default(), Centre::Backbone, 1).expect("a backbone") as u64;
+    let label = choose_centre(packing, &hertzian(), Centre::Backbone, 1).expect("a backbone") as u64;
     let inflation = Inflation { centre: Centre::Label(label), ..periodic(0.01) };
     let fields = [packing, &turned].map(|packing| DisplacementField::of_inflation(&inflated(&inflation, packing)));
     for (one, two) in fields[0].disks.iter().zip(&fields[1].disks).filter(|(one, two)| one.counted && two.counted) {
@@ -262,7 +264,7 @@ fn an_unjammed_packing_is_measured_on_all_disks() {
 
 #[test]
 fn the_centre_chosen_is_a_small_disk_on_the_backbone_and_its_label_leads_back() {
-    let (packing, law) = (dense(), Hertzian::default());
+    let (packing, law) = (dense(), hertzian());
     let network = ContactNetwork::new(packing, &law).expect("no coincidence");
     let mut chosen: Vec<usize> =
         (0..50).map(|seed| choose_centre(packing, &law, Centre::Backbone, seed).expect("a backbone")).collect();
@@ -278,7 +280,7 @@ fn the_centre_chosen_is_a_small_disk_on_the_backbone_and_its_label_leads_back() 
 #[test]
 fn what_cannot_be_inflated_is_refused_with_its_numbers() {
     let refused = |inflation: Inflation, packing: &Packing<2>| {
-        inflate_with(&inflation, packing, &Hertzian::default(), &fire(), 1, &mut ()).expect_err("not possible")
+        inflate_with(&inflation, packing, &hertzian(), &fire(), 1, &mut ()).expect_err("not possible")
     };
     let error = refused(Inflation { increase: 5.0, ..Inflation::default() }, dense());
     let InflationError::IncreaseTooLarge { increase, radius, nearest } = error else { panic!("{error}") };
@@ -304,8 +306,7 @@ fn what_cannot_be_inflated_is_refused_with_its_numbers() {
 #[test]
 fn too_few_steps_are_an_error_that_names_the_stage() {
     let fire = Fire { step_limit: 3, ..fire() };
-    let error =
-        inflate_with(&Inflation::default(), dense(), &Hertzian::default(), &fire, 1, &mut ()).expect_err("too few");
+    let error = inflate_with(&Inflation::default(), dense(), &hertzian(), &fire, 1, &mut ()).expect_err("too few");
     let InflationError::NotAtRest { stage, stop, step_count, .. } = &error else { panic!("{error}") };
     assert_eq!((*stage, *stop, *step_count), (Stage::Inflated, Stop::StepLimit, 3));
     assert!(error.to_string().starts_with("after the inflation: "), "{error}");

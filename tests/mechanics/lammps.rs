@@ -9,8 +9,8 @@ use jamscope::forces::Assembly;
 use jamscope::forces::damped::add_damping;
 use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
+use jamscope::law::PairLaw;
 use jamscope::law::damping::{ConstantDamping, DampingChoice, DampingLaw};
-use jamscope::law::{Hertzian, Hookean, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::{DampedDynamics, Fire, ForceLimit, NetForce, Relaxer};
@@ -20,6 +20,7 @@ use rand_pcg::Pcg64;
 use serde_json::Value;
 
 use crate::scenes::lammps_inflated::{INFLATED_RADIUS, Inflated, Table, fixture, text};
+use crate::scenes::laws::{hertzian, hookean};
 
 /// γ of the damped forces and runs \[force / velocity\].
 const RATE: f64 = 500.0;
@@ -87,12 +88,12 @@ fn forces_agree(name: &str, law: impl PairLaw) {
 
 #[test]
 fn hertzian_forces_stress_and_damping_are_those_of_lammps() {
-    forces_agree("forces_hertz", Hertzian::default());
+    forces_agree("forces_hertz", hertzian());
 }
 
 #[test]
 fn hookean_forces_stress_and_damping_are_those_of_lammps() {
-    forces_agree("forces_hooke", Hookean::default());
+    forces_agree("forces_hooke", hookean());
 }
 
 fn packing_agrees(name: &str, law: &impl PairLaw, expected: &Value) {
@@ -142,8 +143,8 @@ fn every_packing_of_lammps_has_its_energy_pressure_contacts_and_rattlers() {
         serde_json::from_str(&text("packings/expected.json")).expect("fixture is JSON");
     for (name, expected) in &expected {
         match expected["model"].as_str() {
-            Some("hertz") => packing_agrees(name, &Hertzian::default(), expected),
-            Some("hooke") => packing_agrees(name, &Hookean::default(), expected),
+            Some("hertz") => packing_agrees(name, &hertzian(), expected),
+            Some("hooke") => packing_agrees(name, &hookean(), expected),
             other => panic!("{name}: model {other:?}"),
         }
     }
@@ -180,13 +181,13 @@ fn states_agree(name: &str, law: &impl PairLaw) {
 #[test]
 fn the_inflated_states_of_lammps_have_its_energies_circle_pressures_and_rattlers() {
     for method in ["fire", "md", "mdnet"] {
-        states_agree(&format!("hertz_N1000_p800_{method}"), &Hertzian::default());
-        states_agree(&format!("hooke_N1000_p5000_{method}"), &Hookean::default());
-        states_agree(&format!("hooke_N1000_p800_{method}"), &Hookean::default());
+        states_agree(&format!("hertz_N1000_p800_{method}"), &hertzian());
+        states_agree(&format!("hooke_N1000_p5000_{method}"), &hookean());
+        states_agree(&format!("hooke_N1000_p800_{method}"), &hookean());
     }
-    states_agree("hertz_N1000_p100_fire", &Hertzian::default());
-    states_agree("hertz_N1000_p10_fire", &Hertzian::default());
-    states_agree("hooke_N5548_p800_fire", &Hookean::default());
+    states_agree("hertz_N1000_p100_fire", &hertzian());
+    states_agree("hertz_N1000_p10_fire", &hertzian());
+    states_agree("hooke_N5548_p800_fire", &hookean());
 }
 
 /// The centre grown at once and the rest relaxed by ours; held against where LAMMPS ended.
@@ -240,19 +241,19 @@ fn all_end_together(name: &str, law: &impl PairLaw) {
 
 #[test]
 fn fire_and_damped_dynamics_end_where_those_of_lammps_do_hertzian() {
-    all_end_together("hertz_N1000_p800", &Hertzian::default());
+    all_end_together("hertz_N1000_p800", &hertzian());
 }
 
 #[test]
 fn fire_and_damped_dynamics_end_where_those_of_lammps_do_hookean() {
-    all_end_together("hooke_N1000_p5000", &Hookean::default());
+    all_end_together("hooke_N1000_p5000", &hookean());
 }
 
 /// Here FIRE and damped dynamics end in two minima, in LAMMPS (header `same false`) and with ours: each method meets its
 /// counterpart, and is 0.217 away from the other, as LAMMPS says (`dmax`).
 #[test]
 fn near_jamming_each_method_ends_in_the_minimum_it_ends_in_with_lammps() {
-    let (name, law) = ("hooke_N1000_p800", Hookean::default());
+    let (name, law) = ("hooke_N1000_p800", hookean());
     let by_fire = fire(&format!("{name}_fire"), &law);
     let by_dynamics = damped(&format!("{name}_md"), &law);
     relaxed_agrees(&Inflated::read(&format!("{name}_fire")), "FIRE", &by_fire, &law);
@@ -269,7 +270,7 @@ fn near_jamming_each_method_ends_in_the_minimum_it_ends_in_with_lammps() {
 #[test]
 fn fire_ends_where_that_of_lammps_does_at_lower_pressures() {
     for name in ["hertz_N1000_p100_fire", "hertz_N1000_p10_fire"] {
-        let law = Hertzian::default();
+        let law = hertzian();
         relaxed_agrees(&Inflated::read(name), name, &fire(name, &law), &law);
     }
 }
@@ -280,7 +281,7 @@ fn fire_ends_where_that_of_lammps_does_at_lower_pressures() {
 /// far less than the mean overlap of 4·10⁻³, the disks come back to it.
 #[test]
 fn the_minimum_lammps_found_among_four_thousand_hookean_disks_is_one_for_ours() {
-    let (name, law) = ("hooke_N5548_p800_fire", Hookean::default());
+    let (name, law) = ("hooke_N5548_p800_fire", hookean());
     let inflated = Inflated::read(name);
     let mut generator = Pcg64::seed_from_u64(1);
     let mut pushed = inflated.after.clone();

@@ -7,7 +7,7 @@ use jamscope::displacement::DisplacementField;
 use jamscope::forces::Assembly;
 use jamscope::inflation::Circle;
 use jamscope::lattice::{Lattice, LatticeError};
-use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw, PowerLaw};
+use jamscope::law::{Hookean, OnSite, PairLaw, PowerLaw};
 use jamscope::linear::LinearResponse;
 use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::network::ContactNetwork;
@@ -19,6 +19,8 @@ use jamscope::reference::antiscreened::Antiscreened;
 use jamscope::reference::{Annulus, RadialSolution};
 use jamscope::relax::{Fire, ForceLimit, Relaxer, Stop};
 use jamscope::vector::{difference, dot, larger, norm, scaled, sum};
+
+use crate::scenes::laws::{hertzian, hookean};
 
 fn triangular(overlap: f64) -> Lattice {
     Lattice::triangular(0.5, overlap).expect("neighbours touch, second ones do not")
@@ -65,7 +67,7 @@ fn pressure_and_bulk_modulus_are_derivatives_of_the_energy_under_uniform_strain(
         }
     }
     check(Hookean { stiffness: 3.0 });
-    check(Hertzian::default());
+    check(hertzian());
     check(PowerLaw { energy_scale: 1.0, exponent: 3.0 });
 }
 
@@ -111,7 +113,7 @@ fn long_waves_have_the_moduli_with_an_error_of_second_order_in_the_wavenumber() 
     }
     check(Hookean { stiffness: 1.0 }, 1e-3);
     check(Hookean { stiffness: 1.0 }, 0.1);
-    check(Hertzian::default(), 0.05);
+    check(hertzian(), 0.05);
     check(PowerLaw { energy_scale: 2.0, exponent: 2.3 }, 0.05);
 }
 
@@ -120,7 +122,7 @@ fn the_circle_has_every_site_once_and_each_mobile_disk_its_six_neighbours() {
     for (lattice, neighbours) in [(triangular(0.05), 6), (Lattice::square(0.5, 0.05).expect("valid"), 4)] {
         let circle = lattice.circle(9.3).expect("a circle");
         let packing = &circle.packing;
-        let network = ContactNetwork::new(packing, &Hookean::default()).expect("apart");
+        let network = ContactNetwork::new(packing, &hookean()).expect("apart");
         let mut degree = vec![0; packing.len()];
         for contact in &network.contacts {
             degree[contact.first as usize] += 1;
@@ -163,7 +165,7 @@ fn what_is_no_lattice_is_refused() {
     assert_eq!(error, LatticeError::OuterRadiusTooSmall { outer_radius: 0.5, spacing: 0.9 });
     assert!(triangular(0.1).periodic([0, 3]).is_err());
     let square = Lattice::square(0.5, 0.1).expect("valid");
-    assert!(square.moduli(&Hookean::default()).is_none() && square.growth_amplitude(&Hookean::default()).is_none());
+    assert!(square.moduli(&hookean()).is_none() && square.growth_amplitude(&hookean()).is_none());
     assert!(square.effective_radius(&square.circle(5.0).expect("a circle")).is_none());
 }
 
@@ -208,7 +210,7 @@ fn the_elastic_profile_is_met_to_first_order_with_the_nominal_rim_and_to_second_
     }
     check(Hookean { stiffness: 1.0 }, 1e-6);
     check(Hookean { stiffness: 1.0 }, 0.05);
-    check(Hertzian::default(), 0.05);
+    check(hertzian(), 0.05);
 }
 
 /// The amplitude has no parameter at all: far from the disk u = B d_0 (1/r − r/R²) with B from the law and the spacing.
@@ -242,14 +244,14 @@ fn the_amplitude_of_the_response_is_that_of_the_force_dipole() {
     }
     for overlap in [1e-6, 0.02, 0.05] {
         check(Hookean { stiffness: 1.0 }, overlap);
-        check(Hertzian::default(), overlap);
+        check(hertzian(), overlap);
     }
     check(PowerLaw { energy_scale: 1.0, exponent: 3.0 }, 0.05);
 }
 
 #[test]
 fn a_pushed_disk_moves_a_lattice_and_stretches_its_bonds_as_a_point_force_does() {
-    let (lattice, law, outer_radius) = (triangular(0.05), Hertzian::default(), 60.0);
+    let (lattice, law, outer_radius) = (triangular(0.05), hertzian(), 60.0);
     let circle = lattice.circle(outer_radius).expect("a circle");
     let rim = (0..circle.packing.len()).map(|disk| disk > circle.centre).collect();
     let packing = circle.packing.clone().with_held(rim).expect("one a disk");
@@ -301,7 +303,7 @@ fn a_pushed_disk_moves_a_lattice_and_stretches_its_bonds_as_a_point_force_does()
 
 #[test]
 fn tied_disks_answer_as_the_antiscreened_medium() {
-    let (lattice, law, outer_radius) = (triangular(0.05), Hertzian::default(), 60.0);
+    let (lattice, law, outer_radius) = (triangular(0.05), hertzian(), 60.0);
     let circle = lattice.circle(outer_radius).expect("a circle");
     let effective = lattice.effective_radius(&circle).expect("triangular");
     let amplitude = lattice.growth_amplitude(&law).expect("isotropic");
@@ -359,7 +361,7 @@ mod fits {
         for ratio in [100.0, 200.0] {
             // κ_1 R = 3.83, κ_2 R = 7.02.
             for (reduced, branch) in [(2.0, 0), (3.0, 0), (5.0, 1), (6.0, 1)] {
-                let hertzian = recovered(Hertzian::default(), ratio, reduced, true);
+                let hertzian = recovered(hertzian(), ratio, reduced, true);
                 let hookean = recovered(Hookean { stiffness: 1.0 }, ratio, reduced, true);
                 println!("R/a = {ratio}, κR = {reduced}: {hertzian:?}, {hookean:?}");
                 for (wavenumber, amplitude, found) in [hertzian, hookean] {
@@ -375,7 +377,7 @@ mod fits {
     fn the_wavenumber_errs_by_second_order_with_the_effective_rim_and_by_first_with_the_nominal_one() {
         let ratios = [60.0, 85.0, 120.0, 170.0, 240.0];
         let errors = |effective: bool| -> Vec<(f64, f64)> {
-            let law = Hertzian::default();
+            let law = hertzian();
             ratios.iter().map(|&ratio| (ratio, recovered(law, ratio, 5.5, effective).0.abs())).collect()
         };
         let (nominal, effective) = (errors(false), errors(true));
@@ -388,7 +390,7 @@ mod fits {
 
 #[test]
 fn relaxers_find_the_screened_state_where_it_is_a_minimum_and_say_where_it_is_none() {
-    let (lattice, law, outer_radius) = (triangular(0.05), Hertzian::default(), 20.0);
+    let (lattice, law, outer_radius) = (triangular(0.05), hertzian(), 20.0);
     let circle = lattice.circle(outer_radius).expect("a circle");
     let rim = lattice.effective_radius(&circle).expect("triangular");
     let increase = (-20f64).exp2();

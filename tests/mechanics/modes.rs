@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use crate::scenes::laws::hertzian;
 use crate::scenes::published::{BALLS, DISKS, HARMONIC, published};
 use crate::scenes::random_disks::{disks, periodic};
 use faer::{Mat, Side};
@@ -184,7 +185,7 @@ fn a_thousand_disks_take_few_factorisations() {
     for name in ["hertz_N1000_p1", "hertz_N1000_p100", "hertz_N1000_p800"] {
         let path = format!("{}/fixtures/packings/{name}.xyz", env!("CARGO_MANIFEST_DIR"));
         let packing = read_packing::<2>(path).expect("a fixture");
-        let found = lowest(&packing, &Hertzian::default(), 10);
+        let found = lowest(&packing, &hertzian(), 10);
         let (first, last) = (&found.modes[0], &found.modes[9]);
         println!(
             "{name}: {:e} to {:e}, residuals {:.0e}, {} factorisations, {} solutions",

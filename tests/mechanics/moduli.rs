@@ -1,5 +1,6 @@
 //! Elastic moduli against published constants, exact lattices, and differences of the stresses of relaxed packings.
 
+use crate::scenes::laws::hertzian;
 use crate::scenes::published::{BALLS, DISKS, HARMONIC, published};
 use crate::scenes::random_disks::{disks, periodic};
 use jamscope::lattice::Lattice;
@@ -111,7 +112,7 @@ fn triangular_lattices_have_their_exact_moduli() {
             }
         }
     }
-    check(Hertzian::default());
+    check(hertzian());
     check(Hookean { stiffness: 3.0 });
     check(PowerLaw { energy_scale: 2.0, exponent: 3.2 });
 }

@@ -4,13 +4,15 @@ use jamscope::displacement::DisplacementField;
 use jamscope::forces::Assembly;
 use jamscope::inflation::{Boundary, Inflation, InflationError, Stage, inflate_with};
 use jamscope::law::damping::{ConstantDamping, DampingChoice};
-use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw};
+use jamscope::law::{Hookean, OnSite, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare_with, random_points};
 use jamscope::relax::{Check, Criterion, DampedDynamics, Fire, ForceLimit, Outcome, Relaxer, Stop};
 use jamscope::scene::{Scene, SceneError};
 use jamscope::vector::{Vector, difference, dot, larger, norm, scaled, sum};
+
+use crate::scenes::laws::{hertzian, hookean};
 
 const STIFFNESS: f64 = 2e5;
 
@@ -106,7 +108,7 @@ fn where_contacts_do_not_hold_the_disks_the_relaxers_say_that_there_is_no_minimu
 
 #[test]
 fn a_packing_without_enough_stiffness_runs_away_and_a_tied_one_does_not() {
-    let law = Hertzian::default();
+    let law = hertzian();
     let packing =
         fire(1e-8).relax(random_points::<2>(100, &Mixture::default(), 1.0, 3).expect("possible"), &law, &mut ());
     let packing = packing.expect("apart").converged().expect("at rest").into_inner();
@@ -230,13 +232,13 @@ fn energies_at_the_restarts_of_fire_never_increase_below_zero_either() {
 fn dense() -> Packing<2> {
     let target = Target::Pressure(2000.0);
     let preparation = Preparation { disk_count: 300, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
-    let prepared = prepare_with::<2, _>(&preparation, &Hertzian::default(), &fire(1e-12), &mut ()).expect("a packing");
+    let prepared = prepare_with::<2, _>(&preparation, &hertzian(), &fire(1e-12), &mut ()).expect("a packing");
     prepared.packing.into_inner()
 }
 
 #[test]
 fn an_inflation_with_sites_has_them_throughout_and_its_pressure_is_that_of_contacts() {
-    let (packing, law) = (dense(), Hertzian::default());
+    let (packing, law) = (dense(), hertzian());
     for boundary in [Boundary::HeldRim { outer_radius_over_side: 0.45 }, Boundary::Periodic] {
         let inflation = Inflation { increase: 1e-3, boundary, deflate: true, ..Inflation::default() };
         let plain = inflate_with(&inflation, &packing, &law, &fire(1e-12), 1, &mut ()).expect("an inflation");
@@ -275,7 +277,7 @@ fn an_inflation_with_sites_has_them_throughout_and_its_pressure_is_that_of_conta
 
 #[test]
 fn the_residual_reaches_its_rounding_floor_with_sites_too() {
-    let law = OnSite { law: Hertzian::default(), coupling: -1e3 };
+    let law = OnSite { law: hertzian(), coupling: -1e3 };
     let packing = random_points::<2>(100, &Mixture::default(), 1.0, 8).expect("possible");
     let outcome = fire(0.0).relax(packing, &law, &mut ()).expect("apart");
     assert_eq!(outcome.stop, Stop::RoundingFloor);
@@ -326,10 +328,7 @@ fn laws_without_sites_know_nothing_of_them() {
         let outcome = fire(1e-6).relax(packing, &law, &mut ()).expect("apart");
         assert!(outcome.state.sites().is_none());
     }
-    check(Hertzian::default());
-    check(Hookean::default());
-    assert_eq!(
-        OnSite { law: OnSite { law: Hookean::default(), coupling: 1.0 }, coupling: 2.0 }.on_site_coupling(),
-        3.0
-    );
+    check(hertzian());
+    check(hookean());
+    assert_eq!(OnSite { law: OnSite { law: hookean(), coupling: 1.0 }, coupling: 2.0 }.on_site_coupling(), 3.0);
 }

@@ -3,7 +3,7 @@
 use jamscope::inflation::{Boundary, Centre, Circle, Inflated, Inflation, inflate_with};
 use jamscope::io::read_packing;
 use jamscope::lattice::Lattice;
-use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::law::PairLaw;
 use jamscope::linear::contact_changes::pressure_change;
 use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::linear::{LinearError, LinearResponse};
@@ -12,6 +12,8 @@ use jamscope::packing::{Packing, ball_volume};
 use jamscope::plastic::{LinearRangeSearch, PlasticPart, linear_range};
 use jamscope::relax::{Fire, ForceLimit, Relaxed, Relaxer};
 use jamscope::vector::{Vector, difference, larger, norm};
+
+use crate::scenes::laws::{hertzian, hookean};
 
 fn fire() -> Fire {
     Fire { limit: ForceLimit::Relative(1e-13), step_limit: 500_000, ..Fire::default() }
@@ -27,22 +29,17 @@ fn dense() -> Packing<2> {
 
 fn inflated(increase: f64, boundary: Boundary) -> Inflated<2> {
     let inflation = Inflation { increase, boundary, centre: Centre::Backbone, ..Inflation::default() };
-    inflate_with(&inflation, &dense(), &Hertzian::default(), &fire(), 1, &mut ()).expect("at rest")
+    inflate_with(&inflation, &dense(), &hertzian(), &fire(), 1, &mut ()).expect("at rest")
 }
 
 fn response(inflated: &Inflated<2>) -> LinearResponse<2> {
-    LinearResponse::of_inflation(
-        inflated.before.packing.get(),
-        inflated.centre,
-        &Hertzian::default(),
-        Prestress::Included,
-    )
-    .expect("a response")
+    LinearResponse::of_inflation(inflated.before.packing.get(), inflated.centre, &hertzian(), Prestress::Included)
+        .expect("a response")
 }
 
 #[test]
 fn contact_forces_and_pressure_change_as_small_inflations_say() {
-    let law = Hertzian::default();
+    let law = hertzian();
     for boundary in [Boundary::default(), Boundary::Periodic] {
         let increase = 1e-6;
         let inflated = inflated(increase, boundary);
@@ -80,12 +77,12 @@ fn circle() -> (Packing<2>, usize) {
     let packing = dense();
     let side = packing.domain().lengths().expect("periodic")[0];
     let circle = Circle::cut(&packing, 17, 0.48 * side).expect("a circle");
-    (at_rest(circle.packing, &Hertzian::default()).into_inner(), circle.centre)
+    (at_rest(circle.packing, &hertzian()).into_inner(), circle.centre)
 }
 
 #[test]
 fn forces_are_answered_by_displacements_whose_hessian_gives_them_back() {
-    let law = Hertzian::default();
+    let law = hertzian();
     let push: Vec<Vector<2>> = (0..1000).map(|disk| [f64::sin(disk as f64), f64::cos(3.0 * disk as f64)]).collect();
     let (circle, _) = circle();
     for packing in [at_rest(dense(), &law).into_inner(), circle] {
@@ -117,7 +114,7 @@ fn forces_are_answered_by_displacements_whose_hessian_gives_them_back() {
 
 #[test]
 fn a_held_rim_moved_as_a_whole_takes_the_packing_with_it_and_stretched_it_is_followed_by_a_relaxation() {
-    let law = Hertzian::default();
+    let law = hertzian();
     let (packing, _) = circle();
     let held: Vec<usize> = (0..packing.len()).filter(|&disk| packing.held()[disk]).collect();
     let moved: Vec<_> = held.iter().map(|&disk| (disk, [0.3, -0.7])).collect();
@@ -151,7 +148,7 @@ fn a_held_rim_moved_as_a_whole_takes_the_packing_with_it_and_stretched_it_is_fol
 #[test]
 fn loads_that_cannot_be_are_refused() {
     let (packing, centre) = circle();
-    let law = Hookean::default();
+    let law = hookean();
     let forces = |forces: &[Vector<2>]| LinearResponse::of_forces(&packing, forces, &law, Prestress::Included);
     let disk_count = packing.len();
     assert_eq!(forces(&[[0.0; 2]; 3]), Err(LinearError::LoadNotOneADisk { found: 3, disk_count }));
@@ -210,7 +207,7 @@ fn one_disk_alone_has_a_participation_ratio_of_one_over_n() {
 
 #[test]
 fn a_lattice_is_linear_until_its_deviation_is_a_hundredth_and_keeps_its_contacts_as_far_as_said() {
-    let (lattice, law) = (Lattice::triangular(0.5, 0.0625).expect("touching"), Hookean::default());
+    let (lattice, law) = (Lattice::triangular(0.5, 0.0625).expect("touching"), hookean());
     let circle = lattice.circle(8.0).expect("a circle");
     let packing = at_rest(circle.packing.clone(), &law);
     let response =

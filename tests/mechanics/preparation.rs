@@ -4,12 +4,14 @@ use std::cell::RefCell;
 
 use jamscope::displacement::DisplacementField;
 use jamscope::inflation::{Boundary, Inflation, inflate_with};
-use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::law::PairLaw;
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Component, Mixture, Packing, PackingError};
 use jamscope::preparation::{Preparation, PreparationError, Prepared, Target, prepare_with, random_points};
 use jamscope::relax::{Criterion, Fire, ForceLimit, Outcome, Relaxer, Stop, Trace};
 use jamscope::vector::{larger, norm};
+
+use crate::scenes::laws::{hertzian, hookean};
 
 fn preparation(disk_count: usize, target: Target, seed: u64) -> Preparation {
     Preparation { disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed }
@@ -74,7 +76,7 @@ fn states_on_the_way_to_a_pressure_are_passed_through_and_the_last_is_at_rest() 
         let limits = RefCell::new(Vec::new());
         let wanted = Preparation { tolerance, ..preparation(128, Target::Pressure(100.0), 7) };
         let fire = Recorded(Fire::default(), &limits);
-        let prepared = prepare_with::<2, _>(&wanted, &Hertzian::default(), &fire, &mut ()).expect("a packing");
+        let prepared = prepare_with::<2, _>(&wanted, &hertzian(), &fire, &mut ()).expect("a packing");
         let limits = limits.into_inner();
         assert_eq!(limits.len(), prepared.relaxation_count);
         // Passed through first, at rest from the first that met the pressure on, and no way back.
@@ -89,17 +91,17 @@ fn states_on_the_way_to_a_pressure_are_passed_through_and_the_last_is_at_rest() 
 
 #[test]
 fn hertzian_packings_meet_their_pressure_and_are_rigid() {
-    meets_pressures(Hertzian::default(), 1);
+    meets_pressures(hertzian(), 1);
 }
 
 #[test]
 fn hookean_packings_meet_their_pressure_and_are_rigid() {
-    meets_pressures(Hookean::default(), 2);
+    meets_pressures(hookean(), 2);
 }
 
 #[test]
 fn a_packing_fraction_is_met_to_rounding() {
-    let prepared = made(&preparation(300, Target::PackingFraction(0.9), 3), &Hertzian::default()).expect("a packing");
+    let prepared = made(&preparation(300, Target::PackingFraction(0.9), 3), &hertzian()).expect("a packing");
     // A sum of 300 areas and a square root, squared.
     assert!((prepared.packing_fraction - 0.9).abs() < 300.0 * f64::EPSILON);
     assert_eq!((prepared.relaxation_count, prepared.quench_packing_fraction), (1, 0.9));
@@ -111,8 +113,8 @@ fn a_packing_fraction_is_met_to_rounding() {
 fn below_jamming_the_pressure_is_zero() {
     for seed in [4, 5] {
         let preparation = preparation(200, Target::PackingFraction(0.80), seed);
-        let hertzian = made(&preparation, &Hertzian::default()).expect("a packing");
-        let hookean = made(&preparation, &Hookean::default()).expect("a packing");
+        let hertzian = made(&preparation, &hertzian()).expect("a packing");
+        let hookean = made(&preparation, &hookean()).expect("a packing");
         for prepared in [hertzian, hookean] {
             assert_eq!((prepared.pressure, prepared.criterion), (0.0, Criterion::Unjammed));
         }
@@ -122,7 +124,7 @@ fn below_jamming_the_pressure_is_zero() {
 #[test]
 fn the_same_seed_gives_the_same_bits_and_another_seed_another_packing() {
     let packing = |seed| {
-        let prepared = made(&preparation(100, Target::Pressure(100.0), seed), &Hertzian::default());
+        let prepared = made(&preparation(100, Target::Pressure(100.0), seed), &hertzian());
         prepared.expect("a packing").packing.into_inner()
     };
     let first = packing(6);
@@ -133,17 +135,16 @@ fn the_same_seed_gives_the_same_bits_and_another_seed_another_packing() {
 #[test]
 fn balls_are_prepared_as_disks_are() {
     let preparation = preparation(200, Target::Pressure(100.0), 8);
-    let prepared =
-        prepare_with::<3, _>(&preparation, &Hookean::default(), &Fire::default(), &mut ()).expect("a packing");
+    let prepared = prepare_with::<3, _>(&preparation, &hookean(), &Fire::default(), &mut ()).expect("a packing");
     assert!((prepared.pressure / 100.0 - 1.0).abs() <= 0.01);
-    let network = ContactNetwork::new(prepared.packing.get(), &Hookean::default()).expect("no coincidence");
+    let network = ContactNetwork::new(prepared.packing.get(), &hookean()).expect("no coincidence");
     let (balls, contacts) = (network.backbone_count(), network.backbone_contacts().count());
     assert!(contacts > 3 * balls - 3, "{contacts} contacts of {balls} balls bear no pressure");
 }
 
 #[track_caller]
 fn refused(preparation: &Preparation, expected: PreparationError, number: &str) {
-    let error = made(preparation, &Hertzian::default()).expect_err("nonsense");
+    let error = made(preparation, &hertzian()).expect_err("nonsense");
     assert_eq!(error, expected);
     assert!(error.to_string().contains(number), "{error} does not say {number}");
 }
@@ -171,13 +172,13 @@ fn nonsense_is_refused_with_its_number() {
         let expected = PackingError::MixtureRadiusOutOfRange { component: 1, radius: -0.7 };
         refused(&negative, PreparationError::Packing(expected), "-0.7");
     }
-    let nan = made(&preparation(10, Target::PackingFraction(f64::NAN), 1), &Hertzian::default());
+    let nan = made(&preparation(10, Target::PackingFraction(f64::NAN), 1), &hertzian());
     assert!(matches!(nan, Err(PreparationError::PackingFractionOutOfRange { .. })));
 }
 
 #[test]
 fn a_pressure_beyond_reach_is_refused_with_its_number() {
-    let error = made(&preparation(10, Target::Pressure(2.5e10), 1), &Hertzian::default()).expect_err("out of reach");
+    let error = made(&preparation(10, Target::Pressure(2.5e10), 1), &hertzian()).expect_err("out of reach");
     // φ = 4 compresses distances by √(0.842/4) = 0.46: overlaps of about one diameter, forces of k' δ = 2e5, pressures of
     // a few times that.
     let PreparationError::PressureOutOfReach { pressure, largest } = error else { panic!("{error}") };
@@ -189,7 +190,7 @@ fn a_pressure_beyond_reach_is_refused_with_its_number() {
 fn too_few_steps_are_an_error_with_their_number() {
     let preparation = preparation(100, Target::PackingFraction(0.9), 9);
     let fire = Fire { step_limit: 12, ..Fire::default() };
-    let error = prepare_with::<2, _>(&preparation, &Hertzian::default(), &fire, &mut ()).expect_err("too few steps");
+    let error = prepare_with::<2, _>(&preparation, &hertzian(), &fire, &mut ()).expect_err("too few steps");
     let PreparationError::NotAtRest { packing_fraction, stop, step_count, residual } = &error else {
         panic!("{error}")
     };
@@ -224,7 +225,7 @@ fn balls_are_prepared_and_inflated_by_the_same_code() {
         tolerance: 0.01,
         seed: 3,
     };
-    let (law, fire) = (Hertzian::default(), Fire::default());
+    let (law, fire) = (hertzian(), Fire::default());
     let prepared = prepare_with::<3, _>(&preparation, &law, &fire, &mut ()).expect("within reach");
     assert!((prepared.pressure / 2000.0 - 1.0).abs() <= 0.01);
     let network = ContactNetwork::new(prepared.packing.get(), &law).expect("valid");

@@ -3,8 +3,8 @@
 
 use jamscope::inflation::{Boundary, Inflation, inflate_with};
 use jamscope::io::read_packing;
+use jamscope::law::Hookean;
 use jamscope::law::damping::{ConstantDamping, DampingChoice};
-use jamscope::law::{Hertzian, Hookean};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::protocol::{Compared, Protocol, ProtocolSettings, ProtocolSummary, Spread, chosen};
@@ -16,6 +16,8 @@ use jamscope::report::write;
 use jamscope::run::{Report, SampleOutcome, run};
 use jamscope::scene::{Observables, Sample, Scene, Source};
 use jamscope::vector::{Vector, norm};
+
+use crate::scenes::laws::hertzian;
 
 const STIFF: Hookean = Hookean { stiffness: 1.0 };
 
@@ -158,7 +160,7 @@ fn what_does_not_come_to_rest_or_has_no_contacts_is_in_no_minimum() {
 #[test]
 fn far_from_jamming_all_relaxers_share_a_minimum() {
     let packing = read_packing::<2>("fixtures/packings/hertz_N1000_p800.xyz").expect("readable");
-    let (law, staged) = (Hertzian::default(), Staged::default());
+    let (law, staged) = (hertzian(), Staged::default());
     let two = [
         Protocol::new(RelaxerChoice::Fire(Fire::default())),
         Protocol::new(RelaxerChoice::QuasiNewton(QuasiNewton::default())),
@@ -187,7 +189,7 @@ fn far_from_jamming_all_relaxers_share_a_minimum() {
 fn fits_of_endings_spread_as_their_minima_do() {
     use jamscope::fit::profile::ProfileFitSettings;
     let packing = read_packing::<2>("fixtures/packings/hertz_N1000_p100.xyz").expect("readable");
-    let (law, staged, inflation) = (Hertzian::default(), Staged::default(), Inflation::default());
+    let (law, staged, inflation) = (hertzian(), Staged::default(), Inflation::default());
     let inflated = inflate_with(&inflation, &packing, &law, &staged, 2, &mut ()).expect("at rest");
     let implicit = ImplicitDynamics::default();
     let protocols =

@@ -13,6 +13,8 @@ use jamscope::vector::{Vector, difference, dot, larger, norm, scaled, sum};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
+use crate::scenes::laws::{hertzian, hookean};
+
 fn points(count: usize, packing_fraction: f64, seed: u64) -> Packing<2> {
     random_points::<2>(count, &Mixture::default(), packing_fraction, seed).expect("a possible packing fraction")
 }
@@ -55,10 +57,10 @@ fn a_disk_between_four_held_ones_comes_to_rest_in_their_middle() {
         // Force limit over stiffness; twice, for the change of both on the way to the middle.
         assert!(off <= 2.0 * limit * force / stiffness, "{law:?}: {off:e} from the middle");
     }
-    check(Hertzian::default(), &fire(1e-10), 1e-10);
-    check(Hookean::default(), &fire(1e-10), 1e-10);
-    check(Hertzian::default(), &damped(1e-10), 1e-10);
-    check(Hookean::default(), &damped(1e-10), 1e-10);
+    check(hertzian(), &fire(1e-10), 1e-10);
+    check(hookean(), &fire(1e-10), 1e-10);
+    check(hertzian(), &damped(1e-10), 1e-10);
+    check(hookean(), &damped(1e-10), 1e-10);
 }
 
 /// Two Hertzian disks let go: largest deviation of the total energy on their way apart, relative.
@@ -66,7 +68,7 @@ fn energy_error(step_count: usize) -> f64 {
     let (first, time) = (0.04, 1.2e-2);
     let packing = Packing::new(Domain::<2>::Open, vec![[0.0, 0.0], [1.2 - first, 0.0]], vec![0.5, 0.7]).expect("valid");
     let damping = ConstantDamping { rate: 0.0 };
-    let mut motion = Motion::new(&packing, &Hertzian::default(), &damping).expect("two disks apart");
+    let mut motion = Motion::new(&packing, &hertzian(), &damping).expect("two disks apart");
     let start = motion.assembly.evaluate_totals().energy;
     let mut worst = 0.0f64;
     for _ in 0..step_count {
@@ -118,8 +120,8 @@ fn energies_at_the_restarts_of_fire_never_increase() {
 /// With the first step beyond stability FIRE climbs at once; it must come back, shorten the step and end below the start.
 #[test]
 fn fire_comes_back_from_a_time_step_far_too_long() {
-    let packing = at_rest(relax(&fire(1e-4), points(100, 0.9, 3), &Hertzian::default()));
-    let law = Hertzian::default();
+    let packing = at_rest(relax(&fire(1e-4), points(100, 0.9, 3), &hertzian()));
+    let law = hertzian();
     let start = ContactNetwork::new(&packing, &law).expect("no coincidence").energy();
     let settings = Fire { time_step_fraction: 40.0, step_limit: 400, ..fire(1e-10) };
     let mut restarts = Vec::new();
@@ -142,7 +144,7 @@ fn fire_comes_back_from_a_time_step_far_too_long() {
 #[test]
 fn damped_dynamics_only_loses_energy() {
     let share = 0.1;
-    for (seed, law) in [(1, Hertzian::default()), (2, Hertzian::default())] {
+    for (seed, law) in [(1, hertzian()), (2, hertzian())] {
         let packing = points(100, 0.95, seed);
         let settings = DampedDynamics {
             damping: DampingChoice::Constant(ConstantDamping { rate: 50.0 }),
@@ -166,7 +168,7 @@ fn damped_dynamics_only_loses_energy() {
 #[test]
 fn damped_motion_keeps_the_momentum() {
     let packing = points(100, 0.95, 4);
-    let mut motion = Motion::new(&packing, &Hertzian::default(), &ConstantDamping { rate: 500.0 }).expect("apart");
+    let mut motion = Motion::new(&packing, &hertzian(), &ConstantDamping { rate: 500.0 }).expect("apart");
     let mut generator = Pcg64::seed_from_u64(5);
     for velocity in &mut motion.velocities {
         *velocity = std::array::from_fn(|_| generator.random::<f64>());
@@ -250,8 +252,8 @@ fn fire_and_damped_dynamics_meet_in_a_minimum_near_by() {
         }
         assert!(allowed < 1e-6, "the tolerance {allowed:e} says nothing");
     }
-    check(Hertzian::default());
-    check(Hookean::default());
+    check(hertzian());
+    check(hookean());
 }
 
 /// One disk between two held ones has one mode, for which Gershgorin's rows are the eigenvalues: λ_K = 2k, λ_Γ = 2γ. The
@@ -264,12 +266,12 @@ fn the_default_step_is_stable_where_its_bound_is_tight_and_a_longer_one_is_found
             .expect("valid")
     };
     for rate in [100.0, 500.0, 5000.0] {
-        let law = Hookean::default();
+        let law = hookean();
         let damping = DampingChoice::Constant(ConstantDamping { rate });
         let settings = DampedDynamics { damping, limit: ForceLimit::Absolute(1e-6), ..DampedDynamics::default() };
         let outcome = relax(&settings, line(), &law);
         assert_eq!(outcome.stop, Stop::Converged(Criterion::AbsoluteForce), "rate {rate}");
-        let (by_stiffness, by_damping): (f64, f64) = (2.0 * law.stiffness, 2.0 * rate);
+        let (by_stiffness, by_damping): (f64, f64) = (2.0 * Hookean::default().stiffness, 2.0 * rate);
         let limit = 2.0 * ((by_damping.powi(2) + by_stiffness).sqrt() - by_damping) / by_stiffness;
         let outcome = relax(&DampedDynamics { time_step: TimeStep::Fixed(3.0 * limit), ..settings }, line(), &law);
         assert_eq!(outcome.stop, Stop::Unstable, "rate {rate}");
@@ -279,11 +281,11 @@ fn the_default_step_is_stable_where_its_bound_is_tight_and_a_longer_one_is_found
 #[test]
 fn too_few_steps_are_an_outcome() {
     let packing = points(100, 0.9, 8);
-    let outcome = relax(&Fire { step_limit: 7, ..Fire::default() }, packing.clone(), &Hertzian::default());
+    let outcome = relax(&Fire { step_limit: 7, ..Fire::default() }, packing.clone(), &hertzian());
     assert_eq!((outcome.stop, outcome.cost.step_count), (Stop::StepLimit, 7));
     let outcome = outcome.converged().expect_err("not at rest");
     assert!(outcome.residual.relative() > 1e-8);
-    let outcome = relax(&DampedDynamics { step_limit: 7, ..DampedDynamics::default() }, packing, &Hertzian::default());
+    let outcome = relax(&DampedDynamics { step_limit: 7, ..DampedDynamics::default() }, packing, &hertzian());
     assert_eq!((outcome.stop, outcome.cost.step_count), (Stop::StepLimit, 7));
     assert!(outcome.converged().is_err());
 }
@@ -291,7 +293,7 @@ fn too_few_steps_are_an_outcome() {
 #[test]
 fn a_limit_of_zero_ends_at_the_rounding_floor() {
     for seed in [1, 2] {
-        let outcome = relax(&fire(0.0), points(100, 0.95, seed), &Hertzian::default());
+        let outcome = relax(&fire(0.0), points(100, 0.95, seed), &hertzian());
         assert_eq!(outcome.stop, Stop::RoundingFloor);
         let (residual, floor) = (outcome.residual.relative(), outcome.rounding_floor);
         println!("residual {residual:e}, floor {floor:e}");
@@ -299,9 +301,9 @@ fn a_limit_of_zero_ends_at_the_rounding_floor() {
         assert!(residual > 0.0 && residual <= 16.0 * floor, "{residual:e} and {floor:e}");
         // One number a coordinate would leave about 5 F' ulp(L)/⟨F⟩ ≥ 5 (3/2)/δ·1.8e-15 with δ < 0.1: 1e-13.
         assert!(floor < 3e-14, "floor {floor:e}");
-        let network = ContactNetwork::new(&outcome.state, &Hertzian::default()).expect("no coincidence");
+        let network = ContactNetwork::new(&outcome.state, &hertzian()).expect("no coincidence");
         assert!(network.coordination() >= 3.0);
-        let again = rounding_floor(&Assembly::new(&outcome.state, Hertzian::default()).expect("no coincidence"));
+        let again = rounding_floor(&Assembly::new(&outcome.state, hertzian()).expect("no coincidence"));
         assert!(again <= floor, "new anchors raise the floor: {again:e} from {floor:e}");
     }
 }
@@ -312,9 +314,9 @@ fn a_packing_far_from_the_origin_comes_to_rest_all_the_same() {
     let near = points(64, 0.9, 9);
     let far = near.positions().iter().map(|position| position.map(|x| x + 1e6)).collect();
     let packing = Packing::new(*near.domain(), far, near.radii().to_vec()).expect("valid");
-    let outcome = relax(&fire(1e-13), packing, &Hertzian::default());
+    let outcome = relax(&fire(1e-13), packing, &hertzian());
     assert_eq!(outcome.stop, Stop::Converged(Criterion::RelativeForce));
-    let network = ContactNetwork::new(&outcome.state, &Hertzian::default()).expect("no coincidence");
+    let network = ContactNetwork::new(&outcome.state, &hertzian()).expect("no coincidence");
     // Measured anew from the packing handed out, corrections included.
     let residual = (0..network.backbone.len())
         .filter(|&disk| network.backbone[disk])
@@ -326,11 +328,11 @@ fn a_packing_far_from_the_origin_comes_to_rest_all_the_same() {
 #[test]
 fn a_loose_packing_is_at_rest_without_forces() {
     for relaxed in [
-        relax(&Fire::default(), points(100, 0.7, 10), &Hertzian::default()),
-        relax(&Fire::default(), points(100, 0.7, 11), &Hertzian::default()),
+        relax(&Fire::default(), points(100, 0.7, 10), &hertzian()),
+        relax(&Fire::default(), points(100, 0.7, 11), &hertzian()),
     ] {
         assert_eq!(relaxed.stop, Stop::Converged(Criterion::Unjammed));
-        let network = ContactNetwork::new(&relaxed.state, &Hertzian::default()).expect("no coincidence");
+        let network = ContactNetwork::new(&relaxed.state, &hertzian()).expect("no coincidence");
         // 10⁻¹² of the force at an overlap of one radius, k' √(R/2) R^(3/2) = k' R²/√2.
         assert!(network.largest_net_force() <= 1e-12 * 2e5 * 0.25 / 2f64.sqrt() * (1.0 + 1e-12));
     }
@@ -339,7 +341,7 @@ fn a_loose_packing_is_at_rest_without_forces() {
 #[test]
 fn an_absolute_limit_is_met_in_force() {
     let settings = Fire { limit: ForceLimit::Absolute(1e-6), ..Fire::default() };
-    let outcome = relax(&settings, points(100, 0.9, 12), &Hertzian::default());
+    let outcome = relax(&settings, points(100, 0.9, 12), &hertzian());
     assert_eq!(outcome.stop, Stop::Converged(Criterion::AbsoluteForce));
     assert!(outcome.residual.largest_net_force <= 1e-6 && outcome.residual.mean_contact_force > 1.0);
 }
@@ -362,7 +364,7 @@ fn what_is_not_a_number_never_counts_as_at_rest() {
 #[test]
 fn the_same_input_gives_the_same_bits() {
     let outcomes = || {
-        let (packing, law) = (points(100, 0.9, 14), Hertzian::default());
+        let (packing, law) = (points(100, 0.9, 14), hertzian());
         [relax(&fire(1e-8), packing.clone(), &law), relax(&damped(1e-6), packing, &law)]
     };
     for (one, two) in outcomes().into_iter().zip(outcomes()) {
@@ -408,7 +410,7 @@ fn checks_are_rare_until_forces_are_small() {
     let mut checks: Vec<Check> = Vec::new();
     let mut trace = |check: &Check| checks.push(*check);
     let packing = points(256, 0.95, 16);
-    let outcome = fire(limit).relax(packing, &Hertzian::default(), &mut trace).expect("no coincidence");
+    let outcome = fire(limit).relax(packing, &hertzian(), &mut trace).expect("no coincidence");
     assert!(matches!(outcome.stop, Stop::Converged(_)));
     checks.retain(|check| !check.restart);
     // "Small" is 30 times the limit, by the largest component of any disk a step before.
@@ -424,7 +426,7 @@ fn checks_are_rare_until_forces_are_small() {
 fn a_damped_motion_cut_short_tells_the_residual_where_it_is() {
     // Between two checks, of which the last was 17 steps before.
     let cut = DampedDynamics { step_limit: 37, ..damped(1e-12) };
-    let law = Hertzian::default();
+    let law = hertzian();
     let outcome = relax(&cut, points(64, 0.95, 16), &law);
     assert_eq!(outcome.stop, Stop::StepLimit);
     let told = outcome.residual.relative();
@@ -452,9 +454,9 @@ fn the_work_of_fixed_scenes_stays_what_it_was() {
         );
         assert!(near(cost.build_count, lists), "{what}: {} lists, {lists} then", cost.build_count);
     };
-    let law = Hertzian::default();
+    let law = hertzian();
     counted("FIRE, random points at 0.9", relax(&fire(1e-8), points(256, 0.9, 16), &law), 940, 962, 54);
     counted("FIRE, random points at 1.0", relax(&fire(1e-8), points(256, 1.0, 16), &law), 880, 902, 62);
-    counted("FIRE, Hookean, 0.9", relax(&fire(1e-8), points(256, 0.9, 16), &Hookean::default()), 1100, 1122, 60);
+    counted("FIRE, Hookean, 0.9", relax(&fire(1e-8), points(256, 0.9, 16), &hookean()), 1100, 1122, 60);
     counted("damped, 0.95", relax(&damped(1e-5), points(256, 0.95, 16), &law), 22720, 23858, 56);
 }

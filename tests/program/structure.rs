@@ -10,7 +10,7 @@ const LONGEST_FILE: usize = 450;
 const LONG: [&str; 1] = ["reference::bessel::modified_tables"];
 
 /// Names of files that are standard terms of physics, mathematics, numerical computing or programming.
-const STANDARD: [&str; 143] = [
+const STANDARD: [&str; 145] = [
     "analyse",
     "angular",
     "atomic",
@@ -41,6 +41,8 @@ const STANDARD: [&str; 143] = [
     "dynamics",
     "elastic",
     "elasticity",
+    "inspection",
+    "toml_text",
     "ensemble",
     "error",
     "estimates",

@@ -1,11 +1,12 @@
 //! Few disks whose rest is known in closed form.
 
-use jamscope::law::{Hertzian, Hookean, PairLaw, PowerLaw};
+use jamscope::law::{PairLaw, PowerLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::{Cost, RelaxerChoice};
 use jamscope::vector::{norm, sum};
 
+use crate::scenes::laws::{hertzian, hookean};
 use crate::scenes::rest::{at_rest, relax};
 use crate::scenes::starts::cross;
 
@@ -24,17 +25,13 @@ pub fn rests_in_the_middle(choice: &RelaxerChoice) -> [Cost; 3] {
         assert!(off <= allowed, "{law:?}, {}: {off:e} from the middle", choice.name());
         cost
     }
-    [
-        check(choice, Hertzian::default()),
-        check(choice, Hookean::default()),
-        check(choice, PowerLaw { energy_scale: 3.0, exponent: 3.5 }),
-    ]
+    [check(choice, hertzian()), check(choice, hookean()), check(choice, PowerLaw { energy_scale: 3.0, exponent: 3.5 })]
 }
 
 /// Three disks in a row between two held ones have no backbone, and nothing holds them across the row: they rest under
 /// one force F = c_j δ_j^(α−1), the overlaps adding up to what the last disk was pushed in.
 pub fn rests_under_one_force(choice: &RelaxerChoice) {
-    let (law, total, limit) = (Hertzian::default(), 0.125, choice.limit().value());
+    let (law, total, limit) = (hertzian(), 0.125, choice.limit().value());
     let radii = [0.5, 0.75, 0.5, 0.625, 1.0];
     let mut positions = vec![[0.0, 0.0]];
     for pair in radii.windows(2) {

@@ -1,7 +1,7 @@
 //! Factorisations and conjugate gradients against dense algebra, in every order of elimination, and what they refuse.
 
 use jamscope::lattice::Lattice;
-use jamscope::law::{Hertzian, Hookean, OnSite};
+use jamscope::law::{Hookean, OnSite};
 use jamscope::linear::iterative::{IncompleteFactor, IterationLimits, conjugate_gradients};
 use jamscope::linear::ordering::{minimum_degree, nested_dissection};
 use jamscope::linear::{Analysis, LinearError, LinearResponse};
@@ -11,6 +11,8 @@ use jamscope::preparation::{Preparation, Target, prepare_with, random_points};
 use jamscope::vector::larger;
 
 use super::{dense, fire, fixture};
+
+use crate::scenes::laws::hertzian;
 
 /// Gaussian elimination with partial pivoting.
 fn eliminate(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
@@ -144,8 +146,7 @@ fn every_order_of_elimination_gives_the_same_solution() {
         // The first disk is held: nothing else keeps a periodic packing in place.
         let held = (0..packing.len()).map(|disk| disk == 0).collect();
         let packing = packing.clone().with_held(held).expect("one flag a disk");
-        let hessian =
-            Hessian::new(&packing, &Hertzian::default(), Members::Backbone, Prestress::LeftOut).expect("apart");
+        let hessian = Hessian::new(&packing, &hertzian(), Members::Backbone, Prestress::LeftOut).expect("apart");
         let matrix = hessian.matrix();
         let right: Vec<f64> = (0..matrix.dimension()).map(|row| (row as f64).sin()).collect();
         let mut plain = Analysis::new(matrix).expect("memory");
@@ -177,14 +178,14 @@ fn every_order_of_elimination_gives_the_same_solution() {
     check(&fixture("hertz_N1000_p100"), [1.1, 1.4]);
     let target = Target::PackingFraction(0.75);
     let preparation = Preparation { disk_count: 2000, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
-    let balls = prepare_with::<3, _>(&preparation, &Hertzian::default(), &fire(1e-4), &mut ()).expect("at rest");
+    let balls = prepare_with::<3, _>(&preparation, &hertzian(), &fire(1e-4), &mut ()).expect("at rest");
     check(balls.packing.get(), [1.1, 0.85]);
 }
 
 #[test]
 fn what_is_no_order_is_refused() {
     let packing = fixture("hertz_N1000_p100");
-    let hessian = Hessian::new(&packing, &Hertzian::default(), Members::Backbone, Prestress::Included).expect("apart");
+    let hessian = Hessian::new(&packing, &hertzian(), Members::Backbone, Prestress::Included).expect("apart");
     let (matrix, mut order) = (hessian.matrix(), minimum_degree(&hessian).expect("memory"));
     let refused = |order: &[usize]| Analysis::in_order(matrix, order).expect_err("no order");
     let dimension = matrix.dimension();
@@ -204,7 +205,7 @@ fn conjugate_gradients_come_to_the_solution_of_the_factor() {
     let held = (0..packing.len()).map(|disk| disk == 0).collect();
     let packing = packing.with_held(held).expect("one flag a disk");
     for prestress in [Prestress::LeftOut, Prestress::Included] {
-        let hessian = Hessian::new(&packing, &Hertzian::default(), Members::Backbone, prestress).expect("apart");
+        let hessian = Hessian::new(&packing, &hertzian(), Members::Backbone, prestress).expect("apart");
         let matrix = hessian.matrix();
         let right: Vec<f64> = (0..matrix.dimension()).map(|row| (row as f64).sin()).collect();
         let mut analysis = Analysis::of(&hessian).expect("memory");
@@ -234,7 +235,7 @@ fn conjugate_gradients_come_to_the_solution_of_the_factor() {
 
 #[test]
 fn conjugate_gradients_refuse_a_saddle() {
-    let (lattice, law) = (Lattice::triangular(0.5, 0.05).expect("touching"), Hertzian::default());
+    let (lattice, law) = (Lattice::triangular(0.5, 0.05).expect("touching"), hertzian());
     let circle = lattice.circle(12.0).expect("a circle");
     let coupling = lattice.coupling(&law, (5.0f64 / 12.0).powi(2)).expect("isotropic");
     let hessian = Hessian::new(&circle.packing, &OnSite { law, coupling }, Members::Backbone, Prestress::Included);

@@ -9,6 +9,7 @@ use jamscope::preparation::random_points;
 use jamscope::vector::{Vector, difference, larger};
 
 use super::dense;
+use crate::scenes::laws::hertzian;
 use crate::scenes::random_disks::{disks, periodic};
 
 /// A mobile disk, held ones around it where `held` says, overlapping it by 0.1 at a distance of 1.1.
@@ -110,7 +111,7 @@ fn the_hessian_is_minus_the_derivative_of_the_forces() {
 
 #[test]
 fn a_moved_packing_keeps_the_pattern_until_a_contact_changes() {
-    let law = Hertzian::default();
+    let law = hertzian();
     let mut assembly =
         Assembly::new(&random_points::<2>(60, &Default::default(), 1.0, 3).expect("possible"), law).expect("apart");
     let mut hessian = Hessian::of(&assembly, Members::Backbone, Prestress::Included);

@@ -3,7 +3,7 @@
 use jamscope::displacement::{DisplacementField, MeasuredOn};
 use jamscope::inflation::{Boundary, Centre, Circle, Inflation, inflate_with};
 use jamscope::lattice::Lattice;
-use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw, PowerLaw};
+use jamscope::law::{OnSite, PairLaw, PowerLaw};
 use jamscope::linear::Prestress;
 use jamscope::linear::{LinearError, LinearResponse};
 use jamscope::network::ContactNetwork;
@@ -13,6 +13,8 @@ use jamscope::relax::Relaxer;
 use jamscope::vector::{difference, larger, norm, scaled, sum};
 
 use super::{fire, fixture};
+
+use crate::scenes::laws::{hertzian, hookean};
 
 /// Largest difference of two fields of displacements, but for a translation where that is `free`, and the largest displacement.
 fn compare<const D: usize>(nonlinear: &DisplacementField<D>, linear: &DisplacementField<D>, free: bool) -> (f64, f64) {
@@ -90,18 +92,14 @@ fn on_a_lattice_nonlinear_minus_linear_falls_as_the_square_of_the_inflation() {
         centre: Centre::Label(100),
         ..Default::default()
     };
-    let hertzian = departures(&packing, &Hertzian::default(), &rim, powers(7, 6));
-    falls_as_the_square("Hertzian, held rim", &hertzian, 4.5);
+    let held = departures(&packing, &hertzian(), &rim, powers(7, 6));
+    falls_as_the_square("Hertzian, held rim", &held, 4.5);
     // A Hookean lattice is nonlinear by its geometry alone: 30 times less, so the floor is met earlier.
-    falls_as_the_square("Hookean, held rim", &departures(&packing, &Hookean::default(), &rim, powers(5, 6)), 4.5);
+    falls_as_the_square("Hookean, held rim", &departures(&packing, &hookean(), &rim, powers(5, 6)), 4.5);
     let periodic = Inflation { boundary: Boundary::Periodic, ..rim };
-    falls_as_the_square(
-        "Hertzian, periodic",
-        &departures(&packing, &Hertzian::default(), &periodic, powers(7, 6)),
-        4.5,
-    );
+    falls_as_the_square("Hertzian, periodic", &departures(&packing, &hertzian(), &periodic, powers(7, 6)), 4.5);
     // Tied to its sites the packing is held by them, and nothing has to be held for the solution.
-    let law = OnSite { law: Hertzian::default(), coupling: -5e3 };
+    let law = OnSite { law: hertzian(), coupling: -5e3 };
     falls_as_the_square("tied, periodic", &departures(&packing, &law, &periodic, powers(7, 6)), 4.5);
     let law = PowerLaw { energy_scale: 1.0, exponent: 3.0 };
     falls_as_the_square("power law, held rim", &departures(&packing, &law, &rim, powers(7, 6)), 4.5);
@@ -115,13 +113,9 @@ fn on_a_jammed_packing_nonlinear_minus_linear_falls_as_the_square_of_the_inflati
         let boundary = Boundary::HeldRim { outer_radius_over_side };
         Inflation { boundary, centre: Centre::Label(label), ..Default::default() }
     };
-    falls_as_the_square("p = 800", &departures(&packing, &Hertzian::default(), &of(71, 0.45), powers(8, 6)), 4.5);
+    falls_as_the_square("p = 800", &departures(&packing, &hertzian(), &of(71, 0.45), powers(8, 6)), 4.5);
     let packing = fixture("hooke_N1000_p5000");
-    falls_as_the_square(
-        "Hookean, p = 5000",
-        &departures(&packing, &Hookean::default(), &of(7, 0.3), powers(8, 6)),
-        4.5,
-    );
+    falls_as_the_square("Hookean, p = 5000", &departures(&packing, &hookean(), &of(7, 0.3), powers(8, 6)), 4.5);
 }
 
 /// Random centres, d_0 from 2⁻¹⁹ up by eights until a contact changes, which happens within eight of the last that counts.
@@ -156,11 +150,11 @@ fn on_random_packings_the_responses_agree_to_first_order_until_the_first_contact
         }
     }
     let rim = Boundary::HeldRim { outer_radius_over_side: 0.45 };
-    check(Hertzian::default(), "hertz_N1000_p800", rim);
-    check(Hertzian::default(), "hertz_N1000_p100", rim);
-    check(Hookean::default(), "hooke_N1000_p5000", rim);
+    check(hertzian(), "hertz_N1000_p800", rim);
+    check(hertzian(), "hertz_N1000_p100", rim);
+    check(hookean(), "hooke_N1000_p5000", rim);
     // With rattlers, which stay where they are.
-    check(Hertzian::default(), "hertz_N1000_p100", Boundary::Periodic);
+    check(hertzian(), "hertz_N1000_p100", Boundary::Periodic);
 }
 
 /// A circle out of a stored packing, its rim held, and its centre unless it is to be free.
@@ -175,7 +169,7 @@ fn circle_at(label: usize, held: bool) -> Circle<2> {
 
 #[test]
 fn disks_that_grow_one_after_another_answer_as_each_alone() {
-    let law = Hertzian::default();
+    let law = hertzian();
     let each = |packing: &Packing<2>, centres: &[usize], bound: f64| {
         let mut found = 0;
         LinearResponse::of_inflations(packing, centres, &law, Prestress::Included, |response| {
@@ -219,7 +213,7 @@ fn disks_that_grow_one_after_another_answer_as_each_alone() {
 
 #[test]
 fn what_is_held_takes_up_the_force_and_what_is_free_none() {
-    let law = Hertzian::default();
+    let law = hertzian();
     let mut forces = [0.0; 2];
     for held in [true, false] {
         let circle = circle_at(71, held);
@@ -252,16 +246,16 @@ fn what_is_held_takes_up_the_force_and_what_is_free_none() {
 #[test]
 fn balls_answer_in_the_same_way() {
     let packing = random_points::<3>(200, &Default::default(), 1.0, 4).expect("possible");
-    let packing = fire(1e-12).relax(packing, &Hertzian::default(), &mut ()).expect("apart");
+    let packing = fire(1e-12).relax(packing, &hertzian(), &mut ()).expect("apart");
     let packing = packing.converged().expect("at rest").into_inner();
     let inflation = Inflation { boundary: Boundary::Periodic, ..Default::default() };
-    falls_as_the_square("balls", &departures(&packing, &Hertzian::default(), &inflation, powers(12, 5)), 3.6);
+    falls_as_the_square("balls", &departures(&packing, &hertzian(), &inflation, powers(12, 5)), 3.6);
 }
 
 #[test]
 fn a_hessian_without_prestress_answers_otherwise() {
     let circle: Circle<2> = Lattice::triangular(0.5, 0.0625).expect("valid").circle(8.0).expect("a circle");
-    let law = Hertzian::default();
+    let law = hertzian();
     let [with, without] = [Prestress::Included, Prestress::LeftOut].map(|prestress| {
         LinearResponse::of_inflation(&circle.packing, circle.centre, &law, prestress).expect("a response")
     });

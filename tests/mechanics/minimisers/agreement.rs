@@ -1,12 +1,13 @@
 //! One minimum, however it is reached: other relaxers, other places, other names, other units.
 
-use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::law::PairLaw;
 use jamscope::network::ContactNetwork;
 use jamscope::relax::{Fire, ForceLimit};
 
 use super::all;
 use crate::claims::elsewhere::Elsewhere;
 use crate::claims::other_units::same_bits_in_other_units;
+use crate::scenes::laws::{hertzian, hookean};
 use crate::scenes::rest::{apart, at_rest, relax};
 use crate::scenes::starts::{inflated, points, shaken};
 
@@ -15,7 +16,7 @@ use crate::scenes::starts::{inflated, points, shaken};
 #[cfg(feature = "linear")]
 fn all_end_in_the_minimum_of_newton_at_high_pressure() {
     use jamscope::relax::Staged;
-    let (law, limit) = (Hertzian::default(), 1e-12);
+    let (law, limit) = (hertzian(), 1e-12);
     let mut together = 0;
     for index in 0..10 {
         let start = || inflated("hertz_N1000_p800", index);
@@ -41,15 +42,15 @@ fn all_meet_in_a_minimum_near_by() {
             assert!(off <= 1e-8, "{name}, {}: {off:e}", choice.name());
         }
     }
-    check(Hertzian::default(), "hertz_N1000_p800");
-    check(Hertzian::default(), "hertz_N1000_p100");
-    check(Hookean::default(), "hooke_N1000_p5000");
+    check(hertzian(), "hertz_N1000_p800");
+    check(hertzian(), "hertz_N1000_p100");
+    check(hookean(), "hooke_N1000_p5000");
 }
 
 /// Turned by a quarter, moved by a multiple of 2¹⁰ and relabelled in reverse, a shaken minimum is found at the same place.
 #[test]
 fn a_minimum_is_found_wherever_it_lies_and_whatever_its_disks_are_called() {
-    let (law, limit) = (Hertzian::default(), 1e-12);
+    let (law, limit) = (hertzian(), 1e-12);
     let minimum = at_rest(relax(&all(1e-12)[1], inflated("hertz_N1000_p800", 3), &law));
     let start = shaken(&minimum, 1e-5, 11);
     let elsewhere = Elsewhere { turned: true, offset: 3072.0 };
@@ -74,7 +75,7 @@ fn a_relaxation_in_other_units_takes_the_same_steps_to_the_same_bits() {
 #[test]
 fn the_same_input_gives_the_same_bits() {
     for choice in all(1e-8) {
-        let [one, two] = [(); 2].map(|()| relax(&choice, points::<2>(100, 0.9, 14), &Hertzian::default()));
+        let [one, two] = [(); 2].map(|()| relax(&choice, points::<2>(100, 0.9, 14), &hertzian()));
         assert_eq!(one.state, two.state);
         assert_eq!((one.stop, one.residual, one.cost.step_count), (two.stop, two.residual, two.cost.step_count));
     }

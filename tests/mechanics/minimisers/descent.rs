@@ -1,6 +1,6 @@
 //! The way down: the energy only falls, no step is too long.
 
-use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::law::PairLaw;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::{
     Check, Fire, ForceLimit, NonlinearConjugateGradients, QuasiNewton, Relaxer, RelaxerChoice, Stop,
@@ -9,6 +9,7 @@ use jamscope::vector::norm;
 
 use super::{minimisers, mixed, step_back};
 use crate::claims::only_falls::only_falls;
+use crate::scenes::laws::{hertzian, hookean};
 use crate::scenes::rest::relax;
 use crate::scenes::starts::{inflated, points};
 
@@ -25,11 +26,11 @@ fn the_energy_never_increases() {
     }
     for seed in [1, 2, 3] {
         for fraction in [0.86, 0.95, 1.2] {
-            check(&points::<2>(100, fraction, seed), &Hertzian::default());
-            check(&points::<2>(100, fraction, seed), &Hookean::default());
+            check(&points::<2>(100, fraction, seed), &hertzian());
+            check(&points::<2>(100, fraction, seed), &hookean());
         }
-        check(&points::<3>(60, 0.9, seed), &Hertzian::default());
-        check(&inflated("hertz_N1000_p1", seed as usize), &Hertzian::default());
+        check(&points::<3>(60, 0.9, seed), &hertzian());
+        check(&inflated("hertz_N1000_p1", seed as usize), &hertzian());
     }
 }
 
@@ -44,7 +45,7 @@ fn energies_at_the_restarts_of_fire_never_increase_either_way() {
         let fire = Fire { time_step_fraction, step_limit: 20_000, ..fire };
         let mut checks: Vec<Check> = Vec::new();
         let trace = &mut |check: &Check| checks.push(*check);
-        let _ = fire.relax(points::<2>(200, 0.9, 1), &Hertzian::default(), trace).expect("no coincidence");
+        let _ = fire.relax(points::<2>(200, 0.9, 1), &hertzian(), trace).expect("no coincidence");
         let restarts: Vec<f64> = checks.iter().filter(|check| check.restart).map(|check| check.energy).collect();
         assert!(restarts.len() > 3, "{} restarts", restarts.len());
         assert!(restarts.is_sorted_by(|&before, &after| after <= before * (1.0 + 1e-13)), "{restarts:?}");
@@ -64,7 +65,7 @@ fn no_step_is_longer_than_a_share_of_a_radius() {
                 RelaxerChoice::QuasiNewton(it) => RelaxerChoice::QuasiNewton(QuasiNewton { step_limit, ..it }),
                 other => other,
             };
-            let outcome = relax(&limited, packing.clone(), &Hertzian::default());
+            let outcome = relax(&limited, packing.clone(), &hertzian());
             let way = norm(outcome.state.separation(0, 1));
             // Both move alike, the smaller one by a tenth of 1/2 at most.
             assert!(way <= 0.1 * step_limit as f64 * (1.0 + 1e-12) + 1e-9, "{}: {way}", choice.name());

@@ -1,6 +1,6 @@
 //! The rounding floor, named ends, and the settings in a scene.
 
-use jamscope::law::{Hertzian, Hookean};
+use jamscope::law::Hookean;
 use jamscope::packing::{Domain, Packing, PackingError};
 use jamscope::relax::{
     Criterion, Fire, ForceLimit, NonlinearConjugateGradients, QuasiNewton, RelaxerChoice, StepBack, Stop, Uphill,
@@ -8,6 +8,7 @@ use jamscope::relax::{
 use jamscope::scene::Scene;
 
 use super::{all, gradients, mixed, quasi_newton, step_back};
+use crate::scenes::laws::hertzian;
 use crate::scenes::rest::{at_rest, relax};
 use crate::scenes::starts::{cross, inflated, points};
 
@@ -16,7 +17,7 @@ use crate::scenes::starts::{cross, inflated, points};
 fn a_limit_of_zero_ends_at_the_rounding_floor() {
     for (name, index) in [("hertz_N1000_p1", 0), ("hertz_N1000_p100", 1), ("hertz_N1000_p800", 2)] {
         for choice in all(0.0) {
-            let outcome = relax(&choice, inflated(name, index), &Hertzian::default());
+            let outcome = relax(&choice, inflated(name, index), &hertzian());
             let (residual, floor) = (outcome.residual.relative(), outcome.rounding_floor);
             println!("{name}, {}: {residual:e}, floor {floor:e}, {:?}", choice.name(), outcome.cost);
             assert_eq!(outcome.stop, Stop::RoundingFloor, "{name}, {}", choice.name());
@@ -46,7 +47,7 @@ fn loose_packings_and_lone_disks_are_at_rest_without_forces() {
     let two = Packing::new(Domain::<2>::Open, vec![[0.0; 2], [0.9, 0.0]], vec![0.5; 2]).expect("valid");
     let held = two.clone().with_held(vec![true; 2]).expect("valid");
     for choice in all(1e-8) {
-        let law = Hertzian::default();
+        let law = hertzian();
         for packing in [points::<2>(100, 0.7, 10), lone.clone(), two.clone()] {
             let outcome = relax(&choice, packing, &law);
             assert_eq!(outcome.stop, Stop::Converged(Criterion::Unjammed), "{}", choice.name());
@@ -63,24 +64,24 @@ fn limits_are_outcomes() {
         RelaxerChoice::ConjugateGradients(NonlinearConjugateGradients { step_limit: 7, ..Default::default() }),
         RelaxerChoice::QuasiNewton(QuasiNewton { step_limit: 7, ..QuasiNewton::default() }),
     ] {
-        let outcome = relax(&choice, points::<2>(100, 0.9, 8), &Hertzian::default());
+        let outcome = relax(&choice, points::<2>(100, 0.9, 8), &hertzian());
         assert_eq!((outcome.stop, outcome.cost.step_count), (Stop::StepLimit, 7), "{}", choice.name());
     }
     for choice in [gradients(ForceLimit::Absolute(1e-9)), quasi_newton(ForceLimit::Absolute(1e-9))] {
-        let outcome = relax(&choice, inflated("hertz_N1000_p100", 0), &Hertzian::default());
+        let outcome = relax(&choice, inflated("hertz_N1000_p100", 0), &hertzian());
         assert_eq!(outcome.stop, Stop::Converged(Criterion::AbsoluteForce), "{}", choice.name());
         assert!(outcome.residual.largest_net_force <= 1e-9 && outcome.residual.mean_contact_force > 1.0);
     }
     // FIRE 2.0 gives up after so many steps uphill; none is soon too few.
     let uphill = Uphill::StepBack(StepBack { uphill_limit: 0, ..StepBack::default() });
-    let outcome = relax(&Fire { uphill, ..Fire::default() }, inflated("hertz_N1000_p100", 0), &Hertzian::default());
+    let outcome = relax(&Fire { uphill, ..Fire::default() }, inflated("hertz_N1000_p100", 0), &hertzian());
     assert_eq!(outcome.stop, Stop::NoDescent);
     // A memory for all steps there may ever be is as large as the steps there are.
     let endless = QuasiNewton { memory: usize::MAX, ..QuasiNewton::default() };
-    let _ = at_rest(relax(&endless, points::<2>(100, 0.95, 8), &Hertzian::default()));
+    let _ = at_rest(relax(&endless, points::<2>(100, 0.95, 8), &hertzian()));
     // Without memory L-BFGS is steepest descent, which is slow but not lost.
     let choice = RelaxerChoice::QuasiNewton(QuasiNewton { memory: 0, ..QuasiNewton::default() });
-    let _ = at_rest(relax(&choice, cross([0.02, -0.013]), &Hertzian::default()));
+    let _ = at_rest(relax(&choice, cross([0.02, -0.013]), &hertzian()));
 }
 
 #[test]

@@ -1,9 +1,10 @@
 //! Steps of FIRE in single precision: the state it leaves, and how far it goes.
 
-use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw};
+use jamscope::law::{OnSite, PairLaw};
 use jamscope::packing::Packing;
 use jamscope::relax::{Criterion, Fire, ForceLimit, Outcome, Precision, Stop};
 
+use crate::scenes::laws::{hertzian, hookean};
 use crate::scenes::rest::{apart, at_rest, relax};
 use crate::scenes::starts::{inflated, points};
 
@@ -17,7 +18,7 @@ fn a_relaxation_cut_short_tells_the_residual_where_it_is() {
     let mut before = None;
     for step_limit in [1, 7, 79, 80, 81, 333] {
         let cut = |packing: Packing<2>, step_limit| -> Outcome<Packing<2>> {
-            relax(&Fire { step_limit, ..fire(Precision::Mixed, 1e-10) }, packing, &Hertzian::default())
+            relax(&Fire { step_limit, ..fire(Precision::Mixed, 1e-10) }, packing, &hertzian())
         };
         let outcome = cut(inflated("hertz_N1000_p10", 2), step_limit);
         assert_eq!((outcome.stop, outcome.cost.step_count), (Stop::StepLimit, step_limit));
@@ -39,7 +40,7 @@ fn as_few_steps_as_in_double_precision() {
         let (mut double, mut mixed) = (0, 0);
         for index in 0..6 {
             let steps = |precision| {
-                let outcome = relax(&fire(precision, limit), inflated(name, index), &Hertzian::default());
+                let outcome = relax(&fire(precision, limit), inflated(name, index), &hertzian());
                 assert_eq!(outcome.stop, Stop::Converged(Criterion::RelativeForce), "{precision:?}, {name} {index}");
                 outcome.cost.step_count
             };
@@ -67,8 +68,8 @@ fn random_points_come_to_rest() {
         // As in the comparison with Newton's method.
         assert!(apart(&near, &other, &law) <= 1e-9, "{law:?}");
     }
-    check(Hertzian::default());
-    check(Hookean::default());
+    check(hertzian());
+    check(hookean());
 }
 
 /// Newton's method takes over from steps in single precision and ends where FIRE in double does.
@@ -76,7 +77,7 @@ fn random_points_come_to_rest() {
 #[cfg(feature = "linear")]
 fn the_staged_relaxer_makes_them_too() {
     use jamscope::relax::Staged;
-    let (law, limit) = (Hertzian::default(), ForceLimit::Relative(1e-12));
+    let (law, limit) = (hertzian(), ForceLimit::Relative(1e-12));
     let staged = |precision| Staged { limit, precision, ..Staged::default() };
     let outcome = relax(&staged(Precision::Mixed), inflated("hertz_N1000_p800", 4), &law);
     assert_eq!(outcome.stop, Stop::Converged(Criterion::RelativeForce));
@@ -90,7 +91,7 @@ fn the_staged_relaxer_makes_them_too() {
 /// Sites are for double precision alone: the same bits.
 #[test]
 fn disks_with_sites_are_left_in_double_precision() {
-    let law = OnSite { law: Hertzian::default(), coupling: -0.5 };
+    let law = OnSite { law: hertzian(), coupling: -0.5 };
     let [one, two] = [Precision::Double, Precision::Mixed]
         .map(|precision| relax(&fire(precision, 1e-8), inflated("hertz_N1000_p100", 3), &law));
     assert_eq!((one.state, one.cost.step_count), (two.state, two.cost.step_count));

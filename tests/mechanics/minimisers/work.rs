@@ -1,9 +1,9 @@
 //! The work of fixed scenes.
 
-use jamscope::law::Hertzian;
 use jamscope::relax::{Criterion, RelaxerChoice, Stop};
 
 use super::all;
+use crate::scenes::laws::hertzian;
 use crate::scenes::rest::relax;
 use crate::scenes::starts::inflated;
 
@@ -12,7 +12,7 @@ use crate::scenes::starts::inflated;
 #[test]
 fn the_work_of_fixed_scenes_stays_what_it_was() {
     let counted = |name: &str, choice: RelaxerChoice, steps: usize, evaluations: usize| {
-        let outcome = relax(&choice, inflated(name, 0), &Hertzian::default());
+        let outcome = relax(&choice, inflated(name, 0), &hertzian());
         println!("{name}, {}: {:?}, {:?}", choice.name(), outcome.stop, outcome.cost);
         assert_eq!(outcome.stop, Stop::Converged(Criterion::RelativeForce));
         let near = |ours: usize, then: usize| 4 * ours.abs_diff(then) <= then;

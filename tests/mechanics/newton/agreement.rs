@@ -2,7 +2,7 @@
 //!
 //! Random cases come from proptest with a fixed seed, so every run sees the same ones; a failure prints its case.
 
-use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw};
+use jamscope::law::{OnSite, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::relax::{DampedDynamics, ForceLimit, RelaxerChoice};
 use proptest::prelude::*;
@@ -10,6 +10,7 @@ use proptest::test_runner::RngSeed;
 
 use super::{allowed, fire, newton, staged};
 use crate::claims::elsewhere::Elsewhere;
+use crate::scenes::laws::{hertzian, hookean};
 use crate::scenes::rest::{apart, at_rest, relax};
 use crate::scenes::starts::{inflated, points, shaken};
 
@@ -24,7 +25,7 @@ proptest! {
         shift in -8..8i32,
         turned in any::<bool>(),
     ) {
-        let (law, limit) = (Hertzian::default(), 1e-12);
+        let (law, limit) = (hertzian(), 1e-12);
         let minimum = at_rest(relax(&staged(1e-13), inflated("hertz_N1000_p800", 3), &law));
         let start = shaken(&minimum, 1e-5, seed);
         let elsewhere = Elsewhere { turned, offset: f64::from(shift) * 1024.0 };
@@ -57,9 +58,9 @@ fn newton_and_fire_meet_in_a_minimum_near_by() {
         }
         assert!(tolerance < 1e-7, "the tolerance {tolerance:e} says nothing");
     }
-    check(Hertzian::default(), "hertz_N1000_p800");
-    check(Hertzian::default(), "hertz_N1000_p100");
-    check(Hookean::default(), "hooke_N1000_p5000");
+    check(hertzian(), "hertz_N1000_p800");
+    check(hertzian(), "hertz_N1000_p100");
+    check(hookean(), "hooke_N1000_p5000");
 }
 
 /// Far above jamming the three relaxers end in one minimum. Damped dynamics is held to no limit but the distance asked for:
@@ -67,7 +68,7 @@ fn newton_and_fire_meet_in_a_minimum_near_by() {
 #[test]
 #[ignore = "half a minute: the weekly tier runs it"]
 fn fire_damped_dynamics_and_staged_end_in_one_minimum_at_high_pressure() {
-    let (law, limit) = (Hertzian::default(), 1e-12);
+    let (law, limit) = (hertzian(), 1e-12);
     let damped = DampedDynamics { limit: ForceLimit::Relative(1e-10), step_limit: 80_000, ..DampedDynamics::default() };
     let mut together = 0;
     for index in 0..10 {
@@ -87,7 +88,7 @@ fn fire_damped_dynamics_and_staged_end_in_one_minimum_at_high_pressure() {
 /// Disks tied to their sites, rattlers without any contact among them: Newton and FIRE meet.
 #[test]
 fn tied_disks_end_where_fire_brings_them() {
-    let law = OnSite { law: Hertzian::default(), coupling: -1e3 };
+    let law = OnSite { law: hertzian(), coupling: -1e3 };
     let start = inflated("hertz_N1000_p100", 4);
     let limit = 1e-12;
     let [one, two] = [at_rest(relax(&newton(limit), start.clone(), &law)), at_rest(relax(&fire(limit), start, &law))];
@@ -101,7 +102,7 @@ fn tied_disks_end_where_fire_brings_them() {
 #[test]
 fn the_same_input_gives_the_same_bits() {
     let outcomes = || {
-        let (packing, law) = (points::<2>(100, 0.9, 14), Hertzian::default());
+        let (packing, law) = (points::<2>(100, 0.9, 14), hertzian());
         [relax(&newton(1e-10), packing.clone(), &law), relax(&staged(1e-10), packing, &law)]
     };
     for (one, two) in outcomes().into_iter().zip(outcomes()) {

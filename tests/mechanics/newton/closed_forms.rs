@@ -1,7 +1,7 @@
 //! Few disks whose rest is known in closed form, with Newton's method and the staged relaxer.
 
 use jamscope::forces::Assembly;
-use jamscope::law::{Hertzian, Hookean, OnSite};
+use jamscope::law::{Hookean, OnSite};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::{RelaxerChoice, Stop};
@@ -9,6 +9,7 @@ use jamscope::vector::norm;
 
 use super::{newton, staged};
 use crate::claims::closed_forms::{rests_in_the_middle, rests_under_one_force};
+use crate::scenes::laws::{hertzian, hookean};
 use crate::scenes::rest::{at_rest, relax};
 use crate::scenes::starts::cross;
 
@@ -71,7 +72,7 @@ fn a_disk_pushed_from_its_site_rests_where_contacts_hold_it_and_else_there_is_no
 /// overlap, a residual of a fifth a step.
 #[test]
 fn a_rattler_is_pushed_off_in_a_step() {
-    let law = Hertzian::default();
+    let law = hertzian();
     let mut packing = cross([0.0; 2]);
     // A fifth disk leans on the mobile one and on nothing else.
     let positions = [packing.positions(), &[[0.55f64, 0.55].map(|x| x * 0.99)]].concat();
@@ -90,7 +91,7 @@ fn a_rattler_is_pushed_off_in_a_step() {
 /// across: far below what counts as singular. It must not cost a factorisation of the disk that has to move.
 #[test]
 fn a_rattler_that_is_almost_free_costs_no_factorisation() {
-    let law = Hertzian::default();
+    let law = hertzian();
     let alone = cross([0.02, -0.013]);
     let positions = [alone.positions(), &[[2.0, 0.0]]].concat();
     let radii = [alone.radii(), &[0.5]].concat();
@@ -109,8 +110,8 @@ fn a_rattler_that_is_almost_free_costs_no_factorisation() {
 #[test]
 fn assemblies_are_left_where_they_were_found_when_nothing_is_to_do() {
     let packing = cross([0.0; 2]);
-    let mut assembly = Assembly::new(&packing, Hookean::default()).expect("no coincidence");
+    let mut assembly = Assembly::new(&packing, hookean()).expect("no coincidence");
     assert_eq!(assembly.evaluate_totals().contact_count, 4);
-    let outcome = relax(&newton(1e-8), packing.clone(), &Hookean::default());
+    let outcome = relax(&newton(1e-8), packing.clone(), &hookean());
     assert_eq!((outcome.state, outcome.cost.factorisation_count, outcome.cost.step_count), (packing, 0, 0));
 }

@@ -1,11 +1,12 @@
 //! How deep the relaxers get, and with how many factorisations.
 
-use jamscope::law::{Hertzian, Hookean, PairLaw, PowerLaw};
+use jamscope::law::{PairLaw, PowerLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::relax::{Criterion, Stop};
 use jamscope::vector::{larger, norm};
 
 use super::{fire, newton, staged};
+use crate::scenes::laws::{hertzian, hookean};
 use crate::scenes::rest::{at_rest, relax};
 use crate::scenes::starts::{inflated, points};
 
@@ -13,7 +14,7 @@ use crate::scenes::starts::{inflated, points};
 #[test]
 fn a_limit_of_zero_ends_at_the_rounding_floor() {
     for (name, index) in [("hertz_N1000_p1", 0), ("hertz_N1000_p100", 1), ("hertz_N1000_p800", 2)] {
-        let law = Hertzian::default();
+        let law = hertzian();
         let start = at_rest(relax(&staged(1e-10), inflated(name, index), &law));
         let ours = relax(&newton(0.0), start.clone(), &law);
         let theirs = relax(&fire(0.0), start, &law);
@@ -47,15 +48,15 @@ fn inflated_packings_come_to_rest_at_rounding_with_few_factorisations() {
             assert!(anew <= 1e-12 + 2.0 * outcome.rounding_floor, "{name}, {index}: {anew:e} anew");
         }
     }
-    check(Hertzian::default(), "hertz_N1000_p005", 60);
-    check(Hertzian::default(), "hertz_N1000_p1", 60);
-    check(Hertzian::default(), "hertz_N1000_p10", 60);
-    check(Hertzian::default(), "hertz_N1000_p100", 12);
-    check(Hertzian::default(), "hertz_N1000_p800", 12);
-    check(Hertzian::default(), "hertz_N5548_p100", 12);
-    check(Hookean::default(), "hooke_N1000_p100", 12);
-    check(Hookean::default(), "hooke_N1000_p800", 12);
-    check(Hookean::default(), "hooke_N1000_p5000", 12);
+    check(hertzian(), "hertz_N1000_p005", 60);
+    check(hertzian(), "hertz_N1000_p1", 60);
+    check(hertzian(), "hertz_N1000_p10", 60);
+    check(hertzian(), "hertz_N1000_p100", 12);
+    check(hertzian(), "hertz_N1000_p800", 12);
+    check(hertzian(), "hertz_N5548_p100", 12);
+    check(hookean(), "hooke_N1000_p100", 12);
+    check(hookean(), "hooke_N1000_p800", 12);
+    check(hookean(), "hooke_N1000_p5000", 12);
 }
 
 #[test]
@@ -73,10 +74,10 @@ fn random_points_come_to_rest_at_rounding() {
             assert!(outcome.cost.factorisation_count > 0);
         }
     }
-    check::<2, _>(Hertzian::default(), 400, 0.86);
-    check::<2, _>(Hertzian::default(), 400, 1.0);
-    check::<2, _>(Hookean::default(), 400, 0.9);
+    check::<2, _>(hertzian(), 400, 0.86);
+    check::<2, _>(hertzian(), 400, 1.0);
+    check::<2, _>(hookean(), 400, 0.9);
     check::<2, _>(PowerLaw { energy_scale: 1e5, exponent: 3.0 }, 400, 0.95);
-    check::<3, _>(Hertzian::default(), 200, 0.8);
-    check::<3, _>(Hookean::default(), 200, 0.75);
+    check::<3, _>(hertzian(), 200, 0.8);
+    check::<3, _>(hookean(), 200, 0.75);
 }

@@ -2,7 +2,7 @@
 //!
 //! Random cases come from proptest with a fixed seed, so every run sees the same ones; a failure prints its case.
 
-use jamscope::law::{Hertzian, Hookean, PairLaw};
+use jamscope::law::PairLaw;
 use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use jamscope::relax::{Check, Newton, Relaxer, RelaxerChoice, Stop};
@@ -13,6 +13,7 @@ use proptest::test_runner::RngSeed;
 use super::{fire, newton, staged};
 use crate::claims::only_falls::only_falls;
 use crate::claims::other_units::same_bits_in_other_units;
+use crate::scenes::laws::{hertzian, hookean};
 use crate::scenes::rest::{at_rest, moved, relax};
 use crate::scenes::square_lattice::square_lattice;
 use crate::scenes::starts::{inflated, points, shaken};
@@ -38,7 +39,7 @@ fn remainders<L: PairLaw>(network: &ContactNetwork<2>, law: &L, step: &[Vector<2
 /// what was to be gone. States after 0, 1, 2, … steps are held against that, disk by disk.
 #[test]
 fn the_residual_is_squared_at_each_step_near_a_minimum() {
-    let law = Hertzian::default();
+    let law = hertzian();
     let minimum = at_rest(relax(&staged(1e-13), inflated("hertz_N1000_p800", 1), &law));
     let network = ContactNetwork::new(&minimum, &law).expect("no coincidence");
     let least = network.backbone_contacts().map(|contact| contact.overlap).fold(f64::INFINITY, f64::min);
@@ -96,9 +97,9 @@ fn the_energy_falls_where_contacts_that_close_make_the_whole_step_climb() {
         let _ = settings.relax(near, &law, &mut |check: &Check| checks.push(*check)).expect("no coincidence");
         only_falls(&checks, 1.0, &format!("{law:?}"));
     }
-    check(Hookean::default(), "hooke_N1000_p100");
-    check(Hookean::default(), "hooke_N1000_p10");
-    check(Hertzian::default(), "hertz_N1000_p1");
+    check(hookean(), "hooke_N1000_p100");
+    check(hookean(), "hooke_N1000_p10");
+    check(hertzian(), "hertz_N1000_p1");
 }
 
 proptest! {
@@ -115,9 +116,9 @@ proptest! {
             only_falls(&checks, 1.0, &format!("{law:?}"));
         }
         match law {
-            0 => check(points::<2>(100, fraction, seed), &Hertzian::default()),
-            1 => check(points::<2>(100, fraction, seed), &Hookean::default()),
-            _ => check(points::<3>(60, fraction, seed), &Hertzian::default()),
+            0 => check(points::<2>(100, fraction, seed), &hertzian()),
+            1 => check(points::<2>(100, fraction, seed), &hookean()),
+            _ => check(points::<3>(60, fraction, seed), &hertzian()),
         }
     }
 }
@@ -138,8 +139,8 @@ fn a_saddle_is_left_downhill() {
             }
         }
     }
-    check(Hookean::default());
-    check(Hertzian::default());
+    check(hookean());
+    check(hertzian());
 }
 
 #[test]
@@ -154,7 +155,7 @@ fn a_relaxation_in_other_units_takes_the_same_steps_to_the_same_bits() {
 /// Nothing holds a periodic packing: forces add up to nothing, and so must steps.
 #[test]
 fn the_centre_of_mass_of_a_periodic_packing_stays() {
-    let (law, start) = (Hertzian::default(), points::<2>(200, 0.95, 4));
+    let (law, start) = (hertzian(), points::<2>(200, 0.95, 4));
     let near = at_rest(relax(&fire(1e-3), start, &law));
     let end = at_rest(relax(&newton(1e-12), near.clone(), &law));
     let (mut mean, mut way) = ([0.0; 2], 0.0);

@@ -2,6 +2,7 @@
 
 #[path = "../../scenes/lammps_inflated.rs"]
 pub mod lammps_inflated;
+pub mod laws;
 #[cfg_attr(not(feature = "linear"), allow(dead_code, reason = "most of it is for elastic constants and modes"))]
 pub mod published;
 pub mod random_disks;

@@ -76,7 +76,7 @@ pub fn packings() -> &'static [Vec<u8>] {
 
 /// The packings that a run of a few disks writes: in its box, before the inflation, and after it.
 pub fn run_files() -> Vec<Vec<u8>> {
-    let scene: Scene = toml::from_str(
+    let scene = Scene::from_toml(
         "disk_count = 60\n[observables.displacement_field]\n[[sample]]\nname = \"a\"\nseed = 2\nsource = { packing_fraction = 0.95 }\n",
     )
     .expect("a valid scene");

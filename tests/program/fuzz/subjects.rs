@@ -136,11 +136,11 @@ pub fn scene(path: &Path) -> Fault {
         Ok(scene) => scene,
         Err(error) => return nameless_scene(&error.to_string(), path),
     };
-    let text = match toml::to_string(&scene) {
+    let text = match scene.to_toml() {
         Ok(text) => text,
         Err(error) => return Some(format!("a scene that makes sense is not written: {error}")),
     };
-    match toml::from_str::<Scene>(&text) {
+    match Scene::from_toml(&text) {
         Ok(again) if again == scene => None,
         Ok(_) => Some(format!("a scene that makes sense comes back as another one:\n{text}")),
         Err(error) => Some(format!("a scene that makes sense is not read again: {error}")),
@@ -170,7 +170,7 @@ pub fn study(path: &Path) -> Fault {
 /// As `jamscope study` reads it; [`super::commands::plan`] goes through the program itself.
 fn read_study(path: &Path) -> Result<Study, String> {
     let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
-    let study: Study = toml::from_str(&text).map_err(|error| error.to_string())?;
+    let study = Study::from_toml(&text).map_err(|error| error.to_string())?;
     study.check().map_err(|error| error.to_string())?;
     scene_file::refuse_cut(&text)?;
     Ok(study)
