@@ -10,7 +10,7 @@ const LONGEST_FILE: usize = 450;
 const LONG: [&str; 1] = ["reference::bessel::modified_tables"];
 
 /// Names of files that are standard terms of physics, mathematics, numerical computing or programming.
-const STANDARD: [&str; 145] = [
+const STANDARD: [&str; 146] = [
     "analyse",
     "angular",
     "atomic",
@@ -43,6 +43,7 @@ const STANDARD: [&str; 145] = [
     "elasticity",
     "inspection",
     "toml_text",
+    "study_input",
     "ensemble",
     "error",
     "estimates",
