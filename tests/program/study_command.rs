@@ -193,7 +193,11 @@ fn a_bad_study_is_refused_by_file_and_field() {
         assert_eq!(output.status.code(), Some(1));
         String::from_utf8(output.stderr).expect("Unicode")
     };
-    assert!(complaint("presures = [1]").contains("study.toml: unknown field `presures`"));
+    let unknown = complaint("presures = [1]");
+    assert!(
+        unknown.contains("study.toml: ") && unknown.contains("line 1") && unknown.contains("unknown field `presures`"),
+        "{unknown}"
+    );
     assert!(complaint("targets = [{ pressure = -3.0 }]").contains("source.pressure = -3"));
     assert!(complaint("increases = [0.1, 0.1]").contains("increases: 0.1 occurs twice"));
     assert!(
