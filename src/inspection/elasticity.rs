@@ -29,7 +29,7 @@ pub struct Moduli {
     pub affine: Constants,
     /// After the relaxation of all disks.
     pub relaxed: Constants,
-    /// Largest backward error of a solution.
+    /// Largest backward error of a solution \[1\].
     pub backward_error: f64,
 }
 
@@ -121,11 +121,11 @@ pub enum Vibrations {
 /// Summary of one mode.
 #[derive(Debug, Serialize)]
 pub struct ModeSummary {
-    /// λ = ω² for masses 1.
+    /// λ = ω² for masses 1 \[force / length / mass\].
     pub eigenvalue: f64,
-    /// ‖K e − λ e‖ / ‖K‖.
+    /// ‖K e − λ e‖ / ‖K‖ \[1\].
     pub residual: f64,
-    /// Participation ratio.
+    /// Participation ratio, (Σ|e_i|²)²/(N Σ|e_i|⁴) \[1\].
     pub participation_ratio: f64,
 }
 

@@ -35,18 +35,18 @@ pub struct Inspection {
     pub disk_count: usize,
     /// Number of held disks.
     pub held_count: usize,
-    /// Sides of the box; absent in the open plane.
+    /// Sides of the box; absent in the open plane \[length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub box_sides: Option<Vec<f64>>,
-    /// Packing fraction; absent in the open plane.
+    /// Packing fraction; absent in the open plane \[1\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub packing_fraction: Option<f64>,
-    /// Elastic energy.
+    /// Elastic energy \[energy\].
     pub energy: f64,
-    /// Pressure; absent in the open plane, like all quantities per volume.
+    /// Pressure; absent in the open plane, like all quantities per volume \[force / length^(D−1)\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pressure: Option<f64>,
-    /// Stress tensor, positive in compression.
+    /// Stress tensor, positive in compression \[force / length^(D−1)\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stress: Option<Vec<Vec<f64>>>,
     /// Number of contacts.
@@ -55,19 +55,19 @@ pub struct Inspection {
     pub backbone_contact_count: usize,
     /// Number of rattlers.
     pub rattler_count: usize,
-    /// Coordination of the backbone, Z.
+    /// Coordination of the backbone, Z \[1\].
     pub coordination: f64,
     /// Z of an isostatic packing, 2 D.
     pub isostatic_coordination: usize,
-    /// Mean contact force of the backbone.
+    /// Mean contact force of the backbone \[force\].
     pub mean_contact_force: f64,
-    /// Largest contact force.
+    /// Largest contact force \[force\].
     pub largest_contact_force: f64,
-    /// Largest net force on any mobile disk.
+    /// Largest net force on any mobile disk \[force\].
     pub largest_net_force: f64,
-    /// Mean overlap of the contacts.
+    /// Mean overlap of the contacts \[length\].
     pub mean_overlap: f64,
-    /// Largest overlap.
+    /// Largest overlap \[length\].
     pub largest_overlap: f64,
     /// Its certificate.
     pub certificate: Certificate,
@@ -101,6 +101,12 @@ pub enum InspectionError {
         /// The error.
         source: PackingError,
     },
+    /// Not a dimension of packings.
+    #[error("dimension = {value}: must be 2 or 3")]
+    Dimension {
+        /// The value given.
+        value: usize,
+    },
     /// More modes than coordinates.
     #[error("{path}: {source}")]
     Modes {
@@ -111,8 +117,9 @@ pub enum InspectionError {
     },
 }
 
-/// Reads a packing of dimension 2 or 3 (any other number is taken as 2) and measures it under a law. `mode_count` is the number of vibrational
-/// modes, from the lowest; the feature `linear` must be on for any.
+/// Reads a packing of dimension 2 or 3 and measures it under a law.
+///
+/// `mode_count` is the number of vibrational modes, from the lowest; without the feature `linear` none are computed.
 ///
 /// # Errors
 /// See [`InspectionError`].
@@ -130,14 +137,18 @@ pub fn inspect(
         let checked = limit.check("--modes", mode_count, 8.0 * coordinate_count as f64);
         checked.map_err(|source| InspectionError::Modes { path: name(), source })
     };
-    let measured = if dimension == 3 {
-        let packing = read_packing::<3>(path)?;
-        modes(3 * packing.len())?;
-        Inspection::of(&packing, law, mode_count, settings)
-    } else {
-        let packing = read_packing::<2>(path)?;
-        modes(2 * packing.len())?;
-        Inspection::of(&packing, law, mode_count, settings)
+    let measured = match dimension {
+        2 => {
+            let packing = read_packing::<2>(path)?;
+            modes(2 * packing.len())?;
+            Inspection::of(&packing, law, mode_count, settings)
+        }
+        3 => {
+            let packing = read_packing::<3>(path)?;
+            modes(3 * packing.len())?;
+            Inspection::of(&packing, law, mode_count, settings)
+        }
+        value => return Err(InspectionError::Dimension { value }),
     };
     measured.map_err(|source| InspectionError::Packing { path: name(), source })
 }

@@ -10,7 +10,7 @@ const LONGEST_FILE: usize = 450;
 const LONG: [&str; 1] = ["reference::bessel::modified_tables"];
 
 /// Names of files that are standard terms of physics, mathematics, numerical computing or programming.
-const STANDARD: [&str; 146] = [
+const STANDARD: [&str; 145] = [
     "analyse",
     "angular",
     "atomic",
@@ -41,9 +41,6 @@ const STANDARD: [&str; 146] = [
     "dynamics",
     "elastic",
     "elasticity",
-    "inspection",
-    "toml_text",
-    "study_input",
     "ensemble",
     "error",
     "estimates",
@@ -65,7 +62,7 @@ const STANDARD: [&str; 146] = [
     "hessian",
     "implicit",
     "incomplete_beta",
-    "inspect",
+    "inspection",
     "integration",
     "interval",
     "io",
@@ -146,10 +143,12 @@ const STANDARD: [&str; 146] = [
     "statistics",
     "step",
     "store_error",
+    "study_input",
     "subset",
     "synthetic",
     "table",
     "threads",
+    "toml_text",
     "trajectory",
     "units",
     "vector",
