@@ -23,7 +23,7 @@ fn packing<L: PairLaw>(disks: usize, law: &L) -> Packing<2> {
 fn hot_loop<L: PairLaw>(criterion: &mut Criterion, name: &str, law: L) {
     let mut group = criterion.benchmark_group(format!("forces/{name}"));
     for disks in SIZES {
-        let mut assembly = Assembly::new(&packing(disks, &law), law).expect("a valid packing");
+        let mut assembly = Assembly::new(&packing(disks, &law), &law).expect("a valid packing");
         group.throughput(Throughput::Elements(disks as u64));
         group.bench_function(BenchmarkId::new("forces", disks), |bencher| bencher.iter(|| assembly.evaluate()));
         group.bench_function(BenchmarkId::new("forces_and_totals", disks), |bencher| {
@@ -44,13 +44,13 @@ fn lists(criterion: &mut Criterion) {
     group.sample_size(20);
     for disks in SIZES {
         let packing = packing(disks, &law);
-        let mut assembly = Assembly::new(&packing, law).expect("a valid packing");
+        let mut assembly = Assembly::new(&packing, &law).expect("a valid packing");
         group.throughput(Throughput::Elements(disks as u64));
         group.bench_function(BenchmarkId::new("rebuild", disks), |bencher| {
             bencher.iter(|| assembly.reanchor().expect("disks apart"));
         });
         group.bench_function(BenchmarkId::new("from_scratch", disks), |bencher| {
-            bencher.iter(|| Assembly::new(&packing, law).expect("a valid packing"));
+            bencher.iter(|| Assembly::new(&packing, &law).expect("a valid packing"));
         });
         group.bench_function(BenchmarkId::new("contact_network", disks), |bencher| {
             bencher.iter(|| ContactNetwork::new(&packing, &law).expect("a valid packing"));

@@ -27,7 +27,7 @@ fn stages(criterion: &mut Criterion) {
         let circle = circle(outer_radius);
         let disks = circle.mobile_count();
         group.throughput(Throughput::Elements(disks as u64));
-        let mut assembly = Assembly::new(&circle.packing, law).expect("disks apart");
+        let mut assembly = Assembly::new(&circle.packing, &law).expect("disks apart");
         group.bench_function(BenchmarkId::new("forces_and_totals", disks), |bencher| {
             bencher.iter(|| assembly.evaluate_totals())
         });

@@ -39,7 +39,7 @@ impl PairLaw for Stiffening {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (law, fire) = (Stiffening { stiffness: 2e5, scale: 0.2 }, Fire::default());
     let preparation = Preparation { disk_count: 500, target: Target::Pressure(2000.0), ..Preparation::default() };
-    let prepared = prepare_with::<2, _>(&preparation, &law, &fire, &mut ())?;
+    let prepared = prepare_with::<2>(&preparation, &law, &fire, &mut ())?;
     println!("p = {:.1} at φ = {:.4}", prepared.pressure, prepared.packing_fraction);
     let (inflation, seed) = (Inflation::default(), 1); // seed of the inflated disk; `&mut ()`: no observer
     let inflated = inflate_with(&inflation, prepared.packing.get(), &law, &fire, seed, &mut ())?;

@@ -154,12 +154,12 @@ impl Certificate {
     ///
     /// # Errors
     /// Two disks with the same centre; a box that is too small.
-    pub fn of<const D: usize, L: PairLaw>(
+    pub fn of<const D: usize>(
         packing: &Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         criterion: Option<Criterion>,
     ) -> Result<Self, PackingError> {
-        let assembly = Assembly::new(packing, *law)?;
+        let assembly = Assembly::new(packing, law)?;
         let network = ContactNetwork::new(packing, law)?;
         let (largest_net_force, mean_contact_force) = residual(packing, &network);
         let relative_residual = if largest_net_force == 0.0 { 0.0 } else { largest_net_force / mean_contact_force };
@@ -222,7 +222,7 @@ impl ContactCount {
 
 impl VirialIdentity {
     /// None without contacts, or if the scaled packing is invalid.
-    fn of<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L, network: &ContactNetwork<D>) -> Option<Self> {
+    fn of<const D: usize>(packing: &Packing<D>, law: &dyn PairLaw, network: &ContactNetwork<D>) -> Option<Self> {
         let contacts = &network.contacts;
         let overlap: f64 = contacts.iter().map(|contact| contact.overlap).sum();
         let distance: f64 = contacts.iter().map(|contact| norm(contact.separation)).sum();
@@ -256,9 +256,9 @@ fn compensated_energy<const D: usize>(network: &ContactNetwork<D>) -> (f64, f64)
 
 #[cfg(feature = "linear")]
 impl Stability {
-    fn of<const D: usize, L: PairLaw>(
+    fn of<const D: usize>(
         packing: &Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         network: &ContactNetwork<D>,
     ) -> Result<Self, PackingError> {
         if network.backbone_count() == 0 {

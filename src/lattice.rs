@@ -183,13 +183,13 @@ impl Lattice {
     }
 
     /// Force and stiffness of a contact.
-    fn contact<L: PairLaw>(&self, law: &L) -> (f64, f64) {
+    fn contact(&self, law: &dyn PairLaw) -> (f64, f64) {
         let force = law.force(law.coefficient(self.radius, self.radius), self.overlap());
         (force, law.stiffness(force, self.overlap()))
     }
 
     /// The long-wave moduli; none for the square lattice, which is not isotropic.
-    pub fn moduli<L: PairLaw>(&self, law: &L) -> Option<Moduli> {
+    pub fn moduli(&self, law: &dyn PairLaw) -> Option<Moduli> {
         let (force, stiffness) = self.contact(law);
         let (tension, scale) = (-force / self.spacing, self.spacing * self.spacing / self.cell_area());
         (self.arrangement == Arrangement::Triangular).then(|| Moduli {
@@ -201,7 +201,7 @@ impl Lattice {
     }
 
     /// B: far from a disk that grows by d_0 the displacement tends to B d_0/r \[length\]; none for the square lattice.
-    pub fn growth_amplitude<L: PairLaw>(&self, law: &L) -> Option<f64> {
+    pub fn growth_amplitude(&self, law: &dyn PairLaw) -> Option<f64> {
         let (force, stiffness) = self.contact(law);
         let push = stiffness + force * law.coefficient_growth(self.radius, self.radius);
         self.moduli(law).map(|moduli| 3.0 * push * self.spacing / (2.0 * PI * moduli.longitudinal))
@@ -209,7 +209,7 @@ impl Lattice {
 
     /// Γ for which the lattice responds as a screened medium with this κ² \[force / length\]: κ² (λ+2μ) A; negative for
     /// κ² < 0. None for the square lattice.
-    pub fn coupling<L: PairLaw>(&self, law: &L, squared_wavenumber: f64) -> Option<f64> {
+    pub fn coupling(&self, law: &dyn PairLaw, squared_wavenumber: f64) -> Option<f64> {
         self.moduli(law).map(|moduli| squared_wavenumber * moduli.longitudinal * self.cell_area())
     }
 

@@ -125,8 +125,8 @@ impl<const D: usize> ContactNetwork<D> {
     ///
     /// # Errors
     /// As in [`Assembly::new`].
-    pub fn new<L: PairLaw>(packing: &Packing<D>, law: &L) -> Result<Self, PackingError> {
-        let mut assembly = Assembly::new(packing, *law)?;
+    pub fn new(packing: &Packing<D>, law: &dyn PairLaw) -> Result<Self, PackingError> {
+        let mut assembly = Assembly::new(packing, law)?;
         let on_site_energy = assembly.evaluate_totals().on_site_energy;
         let order = assembly.order();
         let mut contacts: Vec<Contact<D>> = working_contacts(&assembly)
@@ -261,7 +261,7 @@ fn total(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// The contacts of an assembly, in working numbering and list order.
-pub fn working_contacts<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> Vec<Contact<D>> {
+pub fn working_contacts<const D: usize>(assembly: &Assembly<D>) -> Vec<Contact<D>> {
     let law = assembly.law();
     let mut contacts = Vec::with_capacity(assembly.pairs().len());
     each_contact(assembly, |(first, second), columns, place| {
@@ -284,7 +284,7 @@ pub struct Links {
 
 impl Links {
     /// Overwrites them by the present contacts of an assembly.
-    pub fn take<const D: usize, L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
+    pub fn take<const D: usize>(&mut self, assembly: &Assembly<D>) {
         let pairs = assembly.pairs();
         self.ends.resize(pairs.len(), (0, 0));
         self.forces.resize(pairs.len(), 0.0);
@@ -308,10 +308,7 @@ impl Links {
 }
 
 /// Calls a function of (disks, columns of the block, place in the columns) for every contact, in list order.
-fn each_contact<const D: usize, L: PairLaw>(
-    assembly: &Assembly<D, L>,
-    mut call: impl FnMut((u32, u32), &Columns<D>, usize),
-) {
+fn each_contact<const D: usize>(assembly: &Assembly<D>, mut call: impl FnMut((u32, u32), &Columns<D>, usize)) {
     let pairs = assembly.pairs();
     let mut columns = Columns::new();
     for block in &pairs.blocks {

@@ -45,43 +45,43 @@ pub fn fill<T: Send>(column: &mut Vec<T>, count: usize, make: impl Fn(usize) -> 
 /// # Panics
 /// If `work` panics.
 pub fn each<T: Send, R: Send>(pieces: impl Iterator<Item = T>, work: impl Fn(T) -> R + Send + Sync) -> Vec<R> {
-    #[cfg(not(feature = "parallel"))]
-    return pieces.map(work).collect();
+    // Plain loops: this is compiled for every piece of work, and each `collect` is some hundred lines of machine code.
+    let mut results = Vec::new();
     #[cfg(feature = "parallel")]
     {
-        let pieces: Vec<T> = pieces.collect();
-        if !is_shared(pieces.len()) {
-            return pieces.into_iter().map(work).collect();
+        let mut places = Vec::new();
+        for piece in pieces {
+            places.push(Mutex::new((Some(piece), None)));
         }
-        let places: Vec<Mutex<Place<T, R>>> =
-            pieces.into_iter().map(|piece| Mutex::new(Place::Waiting(piece))).collect();
-        for_each_index(places.len(), &|index| {
-            let mut place = places[index].lock().unwrap_or_else(PoisonError::into_inner);
-            if let Place::Waiting(piece) = std::mem::replace(&mut *place, Place::Taken) {
-                *place = Place::Done(work(piece));
+        let at = |index: usize| {
+            let (piece, result) = &mut *places[index].lock().unwrap_or_else(PoisonError::into_inner);
+            if let Some(piece) = piece.take() {
+                *result = Some(work(piece));
             }
-        });
-        let result = |place: Mutex<Place<T, R>>| match place.into_inner().unwrap_or_else(PoisonError::into_inner) {
-            Place::Done(result) => result,
-            Place::Waiting(_) | Place::Taken => unreachable!("every index comes once"),
         };
-        places.into_iter().map(result).collect()
+        for_each_index(places.len(), &at);
+        for place in places {
+            if let Some(result) = place.into_inner().unwrap_or_else(PoisonError::into_inner).1 {
+                results.push(result);
+            }
+        }
     }
+    #[cfg(not(feature = "parallel"))]
+    for piece in pieces {
+        results.push(work(piece));
+    }
+    results
 }
 
-/// A piece of a computation that several threads share.
-#[cfg(feature = "parallel")]
-enum Place<T, R> {
-    Waiting(T),
-    Taken,
-    Done(R),
-}
-
-/// Calls `work` once for every index below `count`, on several threads.
+/// Calls `work` once for every index below `count`, on several threads if these are enough.
 ///
 /// It is not generic, so the code of the thread pool is compiled only once.
 #[cfg(feature = "parallel")]
 fn for_each_index(count: usize, work: &(dyn Fn(usize) + Sync)) {
     use rayon::prelude::*;
-    (0..count).into_par_iter().with_max_len(1).for_each(work);
+    if is_shared(count) {
+        (0..count).into_par_iter().with_max_len(1).for_each(work);
+    } else {
+        (0..count).for_each(work);
+    }
 }

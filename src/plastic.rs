@@ -155,10 +155,10 @@ impl Default for LinearRangeSearch {
 ///
 /// # Cost
 /// Two relaxations for the ends and up to twice `halving_count` between, each from the given packing.
-pub fn linear_range<const D: usize, L: PairLaw>(
+pub fn linear_range<const D: usize>(
     packing: &Relaxed<Packing<D>>,
     response: &LinearResponse<D>,
-    law: &L,
+    law: &dyn PairLaw,
     relaxer: &impl Relaxer,
     search: &LinearRangeSearch,
 ) -> Result<LinearRange, PlasticError> {

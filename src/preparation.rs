@@ -211,9 +211,9 @@ pub fn prepare(preparation: &Preparation) -> Result<Prepared<2>, PreparationErro
 ///
 /// # Errors
 /// [`PreparationError`] says what is not possible, with numbers.
-pub fn prepare_with<const D: usize, L: PairLaw>(
+pub fn prepare_with<const D: usize>(
     preparation: &Preparation,
-    law: &L,
+    law: &dyn PairLaw,
     relaxer: &impl Relaxer,
     trace: &mut dyn Trace,
 ) -> Result<Prepared<D>, PreparationError> {
@@ -232,7 +232,7 @@ pub fn prepare_with<const D: usize, L: PairLaw>(
             if !(*tolerance > 0.0 && *tolerance < 1.0) {
                 return Err(PreparationError::ToleranceOutOfRange { tolerance: *tolerance });
             }
-            let quench = quench_fraction::<D, L>(law, mixture, pressure)?;
+            let quench = quench_fraction::<D>(law, mixture, pressure)?;
             let points = random_points::<D>(*disk_count, mixture, quench, *seed)?;
             Search { law, cost: Cost::default(), count: 0, quench }.meet(points, (pressure, *tolerance), relaxer, trace)
         }
@@ -240,7 +240,7 @@ pub fn prepare_with<const D: usize, L: PairLaw>(
 }
 
 /// Pressure after affine compression from jamming. Packings have about 0.7 of it; it only starts the search.
-fn affine_pressure<const D: usize, L: PairLaw>(law: &L, mixture: &Mixture, packing_fraction: f64) -> f64 {
+fn affine_pressure<const D: usize>(law: &dyn PairLaw, mixture: &Mixture, packing_fraction: f64) -> f64 {
     let total: f64 = mixture.components.iter().map(|kind| kind.share).sum();
     let mean =
         |f: &dyn Fn(f64) -> f64| mixture.components.iter().map(|kind| kind.share * f(kind.radius)).sum::<f64>() / total;
@@ -253,21 +253,21 @@ fn affine_pressure<const D: usize, L: PairLaw>(law: &L, mixture: &Mixture, packi
 }
 
 /// Packing fraction at which random points are quenched to reach a pressure.
-fn quench_fraction<const D: usize, L: PairLaw>(
-    law: &L,
+fn quench_fraction<const D: usize>(
+    law: &dyn PairLaw,
     mixture: &Mixture,
     pressure: f64,
 ) -> Result<f64, PreparationError> {
     // A quench closer to jamming is slow and often ends unjammed. The search decompresses from here.
     let lowest = jamming_fraction::<D>() + 0.004;
     let (mut low, mut high) = (lowest, 4.0);
-    let largest = 0.7 * affine_pressure::<D, L>(law, mixture, high);
+    let largest = 0.7 * affine_pressure::<D>(law, mixture, high);
     if largest < pressure {
         return Err(PreparationError::PressureOutOfReach { pressure, largest });
     }
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if 0.7 * affine_pressure::<D, L>(law, mixture, middle) < pressure { low = middle } else { high = middle }
+        if 0.7 * affine_pressure::<D>(law, mixture, middle) < pressure { low = middle } else { high = middle }
     }
     Ok(low)
 }
@@ -279,14 +279,14 @@ struct State<const D: usize> {
     root: f64,
 }
 
-struct Search<'a, L> {
-    law: &'a L,
+struct Search<'a> {
+    law: &'a dyn PairLaw,
     cost: Cost,
     count: usize,
     quench: f64,
 }
 
-impl<L: PairLaw> Search<'_, L> {
+impl Search<'_> {
     /// Relaxes a packing and computes its pressure.
     fn rest<const D: usize>(
         &mut self,

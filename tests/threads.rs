@@ -11,8 +11,8 @@ use jamscope::forces::Assembly;
 use jamscope::forces::advance::Advanced;
 use jamscope::forces::damped::{add_damping, damped_forces};
 use jamscope::io::read_packing;
-use jamscope::law::damping::{ConstantDamping, DampingLaw};
-use jamscope::law::{Hertzian, PairLaw};
+use jamscope::law::Hertzian;
+use jamscope::law::damping::{ConstantDamping, ContactDamping};
 use jamscope::packing::Packing;
 use jamscope::processor::{Processor, Vectors};
 use jamscope::relax::{Fire, ForceLimit, Precision, Relaxer};
@@ -39,7 +39,7 @@ fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
 
 #[test]
 fn forces_and_totals_have_the_bits_of_one_thread() {
-    let mut assembly = Assembly::new(&large(), Hertzian::default()).expect("disks apart");
+    let mut assembly = Assembly::new(&large(), &Hertzian::default()).expect("disks apart");
     let totals = assembly.evaluate_totals();
     let forces = assembly.forces.clone();
     let mut alone = assembly.clone();
@@ -53,13 +53,13 @@ fn forces_and_totals_have_the_bits_of_one_thread() {
 
 #[test]
 fn forces_across_tiles_are_those_of_the_plain_loop() {
-    let mut assembly = Assembly::new(&large(), Hertzian::default()).expect("disks apart");
+    let mut assembly = Assembly::new(&large(), &Hertzian::default()).expect("disks apart");
     // Apart from the anchors too: up to a tenth of the skin.
     for (index, displacement) in assembly.displacements.iter_mut().enumerate() {
         *displacement = sum(*displacement, [6e-3 * (index as f64).sin(), 6e-3 * (3.0 * index as f64).cos()]);
     }
     assembly.evaluate();
-    let (law, pairs) = (*assembly.law(), assembly.pairs());
+    let (law, pairs) = (assembly.law(), assembly.pairs());
     let mut plain = vec![[0.0; 2]; assembly.len()];
     let mut largest: f64 = 0.0;
     for pair in pairs.numbers() {
@@ -86,13 +86,13 @@ fn sums_of_stiffness_across_tiles_are_those_of_the_plain_loop() {
     for every in [usize::MAX, 3] {
         let held = (0..large().len()).map(|disk| disk == 20_000 || disk % every == 1).collect();
         let packing = large().with_held(held).expect("mobile disks");
-        let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("disks apart");
+        let mut assembly = Assembly::new(&packing, &Hertzian::default()).expect("disks apart");
         for (index, displacement) in assembly.displacements.iter_mut().enumerate() {
             *displacement = sum(*displacement, [6e-3 * (index as f64).sin(), 6e-3 * (3.0 * index as f64).cos()]);
         }
         let mut rows = vec![f64::NAN; 3];
         let bound = assembly.row_bound(&mut rows, None);
-        let (law, pairs, mobile) = (*assembly.law(), assembly.pairs(), assembly.mobile_count());
+        let (law, pairs, mobile) = (assembly.law(), assembly.pairs(), assembly.mobile_count());
         let mut plain = vec![0.0; assembly.len()];
         for pair in pairs.numbers() {
             let (i, j) = (pairs.first[pair] as usize, pairs.second[pair] as usize);
@@ -117,16 +117,17 @@ fn sums_of_stiffness_across_tiles_are_those_of_the_plain_loop() {
 
 #[test]
 fn damped_forces_across_tiles_are_elastic_forces_and_damping() {
-    let mut assembly = Assembly::new(&large(), Hertzian::default()).expect("disks apart");
+    let mut assembly = Assembly::new(&large(), &Hertzian::default()).expect("disks apart");
     assembly.evaluate();
-    let (law, damping, pairs) = (*assembly.law(), ConstantDamping { rate: 500.0 }, assembly.pairs());
+    let (law, damping, pairs) =
+        (assembly.law(), ContactDamping::Constant(ConstantDamping { rate: 500.0 }), assembly.pairs());
     let coefficients = vec![damping.coefficient(0.5, 0.5); pairs.place_count()];
     let wave = |disk: usize| [1e-2 * (disk as f64).sin(), 1e-2 * (2.0 * disk as f64).cos()];
     let (at, velocities) = (&assembly.displacements, (0..assembly.len()).map(wave).collect::<Vec<_>>());
     let mut apart = assembly.forces.clone();
     let power = add_damping(&damping, pairs, &coefficients, at, &velocities, &mut apart);
     let mut together = vec![[f64::NAN; 2]; assembly.len()];
-    let found = damped_forces((&law, &damping), pairs, &coefficients, at, &velocities, &mut together);
+    let found = damped_forces((law, &damping), pairs, &coefficients, at, &velocities, &mut together);
     // Sums of 10⁵ terms of one sign in another order, 10⁻¹⁶ each.
     assert!((found - power).abs() < 1e-11 * power && power > 0.0, "{found} for {power}");
     let largest = apart.iter().map(|&force| norm(force)).fold(0.0, f64::max);
@@ -152,7 +153,7 @@ fn tiles_and_packed_lists_have_the_same_bits_with_every_kernel() {
         .into_iter()
         .map(|processor| {
             processor.run(|| {
-                let mut assembly = Assembly::new(&large(), law).expect("disks apart");
+                let mut assembly = Assembly::new(&large(), &law).expect("disks apart");
                 let totals = assembly.evaluate_totals();
                 let ends = [Precision::Double, Precision::Mixed].map(|precision| {
                     let limit = ForceLimit::Relative(0.0);
@@ -196,7 +197,7 @@ fn a_relaxation_has_the_bits_of_one_thread() {
 }
 
 /// Velocities of the mobile disks, as if they had been moving.
-fn velocities(assembly: &Assembly<2, Hertzian>) -> Vec<[f64; 2]> {
+fn velocities(assembly: &Assembly<2>) -> Vec<[f64; 2]> {
     (0..assembly.mobile_count()).map(|disk| [1e-3 * (disk as f64).sin(), 1e-3 * (2.0 * disk as f64).cos()]).collect()
 }
 
@@ -233,7 +234,7 @@ fn a_step_tile_by_tile_has_the_bits_of_one_array_by_array() {
 }
 
 fn check_a_step(packing: Packing<2>) {
-    let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("disks apart");
+    let mut assembly = Assembly::new(&packing, &Hertzian::default()).expect("disks apart");
     assembly.evaluate();
     let mobile = assembly.mobile_count();
     let mut apart = (assembly.clone(), velocities(&assembly));

@@ -142,7 +142,7 @@ struct Energy {
 }
 
 struct Evaluated {
-    assembly: Assembly<2, Hertzian>,
+    assembly: Assembly<2>,
     /// What anchors have taken over so far.
     taken: Vec<Vector<2>>,
     at: Vec<f64>,
@@ -155,7 +155,7 @@ struct Evaluated {
 
 impl Energy {
     fn new(start: &Packing<2>, backbone: &[bool]) -> Result<Self, Box<dyn Error>> {
-        let assembly = Assembly::new(start, Hertzian::default())?;
+        let assembly = Assembly::new(start, &Hertzian::default())?;
         let mobile = assembly.mobile_count();
         let stiffness = assembly.stiffness_bound(&mut Vec::new());
         let backbone = assembly.order()[..mobile].iter().map(|&disk| backbone[disk as usize]).collect();

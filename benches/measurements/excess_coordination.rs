@@ -68,7 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         for seed in 1..=seed_count {
             let seed = (1000 * index + seed) as u64;
             let preparation = Preparation { disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed };
-            let prepared = prepare_with::<2, _>(&preparation, &Hertzian::default(), &relaxer, &mut ())?;
+            let prepared = prepare_with::<2>(&preparation, &Hertzian::default(), &relaxer, &mut ())?;
             let network = ContactNetwork::new(prepared.packing.get(), &Hertzian::default())?;
             // An unjammed packing, near φ = 0.843 one in a few, has no ΔZ.
             let Some(excess) = ExcessCoordination::of(&network) else { continue };

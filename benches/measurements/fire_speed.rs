@@ -61,11 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 }
 
-fn timed<L: PairLaw>(
-    packing: Packing<2>,
-    law: &L,
-    (steps, precision): (usize, Precision),
-) -> Result<(), Box<dyn Error>> {
+fn timed(packing: Packing<2>, law: &dyn PairLaw, (steps, precision): (usize, Precision)) -> Result<(), Box<dyn Error>> {
     let disks = packing.len();
     let fire = Fire { limit: ForceLimit::Relative(0.0), step_limit: steps, precision, ..Fire::default() };
     // One thread does all the work (RAYON_NUM_THREADS=1), so its time is the time of the relaxation.

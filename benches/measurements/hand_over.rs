@@ -80,7 +80,7 @@ fn prepared(
     let preparation = Preparation { disk_count, mixture, target, tolerance: 0.2, seed: 1 };
     let coarse = Staged { limit: ForceLimit::Relative(1e-6), ..Staged::default() };
     let clock = Instant::now();
-    let prepared = prepare_with::<2, _>(&preparation, law, &coarse, &mut ())?;
+    let prepared = prepare_with::<2>(&preparation, law, &coarse, &mut ())?;
     let (pressure, seconds) = (prepared.pressure, clock.elapsed().as_secs_f64());
     println!("prepared {disk_count} at p = {pressure:.4}: {} relaxations, {seconds:.0} s", prepared.relaxation_count);
     if let Some(file) = file {

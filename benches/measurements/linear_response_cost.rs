@@ -61,7 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             times[stage].push(1e3 * clock.elapsed().as_secs_f64());
             clock = Instant::now();
         };
-        let assembly = Assembly::new(&circle.packing, law)?;
+        let assembly = Assembly::new(&circle.packing, &law)?;
         lap(0);
         let mut hessian = Hessian::of(&assembly, Members::Backbone, Prestress::Included);
         lap(1);
@@ -104,7 +104,7 @@ fn prepared(law: &Hertzian) -> Result<Packing<2>, Box<dyn Error>> {
     let (mixture, target) = (Mixture::default(), Target::Pressure(100.0));
     let preparation = Preparation { disk_count: 88_776, mixture, target, tolerance: 0.2, seed: 1 };
     let staged = Staged { limit: ForceLimit::Relative(1e-6), ..Staged::default() };
-    Ok(prepare_with::<2, _>(&preparation, law, &staged, &mut ())?.packing.get().clone())
+    Ok(prepare_with::<2>(&preparation, law, &staged, &mut ())?.packing.get().clone())
 }
 
 /// A number of the kernel's table of this process, in MiB; none where there is no such table.

@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let target = Target::PackingFraction(0.75);
         let preparation = Preparation { disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
         let fire = Fire { limit: ForceLimit::Relative(1e-6), ..Fire::default() };
-        compare(prepare_with::<3, _>(&preparation, &Hertzian::default(), &fire, &mut ())?.packing.get(), folder)?;
+        compare(prepare_with::<3>(&preparation, &Hertzian::default(), &fire, &mut ())?.packing.get(), folder)?;
     }
     Ok(())
 }

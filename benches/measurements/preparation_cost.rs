@@ -17,10 +17,10 @@ use jamscope::relax::{Cost, Fire, Outcome, Relaxer, Staged, Trace};
 struct PassingAt<R>(R, Option<f64>);
 
 impl<R: Relaxer> Relaxer for PassingAt<R> {
-    fn relax<const D: usize, L: PairLaw>(
+    fn relax<const D: usize>(
         &self,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         self.0.relax(packing, law, trace)
@@ -76,7 +76,7 @@ fn made(disk_count: usize, pressure: f64, seeds: u64, relaxer: &impl Relaxer) ->
     for seed in 1..=seeds {
         let target = Target::Pressure(pressure);
         let preparation = Preparation { disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed };
-        let prepared = prepare_with::<2, _>(&preparation, &Hertzian::default(), relaxer, &mut ())?;
+        let prepared = prepare_with::<2>(&preparation, &Hertzian::default(), relaxer, &mut ())?;
         count += prepared.relaxation_count;
         cost = cost.plus(prepared.cost);
     }

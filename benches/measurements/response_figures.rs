@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (law, fire) = (Hertzian::default(), Fire::default());
     let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
     let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed };
-    let packing = prepare_with::<2, _>(&preparation, &law, &fire, &mut ())?.packing.into_inner();
+    let packing = prepare_with::<2>(&preparation, &law, &fire, &mut ())?.packing.into_inner();
     // r_out/L as the sizes of the study have it.
     let share = if disk_count < 10_000 {
         0.480

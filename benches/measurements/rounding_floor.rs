@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             seed: 1,
         };
         let coarse = Fire { limit: ForceLimit::Relative(1e-6), ..Fire::default() };
-        let prepared = prepare_with::<2, _>(&preparation, &law, &coarse, &mut ())?;
+        let prepared = prepare_with::<2>(&preparation, &law, &coarse, &mut ())?;
         let endless = Fire { limit: ForceLimit::Relative(0.0), ..Fire::default() };
         let outcome = endless.relax(prepared.packing.into_inner(), &law, &mut ())?;
         let network = ContactNetwork::new(&outcome.state, &law)?;

@@ -19,7 +19,7 @@ use std::error::Error;
 use jamscope::forces::damped::add_damping;
 use jamscope::inflation::{Centre, Circle, choose_centre};
 use jamscope::io::read_packing;
-use jamscope::law::damping::{ConstantDamping, DampingLaw};
+use jamscope::law::damping::{ConstantDamping, ContactDamping};
 use jamscope::law::{Hertzian, PairLaw};
 use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::network::ContactNetwork;
@@ -47,7 +47,7 @@ fn main() -> Result<(), Failure> {
     for pressure in PREPARED {
         let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
         let preparation = Preparation { disk_count: 400, mixture, target, tolerance: 0.1, seed: 1 };
-        packings.push(prepare_with::<2, _>(&preparation, &law, &Staged::default(), &mut ())?.packing.into_inner());
+        packings.push(prepare_with::<2>(&preparation, &law, &Staged::default(), &mut ())?.packing.into_inner());
     }
     let folder = format!("{}/fixtures/packings", env!("CARGO_MANIFEST_DIR"));
     for (place, name) in STORED.iter().enumerate() {
@@ -59,7 +59,7 @@ fn main() -> Result<(), Failure> {
         "p", "disks", "damping", "bisected", "theory", "separate", "rows", "share"
     );
     for start in &starts {
-        longest_step(start, "constant", ConstantDamping { rate: RATE })?;
+        longest_step(start, "constant", ContactDamping::Constant(ConstantDamping { rate: RATE }))?;
         longest_step(start, "viscoelastic", law.viscoelastic(RATE))?;
     }
     println!(
@@ -67,12 +67,12 @@ fn main() -> Result<(), Failure> {
         "p", "damping", "step", "steps", "grew", "refused", "left", "apart"
     );
     for start in &starts {
-        long_steps(start, "constant", ConstantDamping { rate: RATE })?;
+        long_steps(start, "constant", ContactDamping::Constant(ConstantDamping { rate: RATE }))?;
         long_steps(start, "viscoelastic", law.viscoelastic(RATE))?;
     }
     println!("\n{:>8} {:>13} {:>9} {:>8} {:>9} {:>9}", "p", "damping", "scheme", "step", "steps", "error");
     for start in &starts {
-        balances(start, "constant", ConstantDamping { rate: RATE })?;
+        balances(start, "constant", ContactDamping::Constant(ConstantDamping { rate: RATE }))?;
         balances(start, "viscoelastic", law.viscoelastic(RATE))?;
     }
     Ok(())
@@ -109,16 +109,16 @@ impl Start {
 }
 
 /// The linear motion about a state at rest: its matrices on the mobile disks, in working order.
-struct Linear<C> {
-    motion: Motion<2, Hertzian, C>,
+struct Linear {
+    motion: Motion<2>,
     hessian: Hessian<2>,
-    damping: C,
+    damping: ContactDamping,
     /// Mean overlap by force, α Σu / ΣF.
     overlap: f64,
 }
 
-impl<C: DampingLaw> Linear<C> {
-    fn new(packing: &Packing<2>, damping: C) -> Result<Self, Failure> {
+impl Linear {
+    fn new(packing: &Packing<2>, damping: ContactDamping) -> Result<Self, Failure> {
         let law = Hertzian::default();
         let mut motion = Motion::new(packing, &law, &damping)?;
         let totals = motion.assembly.evaluate_totals();
@@ -180,7 +180,7 @@ impl<C: DampingLaw> Linear<C> {
     }
 }
 
-fn longest_step<C: DampingLaw>(start: &Start, name: &str, damping: C) -> Result<(), Failure> {
+fn longest_step(start: &Start, name: &str, damping: ContactDamping) -> Result<(), Failure> {
     let mut linear = Linear::new(&start.rest, damping)?;
     let mobile = linear.motion.assembly.mobile_count();
     let step_of = |damping: f64, stiffness: f64| 2.0 * ((damping * damping + stiffness).sqrt() - damping) / stiffness;
@@ -205,7 +205,7 @@ fn longest_step<C: DampingLaw>(start: &Start, name: &str, damping: C) -> Result<
     Ok(())
 }
 
-fn long_steps<C: DampingLaw>(start: &Start, name: &str, damping: C) -> Result<(), Failure> {
+fn long_steps(start: &Start, name: &str, damping: ContactDamping) -> Result<(), Failure> {
     let mut linear = Linear::new(&start.rest, damping)?;
     let (mobile, bound) = (linear.motion.assembly.mobile_count(), linear.motion.stable_step());
     for (times, step_count) in [(1.0, 1000), (1e2, 1000), (1e4, 100), (1e6, 20)] {
@@ -237,7 +237,7 @@ fn long_steps<C: DampingLaw>(start: &Start, name: &str, damping: C) -> Result<()
     Ok(())
 }
 
-fn balances<C: DampingLaw>(start: &Start, name: &str, damping: C) -> Result<(), Failure> {
+fn balances(start: &Start, name: &str, damping: ContactDamping) -> Result<(), Failure> {
     let bound = Linear::new(&start.rest, damping)?.motion.stable_step();
     let time = 500.0 * bound;
     let line = |scheme: &str, share: f64, steps: usize, lost: f64, work: f64| {
@@ -280,12 +280,7 @@ fn balances<C: DampingLaw>(start: &Start, name: &str, damping: C) -> Result<(), 
 }
 
 /// Adds damping forces; the power they take.
-fn damp<C: DampingLaw>(
-    motion: &Motion<2, Hertzian, C>,
-    damping: &C,
-    velocities: &[Vector<2>],
-    forces: &mut [Vector<2>],
-) -> f64 {
+fn damp(motion: &Motion<2>, damping: &ContactDamping, velocities: &[Vector<2>], forces: &mut [Vector<2>]) -> f64 {
     let (pairs, radii) = (motion.assembly.pairs(), motion.assembly.radii());
     let of_pair = |(&i, &j): (&u32, &u32)| damping.coefficient(radii[i as usize], radii[j as usize]);
     let coefficients: Vec<f64> = pairs.first.iter().zip(&pairs.second).map(of_pair).collect();

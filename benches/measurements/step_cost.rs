@@ -17,7 +17,7 @@ use std::time::Instant;
 use jamscope::inflation::{Centre, Circle, choose_centre};
 use jamscope::io::read_packing;
 use jamscope::law::Hertzian;
-use jamscope::law::damping::ConstantDamping;
+use jamscope::law::damping::{ConstantDamping, ContactDamping};
 use jamscope::packing::Packing;
 use jamscope::relax::Motion;
 use jamscope::relax::implicit::{ImplicitMotion, Inertia};
@@ -35,7 +35,7 @@ const EXPLICIT_COUNT: usize = 16;
 const STAGE_COUNT: usize = 8;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let (law, damping) = (Hertzian::default(), ConstantDamping { rate: 500.0 });
+    let (law, damping) = (Hertzian::default(), ContactDamping::Constant(ConstantDamping { rate: 500.0 }));
     for path in std::env::args().skip(1) {
         let start = inflated(&read_packing::<2>(&path)?)?;
         let mut explicit = Motion::new(&start, &law, &damping)?;

@@ -139,7 +139,7 @@ impl Analysis {
 }
 
 impl StateAnalysis {
-    fn of<L: PairLaw>(state: &State<'_, 2>, pair: &Pair, law: &L) -> Result<Self, PackingError> {
+    fn of(state: &State<'_, 2>, pair: &Pair, law: &dyn PairLaw) -> Result<Self, PackingError> {
         let (packing, network) = (state.packing, &state.network);
         let pressure = match (pair.boundary, packing.domain().volume()) {
             _ if is_unjammed(state, law) => 0.0,
@@ -161,7 +161,7 @@ impl StateAnalysis {
 
 /// Whether a state is unjammed: without a backbone, or with contact forces that count as zero in the sense of
 /// [`UNJAMMED_FORCE`]. Rounding may leave overlaps in an unjammed packing that resemble a backbone.
-fn is_unjammed<L: PairLaw>(state: &State<'_, 2>, law: &L) -> bool {
+fn is_unjammed(state: &State<'_, 2>, law: &dyn PairLaw) -> bool {
     let network = &state.network;
     let radius = state.packing.radii().iter().copied().fold(f64::INFINITY, f64::min);
     let total: f64 = network.contacts.iter().map(|contact| contact.force).sum();

@@ -4,6 +4,7 @@
 //! (`ListKeeper`). A relaxer moves the displacements, records by how much, and evaluates the forces.
 
 use std::ops::{Range, RangeInclusive};
+use std::sync::Arc;
 
 use crate::forces::advance::{Advanced, Movers, Reach, advance};
 use crate::forces::elastic;
@@ -28,8 +29,8 @@ const UPDATED_SKIN: f64 = 0.2;
 
 /// A packing under a contact law, in working order.
 #[derive(Debug, Clone)]
-pub struct Assembly<const D: usize, L> {
-    law: L,
+pub struct Assembly<const D: usize> {
+    law: Arc<dyn PairLaw>,
     layout: Layout<D>,
     lists: ListKeeper<D>,
     /// Forces of pairs whose second disks are in other tiles.
@@ -42,13 +43,13 @@ pub struct Assembly<const D: usize, L> {
     pub forces: Vec<Vector<D>>,
 }
 
-impl<const D: usize, L: PairLaw> Assembly<D, L> {
+impl<const D: usize> Assembly<D> {
     /// Lays out a packing and builds its neighbour list.
     ///
     /// # Errors
     /// A box too small for the minimum-image convention, or two disks with the same centre (named by the caller's
     /// indices).
-    pub fn new(packing: &Packing<D>, law: L) -> Result<Self, PackingError> {
+    pub fn new(packing: &Packing<D>, law: &dyn PairLaw) -> Result<Self, PackingError> {
         Self::with_skin(packing, law, SKIN)
     }
 
@@ -57,7 +58,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     ///
     /// # Errors
     /// As in [`Assembly::new`].
-    pub fn with_incremental_updates(packing: &Packing<D>, law: L) -> Result<Self, PackingError> {
+    pub fn with_incremental_updates(packing: &Packing<D>, law: &dyn PairLaw) -> Result<Self, PackingError> {
         let narrowest = if PairList::<D>::are_long(packing.len()) { UPDATED_SKIN } else { SKIN };
         Self::with_skins(packing, law, narrowest..=SKIN)
     }
@@ -66,11 +67,11 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     ///
     /// # Errors
     /// As in [`Assembly::new`].
-    pub fn with_skin(packing: &Packing<D>, law: L, skin: f64) -> Result<Self, PackingError> {
+    pub fn with_skin(packing: &Packing<D>, law: &dyn PairLaw, skin: f64) -> Result<Self, PackingError> {
         Self::with_skins(packing, law, skin..=skin)
     }
 
-    fn with_skins(packing: &Packing<D>, law: L, skins: RangeInclusive<f64>) -> Result<Self, PackingError> {
+    fn with_skins(packing: &Packing<D>, law: &dyn PairLaw, skins: RangeInclusive<f64>) -> Result<Self, PackingError> {
         let (layout, displacements) = Layout::of(packing, law.has_sites());
         let smallest_radius = layout.radii.iter().copied().fold(f64::INFINITY, f64::min);
         let largest = layout.radii.iter().copied().fold(0.0, f64::max);
@@ -79,7 +80,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         let most = shortest.map_or(f64::INFINITY, |shortest| (0.5 * shortest - 2.0 * largest).max(0.0));
         let [narrowest, widest] = [skins.start(), skins.end()].map(|skin| most.min(skin * smallest_radius));
         let mut assembly = Assembly {
-            law,
+            law: law.shared(),
             layout,
             lists: ListKeeper::new(smallest_radius, narrowest..=widest),
             border_forces: BorderForces::default(),
@@ -134,8 +135,13 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     }
 
     /// The contact law.
-    pub fn law(&self) -> &L {
-        &self.law
+    pub fn law(&self) -> &dyn PairLaw {
+        self.law.as_ref()
+    }
+
+    /// The contact law, to be held by others.
+    pub(crate) fn shared_law(&self) -> Arc<dyn PairLaw> {
+        Arc::clone(&self.law)
     }
 
     /// The neighbour list in use: every pair that may touch before the list is changed.
@@ -160,7 +166,13 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
 
     /// Evaluates the forces at the present displacements into [`Assembly::forces`].
     pub fn evaluate(&mut self) {
-        elastic::forces(&self.law, self.lists.in_use(), &self.displacements, &mut self.border_forces, &mut self.forces);
+        elastic::forces(
+            self.law.as_ref(),
+            self.lists.in_use(),
+            &self.displacements,
+            &mut self.border_forces,
+            &mut self.forces,
+        );
         if self.law.has_sites() {
             let _ = self.add_on_site_forces();
         }
@@ -190,7 +202,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         };
         let reach = Reach { limit, bounds, longest };
         Advanced::of(advance(
-            &Plain { law: &self.law, pairs },
+            &Plain { law: self.law.as_ref(), pairs },
             pairs,
             (movers, &mut self.border_forces),
             reach,
@@ -203,7 +215,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     pub fn evaluate_totals(&mut self) -> Totals<D> {
         let pairs = self.lists.in_use();
         let mut totals = elastic::forces_and_totals(
-            &self.law,
+            self.law.as_ref(),
             pairs,
             &self.displacements,
             &mut self.border_forces,
@@ -272,7 +284,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// Two disks with the same centre.
     pub fn reanchor(&mut self) -> Result<(), PackingError> {
         self.layout.absorb(&mut self.displacements, &mut self.checkpoint);
-        let law = self.law;
+        let law = &self.law;
         let built = self.lists.build(&self.layout.disks(&self.displacements), &|a, b| law.coefficient(a, b));
         built.map_err(|error| self.layout.in_callers_order(error))
     }
@@ -302,12 +314,12 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
         if self.keep()? {
             return Ok(true);
         }
-        let law = self.law;
+        let law = &self.law;
         Ok(self.lists.update_ahead(&self.layout.disks(&self.displacements), &|a, b| law.coefficient(a, b)))
     }
 
     fn keep(&mut self) -> Result<bool, PackingError> {
-        let law = self.law;
+        let law = &self.law;
         let disks = self.layout.disks(&self.displacements);
         match self.lists.keep(&disks, &|a, b| law.coefficient(a, b)) {
             Kept::Unchanged => Ok(false),
@@ -364,7 +376,7 @@ impl<const D: usize, L: PairLaw> Assembly<D, L> {
     /// each contact.
     pub fn row_bound(&self, row: &mut Vec<f64>, weight: Option<&Weight<'_>>) -> f64 {
         row.resize(self.len(), 0.0);
-        stiffness_rows(&self.law, self.pairs(), &self.displacements, self.mobile_count(), weight, row);
+        stiffness_rows(self.law.as_ref(), self.pairs(), &self.displacements, self.mobile_count(), weight, row);
         row[..self.mobile_count()].iter().fold(0.0, |most, &value| if value > most { value } else { most })
     }
 }

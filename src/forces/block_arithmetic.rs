@@ -5,13 +5,13 @@
 //! pairs depend on each other, and the processor must overlap those of many vectors. Short passes let it do so.
 //! Meanwhile a later block of the list is prefetched.
 
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::block::{BLOCK, Block};
 use crate::neighbours::pair_block::PairBlock;
 use crate::neighbours::pair_list::PairList;
-use crate::processor::Processor;
+use crate::processor::{self, Processor};
 use crate::simd::components;
 use crate::simd::prefetch::Cache;
 use crate::simd::roots::{positive_part, reciprocal, square_roots};
@@ -49,12 +49,23 @@ pub(crate) struct Columns<const D: usize> {
 pub(crate) struct Anchors<'a, const D: usize> {
     pair_count: usize,
     block: &'a PairBlock<D>,
+    /// Whether the law reads the column of coefficients.
+    has_coefficients: bool,
 }
 
 impl<'a, const D: usize> Anchors<'a, D> {
     #[inline(always)]
-    pub fn of(pairs: &'a PairList<D>, block: &Block) -> Self {
-        Anchors { pair_count: block.pair_count, block: &pairs.pair_blocks[block.pairs / BLOCK] }
+    pub fn of(law: &dyn PairLaw, pairs: &'a PairList<D>, block: &Block) -> Self {
+        Anchors {
+            pair_count: block.pair_count,
+            block: &pairs.pair_blocks[block.pairs / BLOCK],
+            has_coefficients: !law.has_one_coefficient(),
+        }
+    }
+
+    /// Number of pairs, rounded up to an even number of vectors of any width.
+    fn place_count(&self) -> usize {
+        self.pair_count.next_multiple_of(16).min(BLOCK)
     }
 
     /// Number of vectors of pairs, always even.
@@ -77,18 +88,47 @@ impl<const D: usize> Columns<D> {
     }
 
     /// Computes separations, overlaps and reciprocal distances from the relative displacements.
+    pub fn compute_overlaps(&mut self, anchors: &Anchors<'_, D>) {
+        processor::dispatch(Overlaps { columns: self, anchors });
+    }
+
+    /// Computes the forces from the overlaps.
+    pub fn compute_forces(&mut self, law: &dyn PairLaw, anchors: &Anchors<'_, D>) {
+        let count = anchors.place_count();
+        law.forces(&anchors.block.coefficient[..count], &self.overlap[..count], &mut self.force[..count]);
+    }
+
+    /// Computes the force on each first disk from the magnitudes, into `pair_vectors`.
+    ///
+    /// No other result is stored. Force over distance would have an address 4096 bytes from the separation that is read
+    /// next. Processors that compare only the low 12 bits of addresses would then delay that read.
+    pub fn resolve(&mut self, anchors: &Anchors<'_, D>) {
+        processor::dispatch(Resolve { columns: self, anchors });
+    }
+}
+
+/// Separations, overlaps and reciprocal distances of a block.
+struct Overlaps<'a, const D: usize> {
+    columns: &'a mut Columns<D>,
+    anchors: &'a Anchors<'a, D>,
+}
+
+impl<const D: usize> WithSimd for Overlaps<'_, D> {
+    type Output = ();
+
     #[inline(always)]
-    pub fn compute_overlaps<S: Simd>(&mut self, simd: S, anchors: &Anchors<'_, D>) {
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Overlaps { columns, anchors } = self;
         let (count, block) = (anchors.vector_count::<S>(), anchors.block);
         let cache = Cache::here();
         let ahead = places_ahead::<D>(cache);
         let read = |column| &S::as_simd_f64s(column).0[..count];
         let anchor_separation = block.separation.each_ref().map(|column| read(&column[..]));
         let anchor_overlap = read(&block.overlap);
-        let moved = &S::as_simd_f64s(self.pair_vectors.as_flattened()).0[..D * count];
-        let separation = self.separation.each_mut().map(|column| &mut S::as_mut_simd_f64s(column).0[..count]);
-        let overlap = &mut S::as_mut_simd_f64s(&mut self.overlap).0[..count];
-        let inverse = &mut S::as_mut_simd_f64s(&mut self.inverse).0[..count];
+        let moved = &S::as_simd_f64s(columns.pair_vectors.as_flattened()).0[..D * count];
+        let separation = columns.separation.each_mut().map(|column| &mut S::as_mut_simd_f64s(column).0[..count]);
+        let overlap = &mut S::as_mut_simd_f64s(&mut columns.overlap).0[..count];
+        let inverse = &mut S::as_mut_simd_f64s(&mut columns.inverse).0[..count];
         let anchor_distance = read(&block.distance);
         let (zero, roots) = (simd.splat_f64s(0.0), Processor::here().roots());
         for k in (0..count).step_by(2) {
@@ -127,81 +167,34 @@ impl<const D: usize> Columns<D> {
             cache.prefetch(&block.overlap, ahead + k * S::F64_LANES);
         }
     }
+}
 
-    /// Computes the forces from the overlaps. With `RESOLVE`, it also does the work of [`Columns::resolve`].
+/// The force on each first disk of a block.
+struct Resolve<'a, const D: usize> {
+    columns: &'a mut Columns<D>,
+    anchors: &'a Anchors<'a, D>,
+}
+
+impl<const D: usize> WithSimd for Resolve<'_, D> {
+    type Output = ();
+
     #[inline(always)]
-    pub fn compute_forces<S: Simd, L: PairLaw, const RESOLVE: bool>(
-        &mut self,
-        simd: S,
-        law: &L,
-        anchors: &Anchors<'_, D>,
-    ) {
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Resolve { columns, anchors } = self;
         let (count, block) = (anchors.vector_count::<S>(), anchors.block);
         let cache = Cache::here();
         let ahead = places_ahead::<D>(cache);
-        let coefficient = &S::as_simd_f64s(&block.coefficient).0[..count];
-        let one = simd.splat_f64s(block.coefficient[0]);
-        let overlap = &S::as_simd_f64s(&self.overlap).0[..count];
-        let inverse = &S::as_simd_f64s(&self.inverse).0[..count];
-        let separation = self.separation.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
-        let pair_forces = &mut S::as_mut_simd_f64s(self.pair_vectors.as_flattened_mut()).0[..D * count];
-        let force = &mut S::as_mut_simd_f64s(&mut self.force).0[..count];
-        for k in (0..count).step_by(2) {
-            let coefficients = match L::ONE_COEFFICIENT {
-                true => [one; 2],
-                false => [coefficient[k], coefficient[k + 1]],
-            };
-            let forces = law.forces(simd, coefficients, [overlap[k], overlap[k + 1]]);
-            [force[k], force[k + 1]] = forces;
-            if RESOLVE {
-                for (k, force) in [(k, forces[0]), (k + 1, forces[1])] {
-                    resolve_one(
-                        simd,
-                        force,
-                        inverse[k],
-                        separation.map(|column| column[k]),
-                        &mut pair_forces[D * k..D * (k + 1)],
-                    );
-                }
-            }
-            if !L::ONE_COEFFICIENT {
-                cache.prefetch(&block.coefficient, ahead + k * S::F64_LANES);
-                cache.prefetch(&block.coefficient, ahead + (k + 1) * S::F64_LANES);
-            }
-        }
-    }
-
-    /// Computes the force on each first disk from the magnitudes, into `pair_vectors`.
-    ///
-    /// No other result is stored. Force over distance would have an address 4096 bytes from the separation that is read
-    /// next. Processors that compare only the low 12 bits of addresses would then delay that read.
-    #[inline(always)]
-    pub fn resolve<S: Simd>(&mut self, simd: S) {
-        let count = BLOCK / S::F64_LANES;
-        let separation = self.separation.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
-        let force = &S::as_simd_f64s(&self.force).0[..count];
-        let inverse = &S::as_simd_f64s(&self.inverse).0[..count];
-        let pair_forces = &mut S::as_mut_simd_f64s(self.pair_vectors.as_flattened_mut()).0[..D * count];
+        let separation = columns.separation.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
+        let force = &S::as_simd_f64s(&columns.force).0[..count];
+        let inverse = &S::as_simd_f64s(&columns.inverse).0[..count];
+        let pair_forces = &mut S::as_mut_simd_f64s(columns.pair_vectors.as_flattened_mut()).0[..D * count];
         for k in 0..count {
-            resolve_one(
-                simd,
-                force[k],
-                inverse[k],
-                separation.map(|column| column[k]),
-                &mut pair_forces[D * k..D * (k + 1)],
-            );
+            let factor = simd.mul_f64s(force[k], inverse[k]);
+            let along = separation.map(|column| simd.mul_f64s(factor, column[k]));
+            components::join(simd, &along, &mut pair_forces[D * k..D * (k + 1)]);
+            if anchors.has_coefficients {
+                cache.prefetch(&block.coefficient, ahead + k * S::F64_LANES);
+            }
         }
     }
-}
-
-#[inline(always)]
-fn resolve_one<S: Simd, const D: usize>(
-    simd: S,
-    force: S::f64s,
-    inverse: S::f64s,
-    separation: [S::f64s; D],
-    pair_forces: &mut [S::f64s],
-) {
-    let factor = simd.mul_f64s(force, inverse);
-    components::join(simd, &separation.map(|along| simd.mul_f64s(factor, along)), pair_forces);
 }

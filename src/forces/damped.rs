@@ -6,14 +6,16 @@
 //!
 //! Blocks, rows and columns as in [`crate::forces::elastic`]; tiles are not used.
 
+use pulp::{Simd, WithSimd};
+
 use crate::forces::block_arithmetic::{Anchors, Columns};
-use crate::law::damping::DampingLaw;
-use crate::law::kernel::{LawKernel, dispatch};
+use crate::law::damping::ContactDamping;
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::block::BLOCK;
 use crate::neighbours::for_each_pair::{MovedPair, for_each_pair};
 use crate::neighbours::pair_list::PairList;
 use crate::neighbours::rows::{gather, scatter};
+use crate::processor;
 use crate::simd::lanes;
 use crate::vector::Vector;
 
@@ -25,8 +27,8 @@ use crate::vector::Vector;
 ///
 /// # Accuracy
 /// Equal to [`forces`](crate::forces::elastic::forces) with [`add_damping`], except for the order of sums.
-pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
-    (law, damping): (&L, &C),
+pub fn damped_forces<const D: usize>(
+    (law, damping): (&dyn PairLaw, &ContactDamping),
     pairs: &PairList<D>,
     damping_coefficient: &[f64],
     displacements: &[Vector<D>],
@@ -41,52 +43,36 @@ pub fn damped_forces<const D: usize, L: PairLaw, C: DampingLaw>(
         gather(&mut columns.pair_vectors, pairs, block, (displacements, 0));
         gather(&mut relative_velocity, pairs, block, (velocities, 0));
         let (relative_velocity, coefficient) = (&relative_velocity[..block.pair_count], &damping_coefficient[listed]);
-        let (damping, anchors) = (Damping { law: damping, coefficient, relative_velocity }, Anchors::of(pairs, block));
-        power += dispatch(law, Arithmetic { damping, columns: &mut columns, anchors });
+        let anchors = Anchors::of(law, pairs, block);
+        columns.compute_overlaps(&anchors);
+        columns.compute_forces(law, &anchors);
+        power += processor::dispatch(Damping { law: damping, coefficient, relative_velocity, columns: &mut columns });
+        columns.resolve(&anchors);
         scatter(&columns.pair_vectors, pairs, block, (forces, 0));
     }
     power
 }
 
-/// The arithmetic of a block; it returns the power.
-struct Arithmetic<'a, const D: usize, C> {
-    damping: Damping<'a, D, C>,
-    columns: &'a mut Columns<D>,
-    anchors: Anchors<'a, D>,
-}
-
-/// Damping of the pairs of a block.
-struct Damping<'a, const D: usize, C> {
-    law: &'a C,
+/// Subtracts the damping from the forces of the pairs of a block whose geometry is computed; returns its power.
+struct Damping<'a, const D: usize> {
+    law: &'a ContactDamping,
     coefficient: &'a [f64],
     /// Relative velocities.
     relative_velocity: &'a [Vector<D>],
+    columns: &'a mut Columns<D>,
 }
 
-impl<const D: usize, C: DampingLaw> LawKernel for Arithmetic<'_, D, C> {
+impl<const D: usize> WithSimd for Damping<'_, D> {
     type Output = f64;
 
     #[inline(always)]
-    fn run<S: pulp::Simd, L: PairLaw>(self, simd: S, law: &L) -> f64 {
-        self.columns.compute_overlaps(simd, &self.anchors);
-        self.columns.compute_forces::<S, L, false>(simd, law, &self.anchors);
-        let mut power = [0.0; BLOCK];
-        let count = self.damping.relative_velocity.len();
-        self.damping.resist(self.columns, &mut power[..count]);
-        self.columns.resolve(simd);
-        lanes::sum(simd, &power[..count])
-    }
-}
-
-impl<const D: usize, C: DampingLaw> Damping<'_, D, C> {
-    /// Subtracts the damping from the forces of a block whose geometry is computed.
-    #[inline(always)]
-    fn resist(&self, columns: &mut Columns<D>, power: &mut [f64]) {
-        let count = power.len();
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let count = self.relative_velocity.len();
         let (relative_velocity, coefficient) = (&self.relative_velocity[..count], &self.coefficient[..count]);
-        let separation = columns.separation.each_ref().map(|column| &column[..count]);
-        let (overlap, force) = (&columns.overlap[..count], &mut columns.force[..count]);
-        let inverse = &columns.inverse[..count];
+        let separation = self.columns.separation.each_ref().map(|column| &column[..count]);
+        let (overlap, force) = (&self.columns.overlap[..count], &mut self.columns.force[..count]);
+        let inverse = &self.columns.inverse[..count];
+        let mut power = [0.0; BLOCK];
         for k in 0..count {
             let mut along = 0.0;
             for d in 0..D {
@@ -98,6 +84,7 @@ impl<const D: usize, C: DampingLaw> Damping<'_, D, C> {
             power[k] = resisted * normal_velocity;
             force[k] -= resisted;
         }
+        lanes::sum(simd, &power[..count])
     }
 }
 
@@ -105,8 +92,8 @@ impl<const D: usize, C: DampingLaw> Damping<'_, D, C> {
 ///
 /// # Shape
 /// `damping_coefficient` has one entry per pair, `velocities` one per disk.
-pub fn add_damping<const D: usize, C: DampingLaw>(
-    law: &C,
+pub fn add_damping<const D: usize>(
+    law: &ContactDamping,
     pairs: &PairList<D>,
     damping_coefficient: &[f64],
     displacements: &[Vector<D>],
@@ -140,16 +127,16 @@ mod tests {
     use crate::forces::assembly::Assembly;
     use crate::forces::elastic;
     use crate::io::read_packing;
-    use crate::law::damping::ConstantDamping;
+    use crate::law::damping::{ConstantDamping, ContactDamping};
     use crate::law::power_laws::Hertzian;
     use crate::vector::{difference, norm};
 
     /// Both methods give the same sums, of terms of up to 10⁴ and 10⁶, up to rounding.
-    fn agree<C: DampingLaw>(damping: &C) {
+    fn agree(damping: &ContactDamping) {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz");
         let packing = read_packing::<2>(file).expect("a stored packing");
         let law = Hertzian::default();
-        let assembly = Assembly::new(&packing, law).expect("no coincidence");
+        let assembly = Assembly::new(&packing, &law).expect("no coincidence");
         let (pairs, at, radii) = (assembly.pairs(), &assembly.displacements, assembly.radii());
         let of_pair = |(&i, &j): (&u32, &u32)| damping.coefficient(radii[i as usize], radii[j as usize]);
         let coefficients: Vec<f64> = pairs.first.iter().zip(&pairs.second).map(of_pair).collect();
@@ -169,7 +156,7 @@ mod tests {
 
     #[test]
     fn one_pass_is_elastic_forces_and_damping() {
-        agree(&ConstantDamping { rate: 500.0 });
+        agree(&ContactDamping::Constant(ConstantDamping { rate: 500.0 }));
         agree(&Hertzian::default().viscoelastic(500.0));
     }
 }

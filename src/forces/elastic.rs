@@ -19,8 +19,7 @@
 use std::ops::Range;
 
 use crate::forces::block_arithmetic::{Anchors, Columns};
-use crate::forces::totals::{BlockTotals, Totals};
-use crate::law::kernel::{LawKernel, dispatch};
+use crate::forces::totals::Totals;
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::block::{BLOCK, Block};
 use crate::neighbours::pair_list::PairList;
@@ -50,8 +49,8 @@ impl<T: Number, const D: usize> BorderForces<T, D> {
 ///
 /// # Accuracy
 /// The error of an overlap is a few units in the last place of itself and of the relative displacement w.
-pub fn forces<const D: usize, L: PairLaw>(
-    law: &L,
+pub fn forces<const D: usize>(
+    law: &dyn PairLaw,
     pairs: &PairList<D>,
     displacements: &[Vector<D>],
     border_forces: &mut BorderForces<f64, D>,
@@ -61,8 +60,8 @@ pub fn forces<const D: usize, L: PairLaw>(
 }
 
 /// Forces as in [`forces`], with energy, virial, contact count and mean force in the same pass.
-pub fn forces_and_totals<const D: usize, L: PairLaw>(
-    law: &L,
+pub fn forces_and_totals<const D: usize>(
+    law: &dyn PairLaw,
     pairs: &PairList<D>,
     displacements: &[Vector<D>],
     border_forces: &mut BorderForces<f64, D>,
@@ -97,12 +96,12 @@ pub(crate) trait Kernel<const D: usize>: Sync {
 }
 
 /// Kernel for forces only.
-pub(crate) struct Plain<'a, const D: usize, L> {
-    pub law: &'a L,
+pub(crate) struct Plain<'a, const D: usize> {
+    pub law: &'a dyn PairLaw,
     pub pairs: &'a PairList<D>,
 }
 
-impl<const D: usize, L: PairLaw> Kernel<D> for Plain<'_, D, L> {
+impl<const D: usize> Kernel<D> for Plain<'_, D> {
     type Number = f64;
     type Columns = Columns<D>;
     type Sums = ();
@@ -123,12 +122,12 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Plain<'_, D, L> {
 }
 
 /// Kernel for forces and totals.
-struct Summed<'a, const D: usize, L> {
-    law: &'a L,
+struct Summed<'a, const D: usize> {
+    law: &'a dyn PairLaw,
     pairs: &'a PairList<D>,
 }
 
-impl<const D: usize, L: PairLaw> Kernel<D> for Summed<'_, D, L> {
+impl<const D: usize> Kernel<D> for Summed<'_, D> {
     type Number = f64;
     type Columns = Columns<D>;
     type Sums = Totals<D>;
@@ -145,7 +144,7 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Summed<'_, D, L> {
     ) -> &'a [Vector<D>; BLOCK] {
         let block = &self.pairs.blocks[block];
         fill(self.law, self.pairs, displacements, block, columns);
-        dispatch(self.law, BlockTotals { columns: &*columns, count: block.pair_count, totals });
+        totals.add_block(self.law, columns, block.pair_count);
         &columns.pair_vectors
     }
 }
@@ -253,8 +252,8 @@ pub(crate) fn add_incoming<T: Number, const D: usize>(
 }
 
 /// Fills the columns of a block. The array of displacements begins with the given disk.
-pub(crate) fn fill<const D: usize, L: PairLaw>(
-    law: &L,
+pub(crate) fn fill<const D: usize>(
+    law: &dyn PairLaw,
     pairs: &PairList<D>,
     displacements: (&[Vector<D>], u32),
     block: &Block,
@@ -262,24 +261,10 @@ pub(crate) fn fill<const D: usize, L: PairLaw>(
 ) {
     prefetch_rows(pairs, block);
     gather(&mut columns.pair_vectors, pairs, block, displacements);
-    dispatch(law, Arithmetic { columns, anchors: Anchors::of(pairs, block) });
-}
-
-/// The arithmetic of a block, compiled for each law and each vector width. Code that only moves numbers is compiled
-/// once.
-struct Arithmetic<'a, const D: usize> {
-    columns: &'a mut Columns<D>,
-    anchors: Anchors<'a, D>,
-}
-
-impl<const D: usize> LawKernel for Arithmetic<'_, D> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: pulp::Simd, L: PairLaw>(self, simd: S, law: &L) {
-        self.columns.compute_overlaps(simd, &self.anchors);
-        self.columns.compute_forces::<S, L, true>(simd, law, &self.anchors);
-    }
+    let anchors = Anchors::of(law, pairs, block);
+    columns.compute_overlaps(&anchors);
+    columns.compute_forces(law, &anchors);
+    columns.resolve(&anchors);
 }
 
 /// Scatters forces of border pairs. There are few, so rows of fixed length are not used.

@@ -15,12 +15,11 @@
 
 use std::ops::Range;
 
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 
 use crate::forces::advance::{Advanced, Movers, Reach, advance};
 use crate::forces::assembly::Assembly;
 use crate::forces::elastic::{BorderForces, Kernel, all_tiles};
-use crate::law::kernel::{LawKernel, dispatch};
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::block::BLOCK;
 use crate::neighbours::list_keeper::ListNumber;
@@ -28,6 +27,7 @@ use crate::neighbours::pair_list::PairList;
 use crate::neighbours::rows::{gather, prefetch_rows};
 use crate::neighbours::single_precision::{Factors, SingleBlock, SingleBlocks};
 use crate::parallel::{self, PIECE};
+use crate::processor;
 use crate::simd::components;
 use crate::simd::prefetch::Cache;
 use crate::simd::roots::positive_part_in_single;
@@ -100,8 +100,8 @@ pub struct Single<const D: usize> {
 impl<const D: usize> Single<D> {
     /// Single-precision state for the disks of an assembly. None for a law with sites or one that is not a power of the
     /// overlap, or for numbers near the limits of double precision.
-    pub fn new<L: PairLaw>(assembly: &Assembly<D, L>) -> Option<Self> {
-        if assembly.law().has_sites() || !L::IS_POWER {
+    pub fn new(assembly: &Assembly<D>) -> Option<Self> {
+        if assembly.law().has_sites() || !assembly.law().is_power() {
             return None;
         }
         let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
@@ -128,7 +128,7 @@ impl<const D: usize> Single<D> {
     }
 
     /// Copies the forces of the assembly's last evaluation.
-    pub fn take_forces<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
+    pub fn take_forces(&mut self, assembly: &Assembly<D>) {
         let unit = 1.0 / self.units.force;
         let pieces = self.forces.chunks_mut(PIECE).zip(assembly.forces.chunks(PIECE));
         parallel::each(pieces, |(to, from)| {
@@ -139,7 +139,7 @@ impl<const D: usize> Single<D> {
     }
 
     /// Writes the present positions into the assembly.
-    pub fn write_displacements<L: PairLaw>(&self, assembly: &mut Assembly<D, L>) {
+    pub fn write_displacements(&self, assembly: &mut Assembly<D>) {
         if self.listing.is_none_or(|known| known.list != assembly.list_number().list) {
             // Before a new list was built, the displacements were written. The anchors may have changed since.
             return;
@@ -151,14 +151,14 @@ impl<const D: usize> Single<D> {
     }
 
     /// The same for some of the disks.
-    fn write_some_displacements<L: PairLaw>(&self, assembly: &mut Assembly<D, L>, disks: Range<usize>) {
+    fn write_some_displacements(&self, assembly: &mut Assembly<D>, disks: Range<usize>) {
         let from = (&self.base[disks.clone()], &self.offsets[disks.clone()]);
         place(self.units.length, from, &mut assembly.displacements[disks]);
     }
 
     /// Makes the assembly's displacements the base if the base is outdated, and rounds the pairs of the list. Pairs
     /// inserted into a long list are rounded at the present base.
-    fn prepare<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
+    fn prepare(&mut self, assembly: &Assembly<D>) {
         let number = assembly.list_number();
         let known = self.listing.replace(number);
         if known == self.listing {
@@ -179,9 +179,9 @@ impl<const D: usize> Single<D> {
 
     /// Moves all mobile disks and evaluates the forces at their new positions, like [`Assembly::advance`]. `kick` takes
     /// (forces, velocities, offsets) of some disks and returns a bound on their displacements \[length\].
-    pub fn advance<L: PairLaw, P: Send>(
+    pub fn advance<P: Send>(
         &mut self,
-        assembly: &mut Assembly<D, L>,
+        assembly: &mut Assembly<D>,
         velocities: &mut [[f32; D]],
         kick: impl Fn(&[[f32; D]], &mut [[f32; D]], &mut [[f32; D]]) -> f64 + Sync,
         observe: impl Fn(&[[f32; D]], &[[f32; D]]) -> P + Send + Sync,
@@ -190,13 +190,13 @@ impl<const D: usize> Single<D> {
             return Advanced::Not;
         }
         self.prepare(assembly);
-        let (law, unit, base) = (*assembly.law(), self.units.length, self.base.as_slice());
+        let (law, unit, base) = (assembly.shared_law(), self.units.length, self.base.as_slice());
         let (pairs, at_build, limit, bounds) = assembly.listing();
         let longest = |first: usize, offsets: &[[f32; D]]| {
             let disks = first..first + offsets.len();
             longest_offset(unit, (&base[disks.clone()], offsets), &at_build[disks])
         };
-        let kernel = Pressed { law: &law, pairs, blocks: &self.blocks };
+        let kernel = Pressed { law: law.as_ref(), pairs, blocks: &self.blocks };
         let movers = Movers { velocities, displacements: &mut self.offsets, forces: &mut self.forces };
         let reach = Reach { limit, bounds, longest };
         let advanced = Advanced::of(advance(&kernel, pairs, (movers, &mut self.border_forces), reach, kick, observe));
@@ -212,7 +212,7 @@ impl<const D: usize> Single<D> {
     }
 
     /// Evaluates the forces at the present positions.
-    pub fn evaluate<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
+    pub fn evaluate(&mut self, assembly: &Assembly<D>) {
         self.prepare(assembly);
         let pairs = assembly.pairs();
         let kernel = Pressed { law: assembly.law(), pairs, blocks: &self.blocks };
@@ -220,9 +220,9 @@ impl<const D: usize> Single<D> {
     }
 
     /// Moves all mobile disks by `kick`, without an evaluation of forces.
-    pub fn kick<L: PairLaw, K>(
+    pub fn kick<K>(
         &mut self,
-        assembly: &Assembly<D, L>,
+        assembly: &Assembly<D>,
         velocities: &mut [[f32; D]],
         kick: impl FnOnce(&[[f32; D]], &mut [[f32; D]], &mut [[f32; D]]) -> K,
     ) -> K {
@@ -258,13 +258,13 @@ fn longest_offset<const D: usize>(
 }
 
 /// Kernel for the force of each pair of a block.
-struct Pressed<'a, const D: usize, L> {
-    law: &'a L,
+struct Pressed<'a, const D: usize> {
+    law: &'a dyn PairLaw,
     pairs: &'a PairList<D>,
     blocks: &'a SingleBlocks<D>,
 }
 
-impl<const D: usize, L: PairLaw> Kernel<D> for Pressed<'_, D, L> {
+impl<const D: usize> Kernel<D> for Pressed<'_, D> {
     type Number = f32;
     type Columns = Columns<D>;
     type Sums = ();
@@ -282,7 +282,7 @@ impl<const D: usize, L: PairLaw> Kernel<D> for Pressed<'_, D, L> {
         prefetch_rows(self.pairs, &self.pairs.blocks[block]);
         gather(&mut columns.pair_vectors, self.pairs, &self.pairs.blocks[block], offsets);
         let (of_pairs, pair_count) = (self.blocks.block(block), self.pairs.blocks[block].pair_count);
-        dispatch(self.law, Arithmetic { block: of_pairs, columns, pair_count, prefetches: self.pairs.prefetches() });
+        columns.compute_forces(self.law, of_pairs, pair_count, self.pairs.prefetches());
         &columns.pair_vectors
     }
 }
@@ -293,8 +293,11 @@ struct Columns<const D: usize> {
     /// Relative offset of each pair, then the force on its first disk.
     pair_vectors: [[f32; D]; BLOCK],
     separation: [[f32; BLOCK]; D],
-    change: [f32; BLOCK],
-    distance: [f32; BLOCK],
+    /// Change of the squared distance, then the overlap.
+    overlap: [f32; BLOCK],
+    force: [f32; BLOCK],
+    /// Distance, then its reciprocal.
+    inverse: [f32; BLOCK],
 }
 
 impl<const D: usize> Columns<D> {
@@ -302,36 +305,55 @@ impl<const D: usize> Columns<D> {
         Columns {
             pair_vectors: [[0.0; D]; BLOCK],
             separation: [[0.0; BLOCK]; D],
-            change: [0.0; BLOCK],
-            distance: [0.0; BLOCK],
+            overlap: [0.0; BLOCK],
+            force: [0.0; BLOCK],
+            inverse: [0.0; BLOCK],
         }
+    }
+
+    /// Computes the forces on the first disks of a block of pairs from their relative offsets. A later block is
+    /// prefetched into the given cache.
+    fn compute_forces(
+        &mut self,
+        law: &dyn PairLaw,
+        block: &SingleBlock<D>,
+        pair_count: usize,
+        prefetches: Option<Cache>,
+    ) {
+        let has_coefficients = !law.has_one_coefficient();
+        processor::dispatch(Overlaps { block, columns: self, pair_count, prefetches, has_coefficients });
+        let count = pair_count.next_multiple_of(16).min(BLOCK);
+        law.forces_in_single(&block.coefficient[..count], &self.overlap[..count], &mut self.force[..count]);
+        processor::dispatch(Resolve { columns: self, pair_count });
     }
 }
 
-struct Arithmetic<'a, const D: usize> {
+/// Separations, overlaps and reciprocal distances of a block.
+struct Overlaps<'a, const D: usize> {
     block: &'a SingleBlock<D>,
     columns: &'a mut Columns<D>,
     pair_count: usize,
     /// Cache for the prefetch of a later block, if the list is long.
     prefetches: Option<Cache>,
+    /// Whether the law reads the column of coefficients.
+    has_coefficients: bool,
 }
 
-impl<const D: usize> LawKernel for Arithmetic<'_, D> {
+impl<const D: usize> WithSimd for Overlaps<'_, D> {
     type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd, L: PairLaw>(self, simd: S, law: &L) {
-        let Arithmetic { block, columns, pair_count, prefetches } = self;
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Overlaps { block, columns, pair_count, prefetches, has_coefficients } = self;
         let count = pair_count.div_ceil(S::F32_LANES).min(BLOCK / S::F32_LANES);
         let read = |column| &S::as_simd_f32s(column).0[..count];
         let (zero, one) = (simd.splat_f32s(0.0), simd.splat_f32s(1.0));
-        let pair_vectors = &mut S::as_mut_simd_f32s(columns.pair_vectors.as_flattened_mut()).0[..D * count];
+        let pair_vectors = &S::as_simd_f32s(columns.pair_vectors.as_flattened()).0[..D * count];
         let separation = columns.separation.each_mut().map(|column| &mut S::as_mut_simd_f32s(column).0[..count]);
-        let change = &mut S::as_mut_simd_f32s(&mut columns.change).0[..count];
-        let distance = &mut S::as_mut_simd_f32s(&mut columns.distance).0[..count];
+        let overlap = &mut S::as_mut_simd_f32s(&mut columns.overlap).0[..count];
+        let inverse = &mut S::as_mut_simd_f32s(&mut columns.inverse).0[..count];
         let anchor_separation = block.separation.each_ref().map(|column| read(&column[..]));
         let (anchor_distance, anchor_overlap) = (read(&block.distance), read(&block.overlap));
-        let (coefficients, one_coefficient) = (read(&block.coefficient), simd.splat_f32s(block.coefficient[0]));
         for k in 0..count {
             let offset = components::split_single::<S, D>(simd, &pair_vectors[D * k..D * (k + 1)]);
             let (mut square, mut changed) = (zero, zero);
@@ -346,23 +368,42 @@ impl<const D: usize> LawKernel for Arithmetic<'_, D> {
                 separation[d][k] = along;
             }
             if let Some(cache) = prefetches {
-                block.prefetch(cache, blocks_ahead(cache), k * S::F32_LANES, !L::ONE_COEFFICIENT);
+                block.prefetch(cache, blocks_ahead(cache), k * S::F32_LANES, has_coefficients);
             }
-            change[k] = changed;
-            distance[k] = simd.sqrt_f32s(square);
+            overlap[k] = changed;
+            inverse[k] = simd.sqrt_f32s(square);
         }
         for k in 0..count {
-            let both = simd.add_f32s(distance[k], anchor_distance[k]);
-            let inverse = simd.div_f32s(one, simd.mul_f32s(distance[k], both));
-            let changed = simd.mul_f32s(change[k], simd.mul_f32s(distance[k], inverse));
-            let overlap = positive_part_in_single(simd, simd.sub_f32s(anchor_overlap[k], changed));
-            let coefficient = if L::ONE_COEFFICIENT { one_coefficient } else { coefficients[k] };
-            let force = law.forces_in_single(simd, coefficient, overlap);
-            let factor = simd.mul_f32s(force, simd.mul_f32s(both, inverse));
-            let mut along = [factor; D];
-            for d in 0..D {
-                along[d] = simd.mul_f32s(factor, separation[d][k]);
-            }
+            let distance = inverse[k];
+            let both = simd.add_f32s(distance, anchor_distance[k]);
+            let of_both = simd.div_f32s(one, simd.mul_f32s(distance, both));
+            let change = simd.mul_f32s(overlap[k], simd.mul_f32s(distance, of_both));
+            overlap[k] = positive_part_in_single(simd, simd.sub_f32s(anchor_overlap[k], change));
+            inverse[k] = simd.mul_f32s(both, of_both);
+        }
+    }
+}
+
+/// The force on each first disk of a block.
+struct Resolve<'a, const D: usize> {
+    columns: &'a mut Columns<D>,
+    pair_count: usize,
+}
+
+impl<const D: usize> WithSimd for Resolve<'_, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Resolve { columns, pair_count } = self;
+        let count = pair_count.div_ceil(S::F32_LANES).min(BLOCK / S::F32_LANES);
+        let separation = columns.separation.each_ref().map(|column| &S::as_simd_f32s(column).0[..count]);
+        let force = &S::as_simd_f32s(&columns.force).0[..count];
+        let inverse = &S::as_simd_f32s(&columns.inverse).0[..count];
+        let pair_vectors = &mut S::as_mut_simd_f32s(columns.pair_vectors.as_flattened_mut()).0[..D * count];
+        for k in 0..count {
+            let factor = simd.mul_f32s(force[k], inverse[k]);
+            let along = separation.map(|column| simd.mul_f32s(factor, column[k]));
             components::join_single(simd, &along, &mut pair_vectors[D * k..D * (k + 1)]);
         }
     }
@@ -390,7 +431,7 @@ mod tests {
         for prefetches in [None, Some(Cache::First), Some(Cache::Second)] {
             for processor in Processor::all() {
                 let columns = &mut Columns { pair_vectors: offsets, ..Columns::new() };
-                processor.run(|| dispatch(law, Arithmetic { block, columns, pair_count: BLOCK, prefetches }));
+                processor.run(|| columns.compute_forces(law, block, BLOCK, prefetches));
                 forces.push(columns.pair_vectors);
             }
         }

@@ -1,7 +1,6 @@
 //! Sums of stiffness over the contacts of each disk, with the blocks and tiles of the hot loop.
 
 use crate::forces::block_arithmetic::{Anchors, Columns};
-use crate::law::kernel::{LawKernel, dispatch};
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::block::BLOCK;
 use crate::neighbours::pair_list::PairList;
@@ -20,8 +19,8 @@ pub type Weight<'a> = dyn Fn(usize, f64, f64) -> f64 + Sync + 'a;
 ///
 /// # Shape
 /// `row` has one entry per disk and is overwritten.
-pub fn stiffness_rows<const D: usize, L: PairLaw>(
-    law: &L,
+pub fn stiffness_rows<const D: usize>(
+    law: &dyn PairLaw,
     pairs: &PairList<D>,
     displacements: &[Vector<D>],
     mobile_count: usize,
@@ -41,15 +40,15 @@ pub fn stiffness_rows<const D: usize, L: PairLaw>(
     }
 }
 
-struct Task<'a, const D: usize, L> {
-    law: &'a L,
+struct Task<'a, const D: usize> {
+    law: &'a dyn PairLaw,
     pairs: &'a PairList<D>,
     displacements: &'a [Vector<D>],
     mobile_count: usize,
     weight: Option<&'a Weight<'a>>,
 }
 
-impl<const D: usize, L: PairLaw> Task<'_, D, L> {
+impl<const D: usize> Task<'_, D> {
     /// Sums the rows of the disks of a tile, which begins with disk `offset`, over the pairs of the tile. Returns the
     /// terms for the second disks of its border pairs.
     fn of_tile(&self, tile: &Tile, offset: usize, row: &mut [f64]) -> Vec<f64> {
@@ -62,8 +61,10 @@ impl<const D: usize, L: PairLaw> Task<'_, D, L> {
             let block = &pairs.blocks[place];
             prefetch_rows(pairs, block);
             gather(&mut columns.pair_vectors, pairs, block, (self.displacements, 0));
-            let anchors = Anchors::of(pairs, block);
-            dispatch(self.law, Arithmetic { columns: &mut columns, anchors, values: &mut values });
+            let anchors = Anchors::of(self.law, pairs, block);
+            columns.compute_overlaps(&anchors);
+            columns.compute_forces(self.law, &anchors);
+            self.law.stiffnesses(&columns.force, &columns.overlap, values.as_flattened_mut());
             for ((pair, value), &overlap) in block.pairs().zip(&mut values).zip(&columns.overlap) {
                 let weighted = match self.weight {
                     Some(weight) if overlap > 0.0 => weight(pair, overlap, value[0]),
@@ -86,26 +87,5 @@ impl<const D: usize, L: PairLaw> Task<'_, D, L> {
         let held = mobile.saturating_sub(offset).min(row.len());
         row[held..].fill(0.0);
         border_values
-    }
-}
-
-/// Stiffness and overlap of each pair of a block.
-struct Arithmetic<'a, const D: usize> {
-    columns: &'a mut Columns<D>,
-    anchors: Anchors<'a, D>,
-    values: &'a mut [[f64; 1]; BLOCK],
-}
-
-impl<const D: usize> LawKernel for Arithmetic<'_, D> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: pulp::Simd, L: PairLaw>(self, simd: S, law: &L) {
-        self.columns.compute_overlaps(simd, &self.anchors);
-        self.columns.compute_forces::<S, L, false>(simd, law, &self.anchors);
-        let (overlap, force) = (&self.columns.overlap, &self.columns.force);
-        for (value, (&force, &overlap)) in self.values.iter_mut().zip(force.iter().zip(overlap)) {
-            value[0] = law.stiffness(force, overlap);
-        }
     }
 }

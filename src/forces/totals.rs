@@ -1,9 +1,11 @@
 //! [`Totals`]: energy, virial and contact forces, summed block by block in the pass that computes the forces.
 
+use pulp::{Simd, WithSimd};
+
 use crate::forces::block_arithmetic::Columns;
-use crate::law::kernel::LawKernel;
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::block::BLOCK;
+use crate::processor;
 use crate::simd::lanes;
 
 /// The sums of the loop beside the forces.
@@ -37,6 +39,14 @@ impl<const D: usize> Totals<D> {
         }
     }
 
+    /// Adds energy, contact forces, contact count and virial of the first `count` pairs of a block.
+    pub(crate) fn add_block(&mut self, law: &dyn PairLaw, columns: &Columns<D>, count: usize) {
+        let mut energy = [0.0; BLOCK];
+        let energy = &mut energy[..count];
+        law.energies(&columns.force[..count], &columns.overlap[..count], energy);
+        processor::dispatch(BlockSums { columns, energy, totals: self });
+    }
+
     /// Mean contact force; 0 without contacts \[force\].
     pub fn mean_contact_force(&self) -> f64 {
         if self.contact_count == 0 { 0.0 } else { self.force_sum / self.contact_count as f64 }
@@ -53,46 +63,33 @@ impl<const D: usize> Totals<D> {
     }
 }
 
-/// Adds energy, contact forces, contact count and virial of a block to the totals.
-pub(crate) struct BlockTotals<'a, const D: usize> {
-    pub columns: &'a Columns<D>,
-    pub count: usize,
-    pub totals: &'a mut Totals<D>,
+/// Sums over the pairs of a block.
+struct BlockSums<'a, const D: usize> {
+    columns: &'a Columns<D>,
+    energy: &'a [f64],
+    totals: &'a mut Totals<D>,
 }
 
-impl<const D: usize> LawKernel for BlockTotals<'_, D> {
+impl<const D: usize> WithSimd for BlockSums<'_, D> {
     type Output = ();
 
     #[inline(always)]
-    fn run<S: pulp::Simd, L: PairLaw>(self, simd: S, law: &L) {
-        add_block_totals(simd, law, self.columns, self.count, self.totals);
-    }
-}
-
-#[inline(always)]
-fn add_block_totals<S: pulp::Simd, const D: usize, L: PairLaw>(
-    simd: S,
-    law: &L,
-    columns: &Columns<D>,
-    count: usize,
-    totals: &mut Totals<D>,
-) {
-    let Columns { separation, overlap, force, inverse, .. } = columns;
-    // First all terms of a column are computed, then those of its pairs are summed.
-    let mut terms = [0.0; BLOCK];
-    for k in 0..BLOCK {
-        terms[k] = law.energy(force[k], overlap[k]);
-    }
-    totals.energy += lanes::sum(simd, &terms[..count]);
-    totals.force_sum += lanes::sum(simd, &force[..count]);
-    totals.contact_count += overlap[..count].iter().filter(|&&overlap| overlap > 0.0).count();
-    for a in 0..D {
-        for b in 0..=a {
-            for k in 0..BLOCK {
-                terms[k] = force[k] * inverse[k] * (separation[a][k] * separation[b][k]);
+    fn with_simd<S: Simd>(self, simd: S) {
+        let BlockSums { columns: Columns { separation, overlap, force, inverse, .. }, energy, totals } = self;
+        let count = energy.len();
+        totals.energy += lanes::sum(simd, energy);
+        totals.force_sum += lanes::sum(simd, &force[..count]);
+        totals.contact_count += overlap[..count].iter().filter(|&&overlap| overlap > 0.0).count();
+        // First all terms of a column are computed, then those of its pairs are summed.
+        let mut terms = [0.0; BLOCK];
+        for a in 0..D {
+            for b in 0..=a {
+                for k in 0..BLOCK {
+                    terms[k] = force[k] * inverse[k] * (separation[a][k] * separation[b][k]);
+                }
+                totals.virial[a][b] += lanes::sum(simd, &terms[..count]);
+                totals.virial[b][a] = totals.virial[a][b];
             }
-            totals.virial[a][b] += lanes::sum(simd, &terms[..count]);
-            totals.virial[b][a] = totals.virial[a][b];
         }
     }
 }

@@ -13,9 +13,9 @@ use crate::packing::Packing;
 ///
 /// # Errors
 /// No disk has the label; two disks have the same centre.
-pub fn choose_centre<const D: usize, L: PairLaw>(
+pub fn choose_centre<const D: usize>(
     packing: &Packing<D>,
-    law: &L,
+    law: &dyn PairLaw,
     centre: Centre,
     seed: u64,
 ) -> Result<usize, InflationError> {

@@ -36,10 +36,10 @@ impl<const D: usize> Grown<D> {
     ///
     /// # Errors
     /// [`InflationError`].
-    pub fn new<L: PairLaw>(
+    pub fn new(
         inflation: &Inflation,
         packing: &Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         relaxer: &impl Relaxer,
         seed: u64,
         trace: &mut dyn Trace,
@@ -70,10 +70,10 @@ impl<const D: usize> Grown<D> {
     ///
     /// # Errors
     /// Only conditions that make forces undefined.
-    pub fn relax<L: PairLaw>(
+    pub fn relax(
         &self,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         relaxer: &impl Relaxer,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
@@ -85,11 +85,11 @@ impl<const D: usize> Grown<D> {
         self.experiment.pressure_of(network)
     }
 
-    pub(super) fn rest<L: PairLaw>(
+    pub(super) fn rest(
         &self,
         stage: Stage,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         relaxer: &impl Relaxer,
         trace: &mut dyn Trace,
     ) -> Result<Rest<D>, InflationError> {
@@ -142,10 +142,10 @@ impl<const D: usize> Experiment<D> {
         }
     }
 
-    fn relax<L: PairLaw>(
+    fn relax(
         &self,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         relaxer: &impl Relaxer,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
@@ -170,11 +170,11 @@ impl<const D: usize> Experiment<D> {
         }
     }
 
-    fn rest<L: PairLaw>(
+    fn rest(
         &self,
         stage: Stage,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         relaxer: &impl Relaxer,
         trace: &mut dyn Trace,
     ) -> Result<Rest<D>, InflationError> {

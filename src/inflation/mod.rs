@@ -67,15 +67,16 @@ pub fn inflate(inflation: &Inflation, packing: &Packing<2>) -> Result<Inflated<2
 ///
 /// # Errors
 /// [`InflationError`] says what is not possible, with numbers.
-pub fn inflate_with<const D: usize, L: PairLaw>(
+pub fn inflate_with<const D: usize>(
     inflation: &Inflation,
     packing: &Packing<D>,
-    law: &L,
+    law: &dyn PairLaw,
     relaxer: &impl Relaxer,
     seed: u64,
     trace: &mut dyn Trace,
 ) -> Result<Inflated<D>, InflationError> {
-    let law = &inflation.checked_law_with_sites(law)?;
+    let law = inflation.checked_law_with_sites(law)?;
+    let law = law.as_ref();
     let grown = Grown::new(inflation, packing, law, relaxer, seed, trace)?;
     let after = grown.rest(Stage::Inflated, grown.packing.clone(), law, relaxer, trace)?;
     let deflated = if inflation.deflate {

@@ -1,5 +1,7 @@
 //! [`Inflation`]: which disk is inflated, by how much, and what keeps the packing in place.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use crate::inflation::error::InflationError;
@@ -59,15 +61,18 @@ pub struct Inflation {
 
 impl Inflation {
     /// The law with the sites of the inflation, if disks have any.
-    pub fn law_with_sites<L: PairLaw>(&self, law: &L) -> OnSite<L> {
-        OnSite { law: *law, coupling: self.on_site_coupling.unwrap_or(0.0) }
+    pub fn law_with_sites(&self, law: &dyn PairLaw) -> Arc<dyn PairLaw> {
+        match self.on_site_coupling {
+            Some(coupling) => Arc::new(OnSite { law: law.shared(), coupling }),
+            None => law.shared(),
+        }
     }
 
     /// Like [`Inflation::law_with_sites`], but checks the coupling.
     ///
     /// # Errors
     /// A coupling that is not finite.
-    pub(crate) fn checked_law_with_sites<L: PairLaw>(&self, law: &L) -> Result<OnSite<L>, InflationError> {
+    pub(crate) fn checked_law_with_sites(&self, law: &dyn PairLaw) -> Result<Arc<dyn PairLaw>, InflationError> {
         match self.on_site_coupling {
             Some(coupling) if !coupling.is_finite() => Err(InflationError::CouplingNotFinite { coupling }),
             _ => Ok(self.law_with_sites(law)),

@@ -71,7 +71,7 @@ impl Constants {
 
 impl Elasticity {
     /// The moduli of a packing.
-    pub fn of<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> Self {
+    pub fn of<const D: usize>(packing: &Packing<D>, law: &dyn PairLaw) -> Self {
         match ElasticModuli::of(packing, law, Prestress::Included) {
             Ok(moduli) => Elasticity::Found(Box::new(Moduli {
                 affine: Constants::of(&moduli.affine),
@@ -131,7 +131,7 @@ pub struct ModeSummary {
 
 impl Vibrations {
     /// The `count` lowest modes of a packing.
-    pub fn of<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L, count: usize) -> Self {
+    pub fn of<const D: usize>(packing: &Packing<D>, law: &dyn PairLaw, count: usize) -> Self {
         match VibrationalModes::lowest(packing, law, Prestress::Included, count) {
             Ok(found) => {
                 let summary = |mode: &Mode<D>| ModeSummary {

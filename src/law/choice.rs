@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::law::damping::ContactDamping;
-use crate::law::pair_law::{LawVisitor, PairLaw};
+use crate::law::pair_law::{PairLaw, delegate_to_law};
 use crate::law::power_laws::{Hertzian, Hookean, PowerLaw};
 
 /// A contact law chosen at run time, as a scene or a command line names it.
@@ -73,63 +72,22 @@ impl LawChoice {
 
     /// Exponent α of the energy \[1\].
     pub fn exponent(&self) -> f64 {
+        self.chosen().exponent()
+    }
+
+    /// The chosen law.
+    fn chosen(&self) -> &dyn PairLaw {
         match self {
-            LawChoice::Hertzian(law) => law.exponent(),
-            LawChoice::Hookean(law) => law.exponent(),
-            LawChoice::PowerLaw(law) => law.exponent(),
+            LawChoice::Hertzian(law) => law,
+            LawChoice::Hookean(law) => law,
+            LawChoice::PowerLaw(law) => law,
         }
     }
 }
 
 /// Results have the same bits as those of the chosen law.
 impl PairLaw for LawChoice {
-    const IS_POWER: bool = true;
-
-    #[inline(always)]
-    fn resolve<V: LawVisitor>(&self, visitor: V) -> V::Output {
-        match self {
-            LawChoice::Hertzian(law) => visitor.visit(law),
-            LawChoice::Hookean(law) => visitor.visit(law),
-            LawChoice::PowerLaw(law) => visitor.visit(law),
-        }
-    }
-
-    fn viscoelastic(&self, rate: f64) -> ContactDamping {
-        match self {
-            LawChoice::Hertzian(law) => law.viscoelastic(rate),
-            LawChoice::Hookean(law) => law.viscoelastic(rate),
-            LawChoice::PowerLaw(law) => law.viscoelastic(rate),
-        }
-    }
-
-    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
-        match self {
-            LawChoice::Hertzian(law) => law.coefficient(first_radius, second_radius),
-            LawChoice::Hookean(law) => law.coefficient(first_radius, second_radius),
-            LawChoice::PowerLaw(law) => law.coefficient(first_radius, second_radius),
-        }
-    }
-
-    fn coefficient_growth(&self, first_radius: f64, second_radius: f64) -> f64 {
-        match self {
-            LawChoice::Hertzian(law) => law.coefficient_growth(first_radius, second_radius),
-            LawChoice::Hookean(law) => law.coefficient_growth(first_radius, second_radius),
-            LawChoice::PowerLaw(law) => law.coefficient_growth(first_radius, second_radius),
-        }
-    }
-
-    #[inline(always)]
-    fn force(&self, coefficient: f64, overlap: f64) -> f64 {
-        match self {
-            LawChoice::Hertzian(law) => law.force(coefficient, overlap),
-            LawChoice::Hookean(law) => law.force(coefficient, overlap),
-            LawChoice::PowerLaw(law) => law.force(coefficient, overlap),
-        }
-    }
-
-    fn exponent(&self) -> f64 {
-        LawChoice::exponent(self)
-    }
+    delegate_to_law!(self => self.chosen());
 }
 
 #[cfg(test)]

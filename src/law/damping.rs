@@ -19,14 +19,6 @@ pub fn effective_radius(first_radius: f64, second_radius: f64) -> f64 {
     first_radius * second_radius / (first_radius + second_radius)
 }
 
-/// Damping of a contact: a pure function of the overlap and of a coefficient computed once per pair.
-pub trait DampingLaw: Copy + std::fmt::Debug + Send + Sync {
-    /// Coefficient of a pair.
-    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64;
-    /// c_ij for an overlap δ > 0 \[force / velocity\].
-    fn damping(&self, coefficient: f64, overlap: f64) -> f64;
-}
-
 /// `c_ij = γ` for any overlap.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -50,40 +42,9 @@ pub struct MassDamping {
     pub rate: f64,
 }
 
-impl DampingLaw for ConstantDamping {
-    #[inline(always)]
-    fn coefficient(&self, _first_radius: f64, _second_radius: f64) -> f64 {
-        self.rate
-    }
-    #[inline(always)]
-    fn damping(&self, coefficient: f64, _overlap: f64) -> f64 {
-        coefficient
-    }
-}
-
-impl DampingLaw for ViscoelasticDamping {
-    #[inline(always)]
-    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
-        self.rate * REDUCED_MASS * effective_radius(first_radius, second_radius).sqrt()
-    }
-    #[inline(always)]
-    fn damping(&self, coefficient: f64, overlap: f64) -> f64 {
-        coefficient * overlap.sqrt()
-    }
-}
-
-impl DampingLaw for MassDamping {
-    #[inline(always)]
-    fn coefficient(&self, _first_radius: f64, _second_radius: f64) -> f64 {
-        self.rate * REDUCED_MASS
-    }
-    #[inline(always)]
-    fn damping(&self, coefficient: f64, _overlap: f64) -> f64 {
-        coefficient
-    }
-}
-
-/// The damping of a contact as one type: a [`DampingChoice`] for a given contact law.
+/// Damping of a contact: a pure function of the overlap and of a coefficient computed once per pair.
+///
+/// It is a [`DampingChoice`] for a given contact law ([`PairLaw::contact_damping`](crate::law::PairLaw::contact_damping)).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ContactDamping {
     /// c_ij = γ.
@@ -94,21 +55,43 @@ pub enum ContactDamping {
     Mass(MassDamping),
 }
 
-impl DampingLaw for ContactDamping {
-    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
+impl ContactDamping {
+    /// Coefficient of a pair: γ, γ m_eff √R_ij or γ m_eff.
+    pub fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
         match self {
-            ContactDamping::Constant(law) => law.coefficient(first_radius, second_radius),
-            ContactDamping::Viscoelastic(law) => law.coefficient(first_radius, second_radius),
-            ContactDamping::Mass(law) => law.coefficient(first_radius, second_radius),
+            ContactDamping::Constant(law) => law.rate,
+            ContactDamping::Viscoelastic(law) => {
+                law.rate * REDUCED_MASS * effective_radius(first_radius, second_radius).sqrt()
+            }
+            ContactDamping::Mass(law) => law.rate * REDUCED_MASS,
         }
     }
+
+    /// c_ij for an overlap δ > 0 \[force / velocity\].
     #[inline(always)]
-    fn damping(&self, coefficient: f64, overlap: f64) -> f64 {
+    pub fn damping(&self, coefficient: f64, overlap: f64) -> f64 {
         match self {
-            ContactDamping::Constant(law) => law.damping(coefficient, overlap),
-            ContactDamping::Viscoelastic(law) => law.damping(coefficient, overlap),
-            ContactDamping::Mass(law) => law.damping(coefficient, overlap),
+            ContactDamping::Viscoelastic(_) => coefficient * overlap.sqrt(),
+            ContactDamping::Constant(_) | ContactDamping::Mass(_) => coefficient,
         }
+    }
+}
+
+impl From<ConstantDamping> for ContactDamping {
+    fn from(law: ConstantDamping) -> Self {
+        ContactDamping::Constant(law)
+    }
+}
+
+impl From<ViscoelasticDamping> for ContactDamping {
+    fn from(law: ViscoelasticDamping) -> Self {
+        ContactDamping::Viscoelastic(law)
+    }
+}
+
+impl From<MassDamping> for ContactDamping {
+    fn from(law: MassDamping) -> Self {
+        ContactDamping::Mass(law)
     }
 }
 

@@ -3,12 +3,11 @@
 
 pub mod choice;
 pub mod damping;
-pub(crate) mod kernel;
 pub mod on_site;
 pub mod pair_law;
 pub mod power_laws;
 
 pub use choice::{LawChoice, LawError};
 pub use on_site::OnSite;
-pub use pair_law::{LawVisitor, PairLaw};
+pub use pair_law::{PairLaw, ShareLaw};
 pub use power_laws::{Hertzian, Hookean, PowerLaw};

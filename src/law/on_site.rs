@@ -15,8 +15,7 @@
 //! alone, because the virial of an external force depends on the origin. The relative residual is scaled by the mean
 //! contact force, and only contacts form a backbone.
 
-use crate::law::damping::ContactDamping;
-use crate::law::pair_law::{LawVisitor, PairLaw};
+use crate::law::pair_law::{PairLaw, delegate_to_law};
 
 /// A contact law with the energy −Γ u²/2 on every disk, u its displacement from its site.
 ///
@@ -40,44 +39,12 @@ pub struct OnSite<L> {
     pub coupling: f64,
 }
 
-impl<L: PairLaw> PairLaw for OnSite<L> {
-    const IS_POWER: bool = L::IS_POWER;
-
-    /// Sites do not change the contacts.
-    #[inline(always)]
-    fn resolve<V: LawVisitor>(&self, visitor: V) -> V::Output {
-        self.law.resolve(visitor)
-    }
+/// Sites do not change the contacts.
+impl<L: PairLaw + Clone> PairLaw for OnSite<L> {
+    delegate_to_law!(self => self.law);
 
     /// The sum of Γ and that of the inner law, if it has one.
     fn on_site_coupling(&self) -> f64 {
         self.coupling + self.law.on_site_coupling()
-    }
-    fn viscoelastic(&self, rate: f64) -> ContactDamping {
-        self.law.viscoelastic(rate)
-    }
-    #[inline(always)]
-    fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
-        self.law.coefficient(first_radius, second_radius)
-    }
-    #[inline(always)]
-    fn coefficient_growth(&self, first_radius: f64, second_radius: f64) -> f64 {
-        self.law.coefficient_growth(first_radius, second_radius)
-    }
-    #[inline(always)]
-    fn force(&self, coefficient: f64, overlap: f64) -> f64 {
-        self.law.force(coefficient, overlap)
-    }
-    #[inline(always)]
-    fn exponent(&self) -> f64 {
-        self.law.exponent()
-    }
-    #[inline(always)]
-    fn energy(&self, force: f64, overlap: f64) -> f64 {
-        self.law.energy(force, overlap)
-    }
-    #[inline(always)]
-    fn stiffness(&self, force: f64, overlap: f64) -> f64 {
-        self.law.stiffness(force, overlap)
     }
 }

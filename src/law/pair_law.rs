@@ -1,17 +1,20 @@
 //! [`PairLaw`]: force, energy and stiffness of one overlap.
 //!
-//! The law is a type: the arithmetic of a block of contacts is compiled once per law and has no branch on it. A law
-//! chosen at run time is [resolved](PairLaw::resolve) once per block, so the surrounding code is compiled only once.
+//! All other code sees a law as `&dyn PairLaw`, so it is compiled once for all laws. The loop over contacts asks the law
+//! once per block of pairs, for a column of forces ([`PairLaw::forces`]).
 
-use std::slice::from_ref;
+use std::sync::Arc;
 
-use pulp::Simd;
-use pulp::bytemuck::{cast_slice, cast_slice_mut};
+use pulp::{Simd, WithSimd};
 
 use crate::law::damping::{ContactDamping, DampingChoice};
+use crate::processor;
 
 /// The mechanics of one contact: pure functions of the overlap and of a coefficient computed once per pair.
-pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
+///
+/// Only the functions of one pair must be given. Those of columns call them for one pair after the other, compiled for
+/// each vector width; the laws here have their own for speed.
+pub trait PairLaw: ShareLaw + std::fmt::Debug + Send + Sync + 'static {
     /// The viscoelastic damping for this law, with the rate γ.
     fn viscoelastic(&self, rate: f64) -> ContactDamping;
 
@@ -23,12 +26,6 @@ pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
         }
     }
 
-    /// Calls `visitor` with this law, or with the law that it represents.
-    #[inline(always)]
-    fn resolve<V: LawVisitor>(&self, visitor: V) -> V::Output {
-        visitor.visit(self)
-    }
-
     /// Coefficient c of a pair \[force / length^(α−1)\].
     fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64;
 
@@ -38,34 +35,6 @@ pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
 
     /// Repulsive force F(δ) for an overlap δ ≥ 0 \[force\]. A NaN is kept.
     fn force(&self, coefficient: f64, overlap: f64) -> f64;
-
-    /// [`force`](Self::force) for two vectors of pairs, one pair per lane, with the same bits \[force\]. By default
-    /// computed one after the other.
-    #[inline(always)]
-    fn forces<S: Simd>(&self, _simd: S, coefficients: [S::f64s; 2], overlaps: [S::f64s; 2]) -> [S::f64s; 2] {
-        let mut forces = overlaps;
-        let each: &[f64] = cast_slice(&coefficients);
-        for (force, &coefficient) in cast_slice_mut(&mut forces).iter_mut().zip(each) {
-            *force = self.force(coefficient, *force);
-        }
-        forces
-    }
-
-    /// Whether the force is c δ^(α−1) for all overlaps. Only such a law is computed in single precision, whose units of
-    /// force and length are others.
-    const IS_POWER: bool = false;
-
-    /// c δ^(α−1) for a vector of pairs in single precision, in any units of c and δ; called only if the law
-    /// [is a power](Self::IS_POWER). Its cost dominates a relaxation while disks are far from rest.
-    #[inline(always)]
-    fn forces_in_single<S: Simd>(&self, _simd: S, coefficients: S::f32s, overlaps: S::f32s) -> S::f32s {
-        let mut forces = [overlaps];
-        let each: &[f32] = cast_slice(from_ref(&coefficients));
-        for (force, &coefficient) in cast_slice_mut::<_, f32>(&mut forces).iter_mut().zip(each) {
-            *force = (f64::from(coefficient) * libm::pow(f64::from(*force), self.exponent() - 1.0)) as f32;
-        }
-        forces[0]
-    }
 
     /// Exponent α of the energy \[1\].
     fn exponent(&self) -> f64;
@@ -82,8 +51,16 @@ pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
         if overlap > 0.0 { (self.exponent() - 1.0) * force / overlap } else { 0.0 }
     }
 
-    /// Whether all pairs have the same coefficient for any radii; the loop then reads one per block.
-    const ONE_COEFFICIENT: bool = false;
+    /// Whether the force is c δ^(α−1) for all overlaps. Only such a law is computed in single precision, whose units of
+    /// force and length are others.
+    fn is_power(&self) -> bool {
+        false
+    }
+
+    /// Whether all pairs have the same coefficient for any radii. Nothing then reads the column of coefficients.
+    fn has_one_coefficient(&self) -> bool {
+        false
+    }
 
     /// Γ of an energy −Γu²/2 of the displacement u of every disk from its site, see
     /// [`OnSite`](crate::law::on_site::OnSite); 0 without sites \[force / length\].
@@ -101,13 +78,130 @@ pub trait PairLaw: Copy + std::fmt::Debug + Send + Sync {
     fn force_scale(&self, radius: f64) -> f64 {
         self.force(self.coefficient(radius, radius), radius)
     }
+
+    /// [`force`](Self::force) of each pair of a column, with the same bits \[force\].
+    ///
+    /// # Shape
+    /// All columns are of one length; `forces` is overwritten.
+    fn forces(&self, coefficients: &[f64], overlaps: &[f64], forces: &mut [f64]) {
+        combine([coefficients, overlaps], forces, |c, overlap| self.force(c, overlap));
+    }
+
+    /// [`energy`](Self::energy) of each pair of a column \[energy\].
+    ///
+    /// # Shape
+    /// As for [`forces`](Self::forces).
+    fn energies(&self, forces: &[f64], overlaps: &[f64], energies: &mut [f64]) {
+        combine([forces, overlaps], energies, |force, overlap| self.energy(force, overlap));
+    }
+
+    /// [`stiffness`](Self::stiffness) of each pair of a column \[force / length\].
+    ///
+    /// # Shape
+    /// As for [`forces`](Self::forces).
+    fn stiffnesses(&self, forces: &[f64], overlaps: &[f64], stiffnesses: &mut [f64]) {
+        combine([forces, overlaps], stiffnesses, |force, overlap| self.stiffness(force, overlap));
+    }
+
+    /// c δ^(α−1) of each pair of a column in single precision, in any units of c and δ; called only if the law
+    /// [is a power](Self::is_power). Its cost dominates a relaxation while disks are far from rest.
+    ///
+    /// # Shape
+    /// As for [`forces`](Self::forces).
+    fn forces_in_single(&self, coefficients: &[f32], overlaps: &[f32], forces: &mut [f32]) {
+        let power = self.exponent() - 1.0;
+        let force = |c, overlap| (f64::from(c) * libm::pow(f64::from(overlap), power)) as f32;
+        combine([coefficients, overlaps], forces, force);
+    }
 }
 
-/// A function of a law whose type is known.
-pub trait LawVisitor {
-    /// Its result.
-    type Output;
+/// A law behind a pointer. Every [`PairLaw`] that can be copied has it.
+pub trait ShareLaw {
+    /// A copy that many can hold.
+    fn shared(&self) -> Arc<dyn PairLaw>;
+}
 
-    /// Calls the function.
-    fn visit<L: PairLaw>(self, law: &L) -> Self::Output;
+impl<L: PairLaw + Clone> ShareLaw for L {
+    fn shared(&self) -> Arc<dyn PairLaw> {
+        Arc::new(self.clone())
+    }
+}
+
+/// Overwrites a column by a function of two others, place by place, compiled for each vector width.
+#[inline(always)]
+pub(super) fn combine<T: Copy>(from: [&[T]; 2], to: &mut [T], of: impl Fn(T, T) -> T) {
+    processor::dispatch(Combine { from, to, of });
+}
+
+struct Combine<'a, T, F> {
+    from: [&'a [T]; 2],
+    to: &'a mut [T],
+    of: F,
+}
+
+impl<T: Copy, F: Fn(T, T) -> T> WithSimd for Combine<'_, T, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let [a, b] = self.from;
+        for (to, (&a, &b)) in self.to.iter_mut().zip(a.iter().zip(b)) {
+            *to = (self.of)(a, b);
+        }
+    }
+}
+
+/// The functions of a law that another one stands for.
+macro_rules! delegate_to_law {
+    ($this:ident => $law:expr) => {
+        fn viscoelastic(&$this, rate: f64) -> $crate::law::damping::ContactDamping {
+            $law.viscoelastic(rate)
+        }
+        fn coefficient(&$this, first_radius: f64, second_radius: f64) -> f64 {
+            $law.coefficient(first_radius, second_radius)
+        }
+        fn coefficient_growth(&$this, first_radius: f64, second_radius: f64) -> f64 {
+            $law.coefficient_growth(first_radius, second_radius)
+        }
+        fn force(&$this, coefficient: f64, overlap: f64) -> f64 {
+            $law.force(coefficient, overlap)
+        }
+        fn exponent(&$this) -> f64 {
+            $law.exponent()
+        }
+        fn energy(&$this, force: f64, overlap: f64) -> f64 {
+            $law.energy(force, overlap)
+        }
+        fn stiffness(&$this, force: f64, overlap: f64) -> f64 {
+            $law.stiffness(force, overlap)
+        }
+        fn is_power(&$this) -> bool {
+            $law.is_power()
+        }
+        fn has_one_coefficient(&$this) -> bool {
+            $law.has_one_coefficient()
+        }
+        fn forces(&$this, coefficients: &[f64], overlaps: &[f64], forces: &mut [f64]) {
+            $law.forces(coefficients, overlaps, forces);
+        }
+        fn energies(&$this, forces: &[f64], overlaps: &[f64], energies: &mut [f64]) {
+            $law.energies(forces, overlaps, energies);
+        }
+        fn stiffnesses(&$this, forces: &[f64], overlaps: &[f64], stiffnesses: &mut [f64]) {
+            $law.stiffnesses(forces, overlaps, stiffnesses);
+        }
+        fn forces_in_single(&$this, coefficients: &[f32], overlaps: &[f32], forces: &mut [f32]) {
+            $law.forces_in_single(coefficients, overlaps, forces);
+        }
+    };
+}
+pub(crate) use delegate_to_law;
+
+/// A shared law is a law.
+impl PairLaw for Arc<dyn PairLaw> {
+    delegate_to_law!(self => self.as_ref());
+
+    fn on_site_coupling(&self) -> f64 {
+        self.as_ref().on_site_coupling()
+    }
 }

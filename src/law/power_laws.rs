@@ -12,12 +12,12 @@
 //! | [`Hookean`] | 2 | k' |
 //! | [`PowerLaw`] | any ≥ 2 | ε / σ_ij^α, σ_ij = R_i + R_j |
 
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use crate::law::damping::{ContactDamping, MassDamping, ViscoelasticDamping, effective_radius};
-use crate::law::pair_law::PairLaw;
-use crate::processor::Processor;
+use crate::law::pair_law::{PairLaw, combine};
+use crate::processor::{self, Processor};
 use crate::simd::roots::square_roots;
 
 /// Hertzian contact.
@@ -75,7 +75,9 @@ impl Default for Hookean {
 }
 
 impl PairLaw for Hertzian {
-    const IS_POWER: bool = true;
+    fn is_power(&self) -> bool {
+        true
+    }
 
     fn viscoelastic(&self, rate: f64) -> ContactDamping {
         ContactDamping::Viscoelastic(ViscoelasticDamping { rate })
@@ -93,14 +95,11 @@ impl PairLaw for Hertzian {
     fn force(&self, coefficient: f64, overlap: f64) -> f64 {
         coefficient * overlap * overlap.sqrt()
     }
-    #[inline(always)]
-    fn forces<S: Simd>(&self, simd: S, [c, d]: [S::f64s; 2], overlaps: [S::f64s; 2]) -> [S::f64s; 2] {
-        let ([a, b], [a_root, b_root]) = (overlaps, square_roots(simd, Processor::here().roots(), overlaps));
-        [simd.mul_f64s(simd.mul_f64s(c, a), a_root), simd.mul_f64s(simd.mul_f64s(d, b), b_root)]
+    fn forces(&self, coefficients: &[f64], overlaps: &[f64], forces: &mut [f64]) {
+        processor::dispatch(HertzianForces { coefficients, overlaps, forces });
     }
-    #[inline(always)]
-    fn forces_in_single<S: Simd>(&self, simd: S, coefficients: S::f32s, overlaps: S::f32s) -> S::f32s {
-        simd.mul_f32s(simd.mul_f32s(coefficients, overlaps), simd.sqrt_f32s(overlaps))
+    fn forces_in_single(&self, coefficients: &[f32], overlaps: &[f32], forces: &mut [f32]) {
+        processor::dispatch(SingleHertzianForces { coefficients, overlaps, forces });
     }
     #[inline(always)]
     fn exponent(&self) -> f64 {
@@ -109,8 +108,12 @@ impl PairLaw for Hertzian {
 }
 
 impl PairLaw for Hookean {
-    const IS_POWER: bool = true;
-    const ONE_COEFFICIENT: bool = true;
+    fn is_power(&self) -> bool {
+        true
+    }
+    fn has_one_coefficient(&self) -> bool {
+        true
+    }
 
     fn viscoelastic(&self, rate: f64) -> ContactDamping {
         ContactDamping::Mass(MassDamping { rate })
@@ -128,14 +131,8 @@ impl PairLaw for Hookean {
         // The same for every pair, so the loop need not load it.
         self.stiffness * overlap
     }
-    #[inline(always)]
-    fn forces<S: Simd>(&self, simd: S, _coefficients: [S::f64s; 2], [a, b]: [S::f64s; 2]) -> [S::f64s; 2] {
-        let stiffness = simd.splat_f64s(self.stiffness);
-        [simd.mul_f64s(stiffness, a), simd.mul_f64s(stiffness, b)]
-    }
-    #[inline(always)]
-    fn forces_in_single<S: Simd>(&self, simd: S, coefficients: S::f32s, overlaps: S::f32s) -> S::f32s {
-        simd.mul_f32s(coefficients, overlaps)
+    fn forces_in_single(&self, coefficients: &[f32], overlaps: &[f32], forces: &mut [f32]) {
+        combine([coefficients, overlaps], forces, |c, overlap| c * overlap);
     }
     #[inline(always)]
     fn exponent(&self) -> f64 {
@@ -144,7 +141,9 @@ impl PairLaw for Hookean {
 }
 
 impl PairLaw for PowerLaw {
-    const IS_POWER: bool = true;
+    fn is_power(&self) -> bool {
+        true
+    }
 
     fn viscoelastic(&self, rate: f64) -> ContactDamping {
         ContactDamping::Mass(MassDamping { rate })
@@ -167,14 +166,65 @@ impl PairLaw for PowerLaw {
     }
 }
 
+/// c δ √δ for two vectors of pairs at a time, one pair per lane, with the bits of [`Hertzian::force`].
+struct HertzianForces<'a> {
+    coefficients: &'a [f64],
+    overlaps: &'a [f64],
+    forces: &'a mut [f64],
+}
+
+impl WithSimd for HertzianForces<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let whole = self.forces.len() / (2 * S::F64_LANES) * 2 * S::F64_LANES;
+        let (coefficients, last_coefficients) = self.coefficients.split_at(whole);
+        let (overlaps, last_overlaps) = self.overlaps.split_at(whole);
+        let (forces, last_forces) = self.forces.split_at_mut(whole);
+        let coefficients = S::as_simd_f64s(coefficients).0.as_chunks::<2>().0;
+        let overlaps = S::as_simd_f64s(overlaps).0.as_chunks::<2>().0;
+        let forces = S::as_mut_simd_f64s(forces).0.as_chunks_mut::<2>().0;
+        let roots = Processor::here().roots();
+        for (force, (&[c, d], &[a, b])) in forces.iter_mut().zip(coefficients.iter().zip(overlaps)) {
+            let [a_root, b_root] = square_roots(simd, roots, [a, b]);
+            *force = [simd.mul_f64s(simd.mul_f64s(c, a), a_root), simd.mul_f64s(simd.mul_f64s(d, b), b_root)];
+        }
+        for (force, (&c, &a)) in last_forces.iter_mut().zip(last_coefficients.iter().zip(last_overlaps)) {
+            *force = c * a * a.sqrt();
+        }
+    }
+}
+
+/// The same in single precision, one vector at a time.
+struct SingleHertzianForces<'a> {
+    coefficients: &'a [f32],
+    overlaps: &'a [f32],
+    forces: &'a mut [f32],
+}
+
+impl WithSimd for SingleHertzianForces<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let (coefficients, last_coefficients) = S::as_simd_f32s(self.coefficients);
+        let (overlaps, last_overlaps) = S::as_simd_f32s(self.overlaps);
+        let (forces, last_forces) = S::as_mut_simd_f32s(self.forces);
+        for (force, (&c, &a)) in forces.iter_mut().zip(coefficients.iter().zip(overlaps)) {
+            *force = simd.mul_f32s(simd.mul_f32s(c, a), simd.sqrt_f32s(a));
+        }
+        for (force, (&c, &a)) in last_forces.iter_mut().zip(last_coefficients.iter().zip(last_overlaps)) {
+            *force = c * a * a.sqrt();
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use pulp::bytemuck::cast_slice;
-
     use super::*;
-    use crate::processor::dispatch;
 
-    fn check_law(law: impl PairLaw) {
+    fn check_law(law: impl PairLaw + Copy) {
         let coefficient = law.coefficient(0.5, 0.7);
         assert_eq!(law.force(coefficient, 0.0), 0.0);
         assert!(law.force(coefficient, f64::NAN).is_nan());
@@ -202,27 +252,14 @@ mod tests {
         check_law(PowerLaw { energy_scale: 3.0, exponent: 3.7 });
     }
 
-    /// The forces of sixteen pairs, as vectors.
-    struct Forces<'a, L>(&'a L, [f64; 16], [f64; 16]);
-
-    impl<L: PairLaw> pulp::WithSimd for Forces<'_, L> {
-        type Output = Vec<f64>;
-
-        fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
-            let Forces(law, coefficients, overlaps) = self;
-            let (coefficients, overlaps) = (S::as_simd_f64s(&coefficients).0, S::as_simd_f64s(&overlaps).0);
-            let vectors = coefficients.as_chunks().0.iter().zip(overlaps.as_chunks().0);
-            let forces: Vec<S::f64s> = vectors.flat_map(|(&c, &overlap)| law.forces(simd, c, overlap)).collect();
-            cast_slice(&forces).to_vec()
-        }
-    }
-
-    fn check_vectors(law: &impl PairLaw) {
+    fn check_columns(law: &dyn PairLaw) {
         let some = [0.0, 1e-20, 1e-9, 3e-3, 0.01, 0.1, 0.3, f64::NAN];
-        let overlaps = std::array::from_fn(|pair| some[(pair + pair / 8) % 8]);
-        let coefficients = std::array::from_fn(|pair| law.coefficient(0.3 + 0.1 * pair as f64, 0.5));
+        // Two pairs of vectors of eight, and a rest.
+        let overlaps: [f64; 37] = std::array::from_fn(|pair| some[(pair + pair / 8) % 8]);
+        let coefficients: [f64; 37] = std::array::from_fn(|pair| law.coefficient(0.3 + 0.1 * pair as f64, 0.5));
         for processor in Processor::all() {
-            let found = processor.run(|| dispatch(Forces(law, coefficients, overlaps)));
+            let mut found = [0.0; 37];
+            processor.run(|| law.forces(&coefficients, &overlaps, &mut found));
             for ((force, coefficient), overlap) in found.iter().zip(coefficients).zip(overlaps) {
                 let alone = law.force(coefficient, overlap);
                 let same = force.to_bits() == alone.to_bits() || overlap.is_nan() && force.is_nan();
@@ -232,37 +269,23 @@ mod tests {
     }
 
     #[test]
-    fn the_forces_of_a_vector_are_those_of_its_pairs() {
-        check_vectors(&Hertzian::default());
-        check_vectors(&Hookean::default());
-        check_vectors(&PowerLaw { energy_scale: 3.0, exponent: 2.5 });
-        check_vectors(&crate::law::on_site::OnSite { law: Hertzian::default(), coupling: -0.5 });
-    }
-
-    /// Forces in single precision of sixteen pairs, as vectors.
-    struct SingleForces<'a, L>(&'a L, [f32; 16], [f32; 16]);
-
-    impl<L: PairLaw> pulp::WithSimd for SingleForces<'_, L> {
-        type Output = Vec<f32>;
-
-        fn with_simd<S: Simd>(self, simd: S) -> Vec<f32> {
-            let SingleForces(law, coefficients, overlaps) = self;
-            let (coefficients, overlaps) = (S::as_simd_f32s(&coefficients).0, S::as_simd_f32s(&overlaps).0);
-            let vectors = coefficients.iter().zip(overlaps);
-            let forces: Vec<S::f32s> = vectors.map(|(&c, &overlap)| law.forces_in_single(simd, c, overlap)).collect();
-            cast_slice(&forces).to_vec()
-        }
+    fn the_forces_of_a_column_are_those_of_its_pairs() {
+        check_columns(&Hertzian::default());
+        check_columns(&Hookean::default());
+        check_columns(&PowerLaw { energy_scale: 3.0, exponent: 2.5 });
+        check_columns(&crate::law::on_site::OnSite { law: Hertzian::default(), coupling: -0.5 });
     }
 
     #[test]
     fn forces_in_single_precision_are_the_power_of_the_overlap() {
-        fn check(law: &impl PairLaw) {
+        fn check(law: &dyn PairLaw) {
             let some = [0.0, 1e-12, 1e-9, 3e-3, 0.01, 0.1, 0.3, f32::NAN];
-            let overlaps: [f32; 16] = std::array::from_fn(|pair| some[(pair + pair / 8) % 8]);
-            let coefficients: [f32; 16] = std::array::from_fn(|pair| 0.3 + 0.1 * pair as f32);
-            let found = dispatch(SingleForces(law, coefficients, overlaps));
+            let overlaps: [f32; 37] = std::array::from_fn(|pair| some[(pair + pair / 8) % 8]);
+            let coefficients: [f32; 37] = std::array::from_fn(|pair| 0.3 + 0.1 * pair as f32);
+            let [mut found, mut again] = [[0.0; 37]; 2];
+            law.forces_in_single(&coefficients, &overlaps, &mut found);
             for processor in Processor::all() {
-                let again = processor.run(|| dispatch(SingleForces(law, coefficients, overlaps)));
+                processor.run(|| law.forces_in_single(&coefficients, &overlaps, &mut again));
                 let bits = |forces: &[f32]| forces.iter().map(|force| force.to_bits()).collect::<Vec<_>>();
                 assert_eq!(bits(&again), bits(&found), "{law:?}, {processor:?}");
             }

@@ -48,11 +48,7 @@ impl<const D: usize> LinearResponse<D> {
     ///
     /// # Panics
     /// If the packing has another number of disks.
-    pub fn contact_changes<L: PairLaw>(
-        &self,
-        packing: &Packing<D>,
-        law: &L,
-    ) -> Result<Vec<ContactChange>, PackingError> {
+    pub fn contact_changes(&self, packing: &Packing<D>, law: &dyn PairLaw) -> Result<Vec<ContactChange>, PackingError> {
         assert_eq!(packing.len(), self.displacements.len(), "a response belongs to the packing it was made from");
         let network = ContactNetwork::new(packing, law)?;
         let (radii, held) = (packing.radii(), packing.held());
@@ -102,10 +98,10 @@ impl<const D: usize> LinearResponse<D> {
     ///
     /// # Panics
     /// If the packing has another number of disks.
-    pub fn force_change<L: PairLaw>(
+    pub fn force_change(
         &self,
         packing: &Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         disk: usize,
     ) -> Result<Vector<D>, PackingError> {
         let network = ContactNetwork::new(packing, law)?;

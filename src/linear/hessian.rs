@@ -126,17 +126,17 @@ impl<const D: usize> Hessian<D> {
     ///
     /// # Errors
     /// As [`Assembly::new`].
-    pub fn new<L: PairLaw>(
+    pub fn new(
         packing: &Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         members: Members,
         prestress: Prestress,
     ) -> Result<Self, PackingError> {
-        Ok(Self::of(&Assembly::new(packing, *law)?, members, prestress))
+        Ok(Self::of(&Assembly::new(packing, law)?, members, prestress))
     }
 
     /// The second derivatives at the present displacements of an assembly.
-    pub fn of<L: PairLaw>(assembly: &Assembly<D, L>, members: Members, prestress: Prestress) -> Self {
+    pub fn of(assembly: &Assembly<D>, members: Members, prestress: Prestress) -> Self {
         let mut hessian = Hessian {
             prestress,
             members,
@@ -157,14 +157,14 @@ impl<const D: usize> Hessian<D> {
 
     /// Recomputes the second derivatives after disks have moved. True if the pattern of entries is unchanged, so that
     /// an analysis of the matrix stays valid. The assembly must be the one given first, or one of the same packing.
-    pub fn update<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) -> bool {
+    pub fn update(&mut self, assembly: &Assembly<D>) -> bool {
         self.update_with(assembly, |contact| (contact.stiffness, contact.across))
     }
 
     /// Like [`Hessian::update`], with another stiffness along and across each contact.
-    pub(crate) fn update_with<L: PairLaw>(
+    pub(crate) fn update_with(
         &mut self,
-        assembly: &Assembly<D, L>,
+        assembly: &Assembly<D>,
         weights: impl Fn(&StiffContact) -> (f64, f64),
     ) -> bool {
         self.update_within(assembly, |_| 0.0, 0.0, weights)
@@ -172,9 +172,9 @@ impl<const D: usize> Hessian<D> {
 
     /// Like [`Hessian::update_with`], where pairs with a gap below `reach` also count as contacts. Pairs with a gap up
     /// to `spare` larger get entries of value 0, so that the pattern of later updates is the same.
-    pub(crate) fn update_within<L: PairLaw>(
+    pub(crate) fn update_within(
         &mut self,
-        assembly: &Assembly<D, L>,
+        assembly: &Assembly<D>,
         reach: impl Fn(usize) -> f64,
         spare: f64,
         weights: impl Fn(&StiffContact) -> (f64, f64),
@@ -216,9 +216,9 @@ impl<const D: usize> Hessian<D> {
         same
     }
 
-    fn set_links<L: PairLaw>(
+    fn set_links(
         &mut self,
-        assembly: &Assembly<D, L>,
+        assembly: &Assembly<D>,
         reach: impl Fn(usize) -> f64,
         spare: f64,
         weights: impl Fn(&StiffContact) -> (f64, f64),
@@ -249,7 +249,7 @@ impl<const D: usize> Hessian<D> {
         );
     }
 
-    fn set_members<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
+    fn set_members(&mut self, assembly: &Assembly<D>) {
         let mobile = assembly.mobile_count();
         let member = match self.members {
             Members::Backbone => {

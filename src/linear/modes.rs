@@ -104,9 +104,9 @@ impl<const D: usize> VibrationalModes<D> {
     /// Ten modes of 1000 disks: 2 factorisations and 54 to 62 solutions, with as many vectors in memory (`cargo test
     /// modes:: -- --nocapture`). If a quarter of all modes or more is requested, dense algebra takes a time of third
     /// power.
-    pub fn lowest<L: PairLaw>(
+    pub fn lowest(
         packing: &Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         prestress: Prestress,
         count: usize,
     ) -> Result<Self, LinearError> {

@@ -108,7 +108,7 @@ impl<const D: usize> ElasticModuli<D> {
     /// # Errors
     /// Held disks, the open plane, a law with sites; no backbone; a backbone that is not rigid (its Hessian is
     /// singular).
-    pub fn of<L: PairLaw>(packing: &Packing<D>, law: &L, prestress: Prestress) -> Result<Self, LinearError> {
+    pub fn of(packing: &Packing<D>, law: &dyn PairLaw, prestress: Prestress) -> Result<Self, LinearError> {
         let held_count = packing.held().iter().filter(|&&held| held).count();
         if held_count > 0 {
             return Err(LinearError::HeldDisks { held_count });
@@ -206,7 +206,7 @@ struct Link<const D: usize> {
     block: [Vector<D>; D],
 }
 
-fn links<const D: usize, L: PairLaw>(network: &ContactNetwork<D>, law: &L, prestress: Prestress) -> Vec<Link<D>> {
+fn links<const D: usize>(network: &ContactNetwork<D>, law: &dyn PairLaw, prestress: Prestress) -> Vec<Link<D>> {
     let contacts = network.backbone_contacts();
     let link = contacts.map(|contact| {
         let (apart, distance) = (contact.separation, norm(contact.separation));

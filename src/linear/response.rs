@@ -52,10 +52,10 @@ impl<const D: usize> LinearResponse<D> {
     ///
     /// # Cost
     /// One analysis, one factorisation, and at least two solutions (`cargo bench --bench linear`).
-    pub fn of_inflation<L: PairLaw>(
+    pub fn of_inflation(
         packing: &Packing<D>,
         centre: usize,
-        law: &L,
+        law: &dyn PairLaw,
         prestress: Prestress,
     ) -> Result<Self, LinearError> {
         exists(packing, centre)?;
@@ -73,10 +73,10 @@ impl<const D: usize> LinearResponse<D> {
     ///
     /// # Cost
     /// One solution per disk, a tenth of the time of a single response (table in the book).
-    pub fn of_inflations<L: PairLaw>(
+    pub fn of_inflations(
         packing: &Packing<D>,
         centres: &[usize],
-        law: &L,
+        law: &dyn PairLaw,
         prestress: Prestress,
         mut visit: impl FnMut(Self),
     ) -> Result<(), LinearError> {
@@ -100,10 +100,10 @@ impl<const D: usize> LinearResponse<D> {
     ///
     /// # Errors
     /// A force that is not finite, or a wrong number of forces; otherwise see [`LinearResponse::of_inflation`].
-    pub fn of_forces<L: PairLaw>(
+    pub fn of_forces(
         packing: &Packing<D>,
         forces: &[Vector<D>],
-        law: &L,
+        law: &dyn PairLaw,
         prestress: Prestress,
     ) -> Result<Self, LinearError> {
         if forces.len() != packing.len() {
@@ -131,10 +131,10 @@ impl<const D: usize> LinearResponse<D> {
     /// # Errors
     /// An index without a disk, a disk that is not held, a displacement that is not finite; otherwise see
     /// [`LinearResponse::of_inflation`].
-    pub fn of_displacements<L: PairLaw>(
+    pub fn of_displacements(
         packing: &Packing<D>,
         moved: &[(usize, Vector<D>)],
-        law: &L,
+        law: &dyn PairLaw,
         prestress: Prestress,
     ) -> Result<Self, LinearError> {
         let mut imposed = vec![[0.0; D]; packing.len()];
@@ -163,18 +163,18 @@ fn exists<const D: usize>(packing: &Packing<D>, disk: usize) -> Result<(), Linea
 }
 
 /// Whether neither held disks nor sites hold the packing.
-fn floats<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> bool {
+fn floats<const D: usize>(packing: &Packing<D>, law: &dyn PairLaw) -> bool {
     !packing.held().contains(&true) && law.on_site_coupling() == 0.0
 }
 
 /// Calls a function with a solver for loads on the unknowns. If the packing floats, a disk is pinned (`pin` or one of
 /// the backbone), and the mean displacement is subtracted.
-fn with_solver<const D: usize, L: PairLaw, T>(
+fn with_solver<const D: usize, T>(
     packing: &Packing<D>,
     pin: Option<usize>,
-    (law, prestress): (&L, Prestress),
+    (law, prestress): (&dyn PairLaw, Prestress),
     call: impl FnOnce(
-        &Assembly<D, L>,
+        &Assembly<D>,
         &Hessian<D>,
         &mut dyn FnMut(&[f64]) -> Result<LinearResponse<D>, LinearError>,
     ) -> Result<T, LinearError>,
@@ -195,7 +195,7 @@ fn with_solver<const D: usize, L: PairLaw, T>(
     } else {
         packing
     };
-    let assembly = Assembly::new(packing, *law)?;
+    let assembly = Assembly::new(packing, law)?;
     let hessian = Hessian::of(&assembly, Members::Backbone, prestress);
     let matrix = hessian.matrix();
     if matrix.dimension() == 0 {
@@ -235,8 +235,8 @@ fn with_solver<const D: usize, L: PairLaw, T>(
 ///
 /// # Errors
 /// The disk has no contact with the backbone.
-fn push_of<const D: usize, L: PairLaw>(
-    assembly: &Assembly<D, L>,
+fn push_of<const D: usize>(
+    assembly: &Assembly<D>,
     hessian: &Hessian<D>,
     centre: usize,
 ) -> Result<Vec<f64>, LinearError> {

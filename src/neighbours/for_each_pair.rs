@@ -101,7 +101,7 @@ mod tests {
     fn every_pair_is_met_once_with_the_bits_of_its_geometry() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N5548_p100.xyz");
         let packing = read_packing::<2>(file).expect("a stored packing");
-        let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("no coincidence");
+        let mut assembly = Assembly::new(&packing, &Hertzian::default()).expect("no coincidence");
         for (disk, displacement) in assembly.displacements.iter_mut().enumerate() {
             *displacement = [1e-2 * (3.0 * disk as f64).sin(), 1e-2 * (5.0 * disk as f64).cos()];
         }

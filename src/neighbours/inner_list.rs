@@ -156,7 +156,7 @@ mod tests {
     /// Moves every disk by `displacement` per step, each in its own direction. Every tenth step compares energy,
     /// contacts and forces with those of a rebuilt list. Returns the fraction of steps with the inner list and the
     /// fraction with a rebuild of the outer list.
-    fn move_disks(assembly: &mut Assembly<2, Hertzian>, displacement: f64, steps: usize) -> (f64, f64) {
+    fn move_disks(assembly: &mut Assembly<2>, displacement: f64, steps: usize) -> (f64, f64) {
         let mobile = assembly.mobile_count();
         let (mut near, made) = (0, assembly.build_count());
         for step in 0..steps {
@@ -189,7 +189,7 @@ mod tests {
     fn no_contact_is_missed_while_disks_move_slowly_or_fast() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz");
         let packing = read_packing::<2>(file).expect("a stored packing");
-        let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("no coincidence");
+        let mut assembly = Assembly::new(&packing, &Hertzian::default()).expect("no coincidence");
         assembly.set_pruning(true);
         let radius = 0.5;
         let (near, made) = move_disks(&mut assembly, 1e-4 * radius, 400);

@@ -66,7 +66,7 @@ mod tests {
 
     fn check(packing: &Packing<2>, tolerance: f64) {
         let law = Hertzian::default();
-        let assembly = Assembly::new(packing, law).expect("no coincidence");
+        let assembly = Assembly::new(packing, &law).expect("no coincidence");
         let (whole, count) = (assembly.pairs(), assembly.len());
         // Every second pair from `begin` on, with disk numbers mapped by `number`.
         let selected = |begin: usize, number: &dyn Fn(u32) -> u32| {

@@ -70,7 +70,7 @@ impl<const D: usize> BondChanges<D> {
     ///
     /// # Errors
     /// See [`ContactNetwork::new`](crate::network::ContactNetwork::new).
-    pub fn of_inflation<L: PairLaw>(inflated: &Inflated<D>, law: &L, set: BondSet) -> Result<Self, PackingError> {
+    pub fn of_inflation(inflated: &Inflated<D>, law: &dyn PairLaw, set: BondSet) -> Result<Self, PackingError> {
         let before = State::new(inflated.before.packing.get(), law)?;
         let after = State::new(inflated.after.packing.get(), law)?;
         Ok(Self::between(&before, &after, inflated.centre, set))

@@ -68,7 +68,7 @@ impl<const D: usize> ContactChanges<D> {
     ///
     /// # Errors
     /// See [`ContactNetwork::new`](crate::network::ContactNetwork::new).
-    pub fn of_inflation<L: PairLaw>(inflated: &Inflated<D>, law: &L) -> Result<Self, PackingError> {
+    pub fn of_inflation(inflated: &Inflated<D>, law: &dyn PairLaw) -> Result<Self, PackingError> {
         let before = State::new(inflated.before.packing.get(), law)?;
         let after = State::new(inflated.after.packing.get(), law)?;
         Ok(Self::between(&before, &after, inflated.centre))
@@ -159,7 +159,7 @@ impl<const D: usize> ContactCycle<D> {
     ///
     /// # Errors
     /// See [`ContactNetwork::new`](crate::network::ContactNetwork::new).
-    pub fn of<L: PairLaw>(inflated: &Inflated<D>, law: &L) -> Result<Option<Self>, PackingError> {
+    pub fn of(inflated: &Inflated<D>, law: &dyn PairLaw) -> Result<Option<Self>, PackingError> {
         let Some(deflated) = &inflated.deflated else { return Ok(None) };
         let states = [&inflated.before, &inflated.after, deflated];
         let [before, after, deflated] = states.map(|rest| State::new(rest.packing.get(), law));

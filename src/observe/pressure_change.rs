@@ -40,16 +40,16 @@ impl PressureChange {
     }
 
     /// Δp of an inflation.
-    pub fn of_inflation<const D: usize, L: PairLaw>(inflated: &Inflated<D>, law: &L) -> Self {
+    pub fn of_inflation<const D: usize>(inflated: &Inflated<D>, law: &dyn PairLaw) -> Self {
         Self::to(inflated, &inflated.after, law)
     }
 
     /// Δp that remains after the deflation; none without a deflation.
-    pub fn of_cycle<const D: usize, L: PairLaw>(inflated: &Inflated<D>, law: &L) -> Option<Self> {
+    pub fn of_cycle<const D: usize>(inflated: &Inflated<D>, law: &dyn PairLaw) -> Option<Self> {
         inflated.deflated.as_ref().map(|deflated| Self::to(inflated, deflated, law))
     }
 
-    fn to<const D: usize, L: PairLaw>(inflated: &Inflated<D>, state: &Rest<D>, law: &L) -> Self {
+    fn to<const D: usize>(inflated: &Inflated<D>, state: &Rest<D>, law: &dyn PairLaw) -> Self {
         Self::between(inflated.before.pressure, state.pressure, law.exponent())
     }
 }

@@ -19,7 +19,7 @@ impl<'a, const D: usize> State<'a, D> {
     ///
     /// # Errors
     /// See [`ContactNetwork::new`].
-    pub fn new<L: PairLaw>(packing: &'a Packing<D>, law: &L) -> Result<Self, PackingError> {
+    pub fn new(packing: &'a Packing<D>, law: &dyn PairLaw) -> Result<Self, PackingError> {
         Ok(State { packing, network: ContactNetwork::new(packing, law)? })
     }
 

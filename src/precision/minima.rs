@@ -51,9 +51,9 @@ pub struct Disagreement {
 }
 
 /// The minima found so far, with the data to recognise a new one.
-pub(super) struct Minima<'a, L> {
+pub(super) struct Minima<'a> {
     grown: &'a Grown<2>,
-    law: &'a L,
+    law: &'a dyn PairLaw,
     observables: &'a Observables,
     states: Vec<State>,
     /// In the order of the states.
@@ -62,11 +62,11 @@ pub(super) struct Minima<'a, L> {
     reference_count: usize,
 }
 
-impl<'a, L: PairLaw> Minima<'a, L> {
+impl<'a> Minima<'a> {
     /// Computes both references.
     pub fn new(
         grown: &'a Grown<2>,
-        law: &'a L,
+        law: &'a dyn PairLaw,
         observables: &'a Observables,
         damping: DampingChoice,
         limit: f64,
@@ -190,10 +190,10 @@ pub(super) struct End {
 }
 
 impl End {
-    pub fn new<L: PairLaw>(
+    pub fn new(
         outcome: Outcome<Packing<2>>,
         grown: &Grown<2>,
-        law: &L,
+        law: &dyn PairLaw,
         observables: &Observables,
     ) -> Result<Self, PackingError> {
         let criterion: Option<Criterion> = match outcome.stop {

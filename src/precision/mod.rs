@@ -75,9 +75,9 @@ pub fn measure(
     Ok(PrecisionReport { jamscope_version: env!("CARGO_PKG_VERSION"), scene, settings, samples })
 }
 
-fn of_scene<L: PairLaw>(
+fn of_scene(
     scene: &Scene,
-    law: &L,
+    law: &dyn PairLaw,
     settings: &PrecisionSettings,
     progress: &dyn Progress,
 ) -> Result<Vec<SamplePrecision>, PrecisionError> {
@@ -89,7 +89,7 @@ fn of_scene<L: PairLaw>(
 }
 
 /// The packings of all samples. Only this part is not timed, so it runs in parallel.
-fn packings<L: PairLaw>(scene: &Scene, law: &L) -> Vec<Result<Packing<2>, RunError>> {
+fn packings(scene: &Scene, law: &dyn PairLaw) -> Vec<Result<Packing<2>, RunError>> {
     let one = |sample: &Sample| packing_of(scene, sample, law, &mut ()).map(|(packing, _)| packing);
     #[cfg(feature = "parallel")]
     {

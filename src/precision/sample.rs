@@ -15,15 +15,16 @@ use crate::run::RunError;
 use crate::scene::{Sample, Scene};
 
 /// Measures a sample; its disks have sites if its inflation does.
-pub(super) fn of_sample<L: PairLaw>(
+pub(super) fn of_sample(
     scene: &Scene,
     sample: &Sample,
     packing: &Packing<2>,
-    law: &L,
+    law: &dyn PairLaw,
     settings: &PrecisionSettings,
     progress: &dyn Progress,
 ) -> Result<SamplePrecision, RunError> {
-    let law = &scene.inflation.checked_law_with_sites(law)?;
+    let law = scene.inflation.checked_law_with_sites(law)?;
+    let law = law.as_ref();
     let damping = damping_of(&sample.relaxer);
     let grown = Grown::new(&scene.inflation, packing, law, &sample.relaxer, sample.seed, &mut ())?;
     let rungs = if grown.before.criterion == Criterion::Unjammed {
@@ -76,13 +77,13 @@ fn can_be_skipped(last: &Run, rung: &Rung) -> bool {
         && rung.value < last.value
 }
 
-fn run_of<L: PairLaw>(
+fn run_of(
     rung: &Rung,
     what: &str,
     grown: &Grown<2>,
-    law: &L,
+    law: &dyn PairLaw,
     scene: &Scene,
-    minima: &mut Minima<'_, L>,
+    minima: &mut Minima<'_>,
 ) -> Result<Run, PackingError> {
     let outcome = grown.relax(grown.packing.clone(), law, &rung.relaxer, &mut ())?;
     let cost = outcome.cost;

@@ -97,11 +97,11 @@ impl State {
     ///
     /// # Errors
     /// Only conditions that make forces undefined.
-    pub fn new<L: PairLaw>(
+    pub fn new(
         packing: Packing<2>,
         criterion: Option<Criterion>,
         grown: &Grown<2>,
-        law: &L,
+        law: &dyn PairLaw,
         observables: &Observables,
     ) -> Result<Self, PackingError> {
         let network = ContactNetwork::new(&packing, law)?;

@@ -43,7 +43,7 @@ impl Compared<2> {
     ///
     /// # Errors
     /// Only conditions that make forces undefined.
-    pub fn measure_responses<L: PairLaw>(&mut self, inflated: &Inflated<2>, law: &L) -> Result<(), PackingError> {
+    pub fn measure_responses(&mut self, inflated: &Inflated<2>, law: &dyn PairLaw) -> Result<(), PackingError> {
         let settings = CorrelationSettings { thresholds: vec![THRESHOLD], ..CorrelationSettings::default() };
         for (ending, state) in self.sensitivity.endings.iter_mut().zip(&self.states) {
             let Some(after) = state else { continue };

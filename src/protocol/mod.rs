@@ -52,9 +52,9 @@ impl<const D: usize> Compared<D> {
     ///
     /// # Cost
     /// The sum over all protocols, and Newton's method after each.
-    pub fn of_start<L: PairLaw>(
+    pub fn of_start(
         start: &Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         protocols: &[Protocol],
         settings: &ProtocolSettings,
         pressure_before: f64,
@@ -75,10 +75,10 @@ impl<const D: usize> Compared<D> {
     ///
     /// # Errors
     /// See [`Compared::of_start`].
-    pub fn of_inflation<L: PairLaw>(
+    pub fn of_inflation(
         inflated: &Inflated<D>,
         inflation: &Inflation,
-        law: &L,
+        law: &dyn PairLaw,
         protocols: &[Protocol],
         settings: &ProtocolSettings,
         trace: &mut dyn Trace,

@@ -68,9 +68,9 @@ pub(super) struct EndState<const D: usize> {
 }
 
 /// Relaxes by the protocol, then by Newton's method.
-pub(super) fn descend<const D: usize, L: PairLaw>(
+pub(super) fn descend<const D: usize>(
     start: &Packing<D>,
-    law: &L,
+    law: &dyn PairLaw,
     protocol: &Protocol,
     settings: &ProtocolSettings,
     pressure: &impl Fn(&ContactNetwork<D>) -> f64,

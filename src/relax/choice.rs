@@ -132,10 +132,10 @@ impl RelaxerChoice {
 }
 
 impl Relaxer for RelaxerChoice {
-    fn relax<const D: usize, L: PairLaw>(
+    fn relax<const D: usize>(
         &self,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         match self {

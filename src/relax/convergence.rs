@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use crate::forces::assembly::Assembly;
 use crate::forces::totals::Totals;
-use crate::law::pair_law::PairLaw;
 use crate::network::{Links, Peeling};
 use crate::packing::Packing;
 use crate::relax::energy_account::EnergyAccount;
@@ -73,16 +72,12 @@ pub struct Monitor {
 
 impl Monitor {
     /// A monitor with this limit.
-    pub fn new<const D: usize, L: PairLaw>(limit: ForceLimit, assembly: &Assembly<D, L>) -> Self {
+    pub fn new<const D: usize>(limit: ForceLimit, assembly: &Assembly<D>) -> Self {
         Monitor::with(limit, FIRE_SCHEDULE, assembly)
     }
 
     /// A monitor with this limit and this schedule.
-    pub fn with<const D: usize, L: PairLaw>(
-        limit: ForceLimit,
-        schedule: CheckSchedule,
-        assembly: &Assembly<D, L>,
-    ) -> Self {
+    pub fn with<const D: usize>(limit: ForceLimit, schedule: CheckSchedule, assembly: &Assembly<D>) -> Self {
         let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
         let unjammed_force = UNJAMMED_FORCE * assembly.law().force_scale(radius);
         let pushed = assembly.law().on_site_coupling() > 0.0;
@@ -114,9 +109,9 @@ impl Monitor {
     }
 
     /// Checks the net forces just evaluated, one per mobile disk. Returns why to stop, if so.
-    pub fn check<const D: usize, L: PairLaw>(
+    pub fn check<const D: usize>(
         &mut self,
-        assembly: &Assembly<D, L>,
+        assembly: &Assembly<D>,
         net_forces: &[Vector<D>],
         totals: &Totals<D>,
         report: Check,
@@ -172,17 +167,13 @@ impl Monitor {
 
     /// Whether a disk pushed from its site is too far from it. Callers also call this after every rebuild of the list,
     /// since a disk may move far between two checks.
-    pub fn ran_away<const D: usize, L: PairLaw>(&self, assembly: &Assembly<D, L>) -> bool {
+    pub fn ran_away<const D: usize>(&self, assembly: &Assembly<D>) -> bool {
         assembly.law().has_sites() && assembly.longest_displacement_from_site() >= self.farthest
     }
 
     /// Determines the backbone and its residual. Without a backbone, all disks count if there are forces. Returns the
     /// criterion met.
-    fn refresh<const D: usize, L: PairLaw>(
-        &mut self,
-        assembly: &Assembly<D, L>,
-        net_forces: &[Vector<D>],
-    ) -> Option<Stop> {
+    fn refresh<const D: usize>(&mut self, assembly: &Assembly<D>, net_forces: &[Vector<D>]) -> Option<Stop> {
         let mobile = assembly.mobile_count();
         self.links.take(assembly);
         self.peeling.peel::<D>(|disk| disk >= mobile, &self.links.ends, &mut self.backbone);
@@ -274,9 +265,9 @@ impl Monitor {
     }
 
     /// The outcome of a relaxer that began at `start`, with the net forces of the assembly.
-    pub fn outcome<const D: usize, L: PairLaw>(
+    pub fn outcome<const D: usize>(
         self,
-        assembly: Assembly<D, L>,
+        assembly: Assembly<D>,
         packing: Packing<D>,
         (stop, cost): (Stop, Cost),
         start: Instant,
@@ -289,11 +280,7 @@ impl Monitor {
     }
 
     /// The residual and the floor for the outcome, with the backbone recomputed.
-    pub fn finish<const D: usize, L: PairLaw>(
-        mut self,
-        assembly: &Assembly<D, L>,
-        net_forces: &[Vector<D>],
-    ) -> (Residual, f64) {
+    pub fn finish<const D: usize>(mut self, assembly: &Assembly<D>, net_forces: &[Vector<D>]) -> (Residual, f64) {
         let _ = self.refresh(assembly, net_forces);
         (self.last, self.floor)
     }

@@ -11,10 +11,10 @@ pub trait Relaxer {
     ///
     /// # Errors
     /// Only conditions that make forces undefined: a box too small, two disks with the same centre.
-    fn relax<const D: usize, L: PairLaw>(
+    fn relax<const D: usize>(
         &self,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError>;
 

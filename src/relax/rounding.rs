@@ -1,7 +1,6 @@
 //! The rounding of energies and of residuals: [`rounding_floor`].
 
 use crate::forces::assembly::Assembly;
-use crate::law::pair_law::PairLaw;
 use crate::network::{Links, Peeling};
 use crate::vector::larger;
 
@@ -17,7 +16,7 @@ pub(crate) const ENERGY_ROUNDING: f64 = 1e-13;
 /// Here w is the longest displacement from the anchors. An overlap is known to about 4 u_r of the relative
 /// displacement, and a force to about 4 u_r of itself. A law with sites adds |Γ| times the longest distance from a
 /// site. If coordinates were single numbers, the floor would be about `5 F' ulp(L) / ⟨F⟩`, L the side of the box.
-pub fn rounding_floor<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>) -> f64 {
+pub fn rounding_floor<const D: usize>(assembly: &Assembly<D>) -> f64 {
     let (mut links, mut members) = (Links::default(), vec![true; assembly.len()]);
     links.take(assembly);
     Peeling::default().peel::<D>(|disk| disk >= assembly.mobile_count(), &links.ends, &mut members);
@@ -34,8 +33,8 @@ pub(crate) fn mean_force(links: &Links, members: &[bool]) -> f64 {
 }
 
 /// The estimate of [`rounding_floor`] for these members and this longest displacement from the anchors.
-pub(crate) fn floor_of<const D: usize, L: PairLaw>(
-    assembly: &Assembly<D, L>,
+pub(crate) fn floor_of<const D: usize>(
+    assembly: &Assembly<D>,
     members: &[bool],
     mean: f64,
     moved: f64,

@@ -116,10 +116,10 @@ pub fn run_sample(
 }
 
 /// The packing of a sample with its summary.
-pub(crate) fn prepared<L: PairLaw>(
+pub(crate) fn prepared(
     scene: &Scene,
     sample: &Sample,
-    law: &L,
+    law: &dyn PairLaw,
     index: usize,
     progress: &dyn Progress,
 ) -> Result<(Packing<2>, PackingSummary), RunError> {
@@ -129,11 +129,11 @@ pub(crate) fn prepared<L: PairLaw>(
 }
 
 /// Inflates a packing and computes all observables.
-pub(crate) fn measure<L: PairLaw>(
+pub(crate) fn measure(
     scene: &Scene,
     sample: &Sample,
     (prepared, packing): (Packing<2>, PackingSummary),
-    law: &L,
+    law: &dyn PairLaw,
     index: usize,
     progress: &dyn Progress,
 ) -> Result<SampleResult, RunError> {
@@ -192,9 +192,9 @@ fn phase_frequency(
 }
 
 /// An inflation as the input of the observables.
-fn subject<'a, L: PairLaw>(
+fn subject<'a>(
     inflated: &'a Inflated<2>,
-    law: &L,
+    law: &dyn PairLaw,
     verdict: RestVerdict,
 ) -> Result<Subject<'a>, PackingError> {
     let state = |rest: &'a Rest<2>| State::new(rest.packing.get(), law);
@@ -210,11 +210,12 @@ fn subject<'a, L: PairLaw>(
 }
 
 /// Whether the states of an inflation are at rest, including the forces from sites if there are any.
-fn verdict<L: PairLaw>(scene: &Scene, inflated: &Inflated<2>, law: &L) -> Result<RestVerdict, PackingError> {
-    fn state<'a, L: PairLaw>(rest: &'a Rest<2>, law: &L) -> Result<State<'a, 2>, PackingError> {
+fn verdict(scene: &Scene, inflated: &Inflated<2>, law: &dyn PairLaw) -> Result<RestVerdict, PackingError> {
+    fn state<'a>(rest: &'a Rest<2>, law: &dyn PairLaw) -> Result<State<'a, 2>, PackingError> {
         State::new(rest.packing.get(), law)
     }
-    let law = &scene.inflation.law_with_sites(law);
+    let law = scene.inflation.law_with_sites(law);
+    let law = law.as_ref();
     let (before, after) = (state(&inflated.before, law)?, state(&inflated.after, law)?);
     let deflated = inflated.deflated.as_ref().map(|rest| state(rest, law)).transpose()?;
     let mut named = vec![("before", &before), ("after", &after)];
@@ -233,11 +234,11 @@ fn takes(scene: &Scene, sample: &Sample, settings: &ProtocolSettings) -> bool {
 
 /// Compares the relaxer of the sample with the others, from the same start.
 #[cfg(feature = "linear")]
-fn protocol_of<L: PairLaw>(
+fn protocol_of(
     scene: &Scene,
     sample: &Sample,
     (inflated, verdict): (&Inflated<2>, &RestVerdict),
-    law: &L,
+    law: &dyn PairLaw,
     settings: &ProtocolSettings,
     trace: &mut dyn Trace,
 ) -> Result<ProtocolSensitivity, PackingError> {
@@ -256,10 +257,10 @@ fn protocol_of<L: PairLaw>(
 }
 
 /// The packing of a sample at rest, prepared or read.
-pub(crate) fn packing_of<L: PairLaw>(
+pub(crate) fn packing_of(
     scene: &Scene,
     sample: &Sample,
-    law: &L,
+    law: &dyn PairLaw,
     trace: &mut dyn Trace,
 ) -> Result<(Packing<2>, PackingSummary), RunError> {
     let target = match &sample.source {
@@ -274,7 +275,7 @@ pub(crate) fn packing_of<L: PairLaw>(
         tolerance: scene.preparation.pressure_tolerance,
         seed: sample.seed,
     };
-    let prepared = prepare_with::<2, L>(&preparation, law, &scene.preparation.relaxer, trace)?;
+    let prepared = prepare_with::<2>(&preparation, law, &scene.preparation.relaxer, trace)?;
     let rest = RestSummary {
         criterion: prepared.criterion,
         relative_residual: prepared.residual.relative(),
@@ -292,10 +293,10 @@ pub(crate) fn packing_of<L: PairLaw>(
 }
 
 /// A packing from a file, relaxed if it is not at rest. The verdict on the file is kept.
-fn packing_from<L: PairLaw>(
+fn packing_from(
     path: &Path,
     scene: &Scene,
-    law: &L,
+    law: &dyn PairLaw,
     trace: &mut dyn Trace,
 ) -> Result<(Packing<2>, PackingSummary), RunError> {
     let named = |source| RunError::PackingOfFile { path: path.into(), source };
@@ -322,7 +323,7 @@ fn packing_from<L: PairLaw>(
     Ok((packing, summary))
 }
 
-fn packing_summary<L: PairLaw>(packing: &Packing<2>, law: &L, rest: RestSummary) -> Result<PackingSummary, RunError> {
+fn packing_summary(packing: &Packing<2>, law: &dyn PairLaw, rest: RestSummary) -> Result<PackingSummary, RunError> {
     let network = ContactNetwork::new(packing, law)?;
     let volume = packing.domain().volume().ok_or(InflationError::NotPeriodic)?;
     let jammed = rest.criterion != Criterion::Unjammed;
@@ -343,13 +344,10 @@ fn packing_summary<L: PairLaw>(packing: &Packing<2>, law: &L, rest: RestSummary)
     })
 }
 
-fn summary<L: PairLaw>(
-    inflated: &Inflated<2>,
-    law: &L,
-    inflation: &Inflation,
-) -> Result<InflationSummary, PackingError> {
-    let certificate =
-        |rest: &Rest<2>| Certificate::of(rest.packing.get(), &inflation.law_with_sites(law), Some(rest.criterion));
+fn summary(inflated: &Inflated<2>, law: &dyn PairLaw, inflation: &Inflation) -> Result<InflationSummary, PackingError> {
+    let certificate = |rest: &Rest<2>| {
+        Certificate::of(rest.packing.get(), inflation.law_with_sites(law).as_ref(), Some(rest.criterion))
+    };
     let state = |rest: &Rest<2>| -> Result<StateSummary, PackingError> {
         Ok(StateSummary {
             pressure: rest.pressure,

@@ -11,13 +11,14 @@ use crate::plastic::PlasticPart;
 use crate::run::PlasticSummary;
 
 /// Relative to the linear response of the state before, with the sites of the scene if it has any.
-pub(super) fn of<L: PairLaw>(
+pub(super) fn of(
     inflated: &Inflated<2>,
     inflation: &Inflation,
-    law: &L,
+    law: &dyn PairLaw,
     ring_width: f64,
 ) -> Result<PlasticSummary, LinearError> {
-    let law = &inflation.law_with_sites(law);
+    let law = inflation.law_with_sites(law);
+    let law = law.as_ref();
     let (before, centre) = (inflated.before.packing.get(), inflated.centre);
     let response = LinearResponse::of_inflation(before, centre, law, Prestress::Included)?;
     let plastic = PlasticPart::of(inflated, &response);

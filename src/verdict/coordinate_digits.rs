@@ -67,11 +67,11 @@ impl Digits {
     ///
     /// Forces grow faster than overlaps, so no change by at most e changes a force by more. None if the disks cannot
     /// grow by e.
-    pub fn residual_bound<const D: usize, L: PairLaw>(
+    pub fn residual_bound<const D: usize>(
         &self,
         packing: &Packing<D>,
         network: &ContactNetwork<D>,
-        law: &L,
+        law: &dyn PairLaw,
     ) -> Option<f64> {
         let change = (D as f64).sqrt() * self.spacing;
         let mut grown = packing.clone();

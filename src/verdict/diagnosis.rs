@@ -43,9 +43,9 @@ fn residual_under<const D: usize>(packing: &Packing<D>, law: &LawChoice) -> Opti
 }
 
 /// Causes that fit, the most likely first; at least one.
-pub(super) fn causes<const D: usize, L: PairLaw>(
+pub(super) fn causes<const D: usize>(
     states: &[(&'static str, &State<'_, D>)],
-    law: &L,
+    law: &dyn PairLaw,
     place: Option<Place>,
     verdict: &RestVerdict,
 ) -> Vec<Cause> {

@@ -26,7 +26,7 @@ pub struct Balance {
 impl Balance {
     /// The balance of a packing with the contacts of `network` under `law`. Without a backbone, every disk counts as
     /// part of it.
-    pub fn of<const D: usize, L: PairLaw>(packing: &Packing<D>, network: &ContactNetwork<D>, law: &L) -> Self {
+    pub fn of<const D: usize>(packing: &Packing<D>, network: &ContactNetwork<D>, law: &dyn PairLaw) -> Self {
         let rigid = network.backbone_count() > 0;
         let mut largest = [0.0; 2];
         for (disk, force) in network.forces().iter().enumerate().filter(|&(disk, _)| !packing.held()[disk]) {

@@ -119,9 +119,9 @@ impl RestVerdict {
     /// # Cost
     /// One pass over the contacts. If a state is not at rest: a contact network per state for each of about four other
     /// laws.
-    pub fn of<const D: usize, L: PairLaw>(
+    pub fn of<const D: usize>(
         states: &[(&'static str, &State<'_, D>)],
-        law: &L,
+        law: &dyn PairLaw,
         choice: &LawChoice,
         place: Option<Place>,
         settings: &VerdictSettings,

@@ -95,7 +95,7 @@ fn fire_brings_a_packing_to_rest_under_a_new_law() {
 fn a_packing_under_a_new_law_is_prepared_and_inflated() {
     let (target, fire) = (Target::Pressure(2000.0), Fire::default());
     let preparation = Preparation { disk_count: 200, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
-    let prepared = prepare_with::<2, _>(&preparation, &LAW, &fire, &mut ()).expect("a packing");
+    let prepared = prepare_with::<2>(&preparation, &LAW, &fire, &mut ()).expect("a packing");
     assert!((prepared.pressure / 2000.0 - 1.0).abs() <= 0.01);
     let inflated =
         inflate_with(&Inflation::default(), prepared.packing.get(), &LAW, &fire, 1, &mut ()).expect("at rest");

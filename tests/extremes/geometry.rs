@@ -83,12 +83,12 @@ fn a_packing_fraction_an_ulp_above_contact_has_overlaps_of_an_ulp_and_counts_as_
 
 #[test]
 fn subnormal_overlaps_have_forces_that_are_tiny_and_never_nan() {
-    fn check<L: PairLaw>(law: L, overlap: f64) {
+    fn check(law: impl PairLaw + Copy, overlap: f64) {
         // Centres 0 and 1 with a correction: an overlap of any size.
         let packing = Packing::new(Domain::<2>::Open, vec![[0.0; 2], [1.0, 0.0]], vec![0.5; 2])
             .and_then(|packing| packing.with_corrections(vec![[0.0; 2], [-overlap, 0.0]]))
             .expect("valid");
-        let mut assembly = Assembly::new(&packing, law).expect("no coincidence");
+        let mut assembly = Assembly::new(&packing, &law).expect("no coincidence");
         let totals = assembly.evaluate_totals();
         assert_eq!(totals.contact_count, 1, "{law:?} at {overlap:e}");
         let expected = law.force(law.coefficient(0.5, 0.5), overlap);

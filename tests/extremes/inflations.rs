@@ -12,10 +12,7 @@ use crate::{all_finite, fire};
 
 fn packing(target: Target) -> Packing<2> {
     let preparation = Preparation { disk_count: 400, mixture: Mixture::default(), target, tolerance: 0.01, seed: 2 };
-    prepare_with::<2, _>(&preparation, &Hertzian::default(), &fire(1e-13), &mut ())
-        .expect("in reach")
-        .packing
-        .into_inner()
+    prepare_with::<2>(&preparation, &Hertzian::default(), &fire(1e-13), &mut ()).expect("in reach").packing.into_inner()
 }
 
 fn inflated(packing: &Packing<2>, increase: f64) -> Result<Inflated<2>, InflationError> {

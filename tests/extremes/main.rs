@@ -44,7 +44,7 @@ fn relaxers(limit: f64) -> Vec<RelaxerChoice> {
     ]
 }
 
-fn relax<const D: usize, L: PairLaw>(packing: Packing<D>, law: &L, relaxer: &impl Relaxer) -> Outcome<Packing<D>> {
+fn relax<const D: usize>(packing: Packing<D>, law: &dyn PairLaw, relaxer: &impl Relaxer) -> Outcome<Packing<D>> {
     relaxer.relax(packing, law, &mut ()).expect("no coincidence")
 }
 

@@ -109,7 +109,7 @@ fn lengths_whose_squares_are_no_numbers_are_refused() {
 
 #[test]
 fn forces_that_overflow_are_said_to() {
-    fn check<L: PairLaw>(law: L, unit: f64) {
+    fn check(law: impl PairLaw + Copy, unit: f64) {
         for relaxer in relaxers(1e-10) {
             let outcome = relax(in_unit(&points(16, 0.95, 5), unit), &law, &relaxer);
             assert_eq!(outcome.stop, Stop::NonFinite, "{law:?} in {unit:e}, {}", relaxer.name());
@@ -123,7 +123,7 @@ fn forces_that_overflow_are_said_to() {
 
 #[test]
 fn forces_too_small_for_their_squares_are_said_to_be() {
-    fn check<L: PairLaw>(law: L, unit: f64) {
+    fn check(law: impl PairLaw + Copy, unit: f64) {
         let mut all = relaxers(1e-10);
         all.push(RelaxerChoice::Damped(DampedDynamics { step_limit: 1000, ..DampedDynamics::default() }));
         #[cfg(feature = "linear")]

@@ -16,7 +16,7 @@ use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::Criterion;
 
-fn certificate<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> Certificate {
+fn certificate<const D: usize>(packing: &Packing<D>, law: &dyn PairLaw) -> Certificate {
     Certificate::of(packing, law, None).expect("apart")
 }
 

@@ -3,7 +3,7 @@
 
 use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
-use jamscope::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
+use jamscope::law::damping::{ConstantDamping, ContactDamping, DampingChoice, ViscoelasticDamping};
 use jamscope::law::{Hookean, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
@@ -38,14 +38,15 @@ fn overlap_of(packing: &Packing<2>) -> f64 {
 }
 
 /// Steps of one length; the packing, the motion's work of damping and its kinetic energy afterwards.
-fn moved<L: PairLaw>(
+fn moved(
     packing: &Packing<2>,
-    law: &L,
+    law: &dyn PairLaw,
     rate: f64,
     inertia: Inertia,
     (time, step_count): (f64, usize),
 ) -> (Packing<2>, f64, f64) {
-    let mut motion = ImplicitMotion::new(packing, law, &ConstantDamping { rate }, inertia).expect("disks apart");
+    let mut motion = ImplicitMotion::new(packing, law, &ContactDamping::Constant(ConstantDamping { rate }), inertia)
+        .expect("disks apart");
     for _ in 0..step_count {
         let stepped = motion.step(time / step_count as f64).expect("no coincidence");
         assert!(matches!(stepped, Stepped::Moved(_)), "{stepped:?}");
@@ -73,14 +74,14 @@ fn a_hookean_pair_is_a_damped_oscillator_to_third_order() {
 }
 
 /// As [`moved`] by stabilised steps.
-fn stabilised<L: PairLaw>(
+fn stabilised(
     packing: &Packing<2>,
-    law: &L,
+    law: &dyn PairLaw,
     rate: f64,
     (time, step_count): (f64, usize),
     stage_count: usize,
 ) -> (Packing<2>, f64, f64) {
-    let damping = ConstantDamping { rate };
+    let damping = ContactDamping::Constant(ConstantDamping { rate });
     let mut motion = ImplicitMotion::new(packing, law, &damping, Inertia::Massive).expect("disks apart");
     for _ in 0..step_count {
         assert!(motion.stabilised_step(time / step_count as f64, stage_count).expect("no coincidence"));
@@ -142,7 +143,7 @@ fn smooth_scene() -> Packing<2> {
     };
     let limit = ForceLimit::Relative(1e-12);
     let relaxer = Staged { limit, ..Staged::default() };
-    let prepared = prepare_with::<2, _>(&preparation, &hertzian(), &relaxer, &mut ()).expect("a packing");
+    let prepared = prepare_with::<2>(&preparation, &hertzian(), &relaxer, &mut ()).expect("a packing");
     let packing = prepared.packing.into_inner();
     let contacts = |packing: &Packing<2>| {
         let network = ContactNetwork::new(packing, &hertzian()).expect("no coincidence");
@@ -218,7 +219,7 @@ fn a_stabilised_step_of_many_stages_is_stable_where_an_explicit_one_of_its_lengt
     let (end, _, kinetic) = stabilised(&start, &law, 500.0, (2.0, 200), 8);
     let last = ContactNetwork::new(&end, &law).expect("no coincidence").energy();
     assert!(last + kinetic < first, "{last} + {kinetic} of {first}");
-    let damping = ConstantDamping { rate: 500.0 };
+    let damping = ContactDamping::Constant(ConstantDamping { rate: 500.0 });
     let mut motion = ImplicitMotion::new(&start, &law, &damping, Inertia::Massive).expect("disks apart");
     // Four stages are stable up to hλ = 9.8: what is left of the disks flies apart.
     let flown = (0..200).any(|_| !motion.stabilised_step(0.01, 4).expect("no coincidence"));
@@ -235,7 +236,8 @@ fn an_error_is_estimated_where_a_contact_opens_within_a_step() {
     let omega = (2.0 * stiffness).sqrt();
     let step = 0.1 / omega;
     let mut motion =
-        ImplicitMotion::new(&packing, &law, &ConstantDamping { rate: 0.0 }, Inertia::Massive).expect("disks apart");
+        ImplicitMotion::new(&packing, &law, &ContactDamping::Constant(ConstantDamping { rate: 0.0 }), Inertia::Massive)
+            .expect("disks apart");
     let mut estimates = Vec::new();
     for _ in 0..30 {
         let _ = motion.step(step).expect("no coincidence");
@@ -253,7 +255,7 @@ fn an_error_is_estimated_where_a_contact_opens_within_a_step() {
 #[test]
 fn a_step_taken_back_leaves_no_trace() {
     let packing = inflated("hertz_N1000_p100", 0);
-    let (law, damping) = (hertzian(), ConstantDamping { rate: 500.0 });
+    let (law, damping) = (hertzian(), ContactDamping::Constant(ConstantDamping { rate: 500.0 }));
     let start = || ImplicitMotion::new(&packing, &law, &damping, Inertia::Massive).expect("no coincidence");
     let (mut once, mut twice) = (start(), start());
     for motion in [&mut once, &mut twice] {

@@ -34,7 +34,7 @@ fn loose() -> &'static Packing<2> {
 
 fn made(target: Target) -> Packing<2> {
     let preparation = Preparation { disk_count: 300, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
-    let prepared = prepare_with::<2, _>(&preparation, &hertzian(), &fire(), &mut ()).expect("a packing");
+    let prepared = prepare_with::<2>(&preparation, &hertzian(), &fire(), &mut ()).expect("a packing");
     prepared.packing.into_inner()
 }
 
@@ -174,10 +174,10 @@ fn a_small_inflation_is_undone_by_the_deflation() {
 struct Drifting(Fire);
 
 impl Relaxer for Drifting {
-    fn relax<const D: usize, L: PairLaw>(
+    fn relax<const D: usize>(
         &self,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let moved = packing.positions().iter().map(|position| position.map(|x| x + 0.25)).collect();

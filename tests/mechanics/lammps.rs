@@ -10,7 +10,7 @@ use jamscope::forces::damped::add_damping;
 use jamscope::inflation::Circle;
 use jamscope::io::read_packing;
 use jamscope::law::PairLaw;
-use jamscope::law::damping::{ConstantDamping, DampingChoice, DampingLaw};
+use jamscope::law::damping::{ConstantDamping, ContactDamping, DampingChoice};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
 use jamscope::relax::{DampedDynamics, Fire, ForceLimit, NetForce, Relaxer};
@@ -37,7 +37,7 @@ fn largest_difference(ours: &[Vector<2>], theirs: &[Vector<2>]) -> f64 {
     ours.iter().zip(theirs).map(|(&a, &b)| norm(difference(a, b))).fold(0.0, larger) / largest
 }
 
-fn forces_agree(name: &str, law: impl PairLaw) {
+fn forces_agree(name: &str, law: impl PairLaw + Copy) {
     // Coordinates below 16 are rounded to 1.8e-15; a separation in LAMMPS is wrong by up to twice that and a force by
     // F' ≈ 2e5 times that, 7e-10 of the largest force 1.5e4: 5e-14 a contact, and there are up to 8 of them.
     let tolerance = 1e-12;
@@ -62,12 +62,12 @@ fn forces_agree(name: &str, law: impl PairLaw) {
     println!("{name}: elastic forces differ by {worst:.1e} of the largest");
     assert!(worst <= tolerance, "elastic forces differ by {worst:e}");
 
-    let mut assembly = Assembly::new(&packing, law).expect("no coincidence");
+    let mut assembly = Assembly::new(&packing, &law).expect("no coincidence");
     assembly.forces.fill([f64::NAN; 2]);
     let totals = assembly.evaluate_totals();
     close("energy of the hot loop", totals.energy, table.number("energy"), tolerance);
     assert_eq!(totals.contact_count as f64, table.number("contacts"));
-    let damping = ConstantDamping { rate: RATE };
+    let damping = ContactDamping::Constant(ConstantDamping { rate: RATE });
     let coefficients = vec![damping.coefficient(0.5, 0.5); assembly.pairs().place_count()];
     let velocities: Vec<Vector<2>> = table.columns(7);
     let working: Vec<Vector<2>> = assembly.order().iter().map(|&disk| velocities[disk as usize]).collect();
@@ -96,7 +96,7 @@ fn hookean_forces_stress_and_damping_are_those_of_lammps() {
     forces_agree("forces_hooke", hookean());
 }
 
-fn packing_agrees(name: &str, law: &impl PairLaw, expected: &Value) {
+fn packing_agrees(name: &str, law: &dyn PairLaw, expected: &Value) {
     let number = |key: &str| expected[key].as_f64().unwrap_or_else(|| panic!("{name} has no {key}"));
     let count = |key: &str| expected[key].as_u64().unwrap_or_else(|| panic!("{name} has no {key}")) as usize;
     let packing = read_packing::<2>(fixture(&format!("packings/{name}.xyz"))).expect("fixture is a packing");
@@ -157,7 +157,7 @@ fn rattlers_of(inflated: &Inflated) -> BTreeSet<usize> {
 }
 
 /// The states LAMMPS gives, evaluated as they are.
-fn states_agree(name: &str, law: &impl PairLaw) {
+fn states_agree(name: &str, law: &dyn PairLaw) {
     let inflated = Inflated::read(name);
     let header = |keys: &[&str]| keys.iter().find_map(|key| inflated.table.find(key)).expect("one of the keys");
     let before = ContactNetwork::new(&inflated.before(0.5), law).expect("no coincidence");
@@ -191,7 +191,7 @@ fn the_inflated_states_of_lammps_have_its_energies_circle_pressures_and_rattlers
 }
 
 /// The centre grown at once and the rest relaxed by ours; held against where LAMMPS ended.
-fn relaxed_agrees(inflated: &Inflated, what: &str, packing: &Packing<2>, law: &impl PairLaw) {
+fn relaxed_agrees(inflated: &Inflated, what: &str, packing: &Packing<2>, law: &dyn PairLaw) {
     let network = ContactNetwork::new(packing, law).expect("no coincidence");
     // LAMMPS stops at a largest force of 1e-7 (FIRE: elastic, all disks; damped dynamics: damping included), and a force f
     // displaces the softest mode by f/k. LAMMPS's own two methods are 3e-9 apart at p = 800 (header `dmax`), so k ≈ 30
@@ -210,14 +210,14 @@ fn relaxed_agrees(inflated: &Inflated, what: &str, packing: &Packing<2>, law: &i
     close(&format!("{what} pressure"), inflated.pressure(&network), pressure, sensitivity + 1e-12);
 }
 
-fn fire(name: &str, law: &impl PairLaw) -> Packing<2> {
+fn fire(name: &str, law: &dyn PairLaw) -> Packing<2> {
     let fire = Fire { limit: ForceLimit::Relative(1e-12), ..Fire::default() };
     let start = Inflated::read(name).before(INFLATED_RADIUS);
     fire.relax(start, law, &mut ()).expect("no coincidence").converged().expect("at rest").into_inner()
 }
 
 /// Damped dynamics as LAMMPS ran it: constant γ = 500, until the largest total force on the backbone is 1e-7.
-fn damped(name: &str, law: &impl PairLaw) -> Packing<2> {
+fn damped(name: &str, law: &dyn PairLaw) -> Packing<2> {
     let damped = DampedDynamics {
         damping: DampingChoice::Constant(ConstantDamping { rate: RATE }),
         limit: ForceLimit::Absolute(1e-7),
@@ -230,7 +230,7 @@ fn damped(name: &str, law: &impl PairLaw) -> Packing<2> {
 }
 
 /// FIRE and damped dynamics of ours against FIRE and both damped runs of LAMMPS: one minimum.
-fn all_end_together(name: &str, law: &impl PairLaw) {
+fn all_end_together(name: &str, law: &dyn PairLaw) {
     let ends = [fire(&format!("{name}_fire"), law), damped(&format!("{name}_md"), law)];
     for method in ["fire", "md", "mdnet"] {
         let inflated = Inflated::read(&format!("{name}_{method}"));

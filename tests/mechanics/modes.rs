@@ -14,7 +14,7 @@ use jamscope::linear::{LinearError, VibrationalModes};
 use jamscope::packing::{Domain, Packing};
 
 /// All eigenvalues of the backbone by dense algebra, ascending, and ‖K‖.
-fn dense<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> (Vec<f64>, f64) {
+fn dense<const D: usize>(packing: &Packing<D>, law: &dyn PairLaw) -> (Vec<f64>, f64) {
     let hessian = Hessian::new(packing, law, Members::Backbone, Prestress::Included).expect("apart");
     let dimension = hessian.matrix().dimension();
     let mut matrix = Mat::zeros(dimension, dimension);
@@ -25,12 +25,12 @@ fn dense<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> (Vec<f64>
     (matrix.self_adjoint_eigenvalues(Side::Lower).expect("finite"), hessian.matrix().norm())
 }
 
-fn lowest<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L, count: usize) -> VibrationalModes<D> {
+fn lowest<const D: usize>(packing: &Packing<D>, law: &dyn PairLaw, count: usize) -> VibrationalModes<D> {
     VibrationalModes::lowest(packing, law, Prestress::Included, count).expect("modes")
 }
 
 /// The lowest modes against dense ones, translations taken out of those; the largest difference over ‖K‖.
-fn check<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L, count: usize, name: &str) -> f64 {
+fn check<const D: usize>(packing: &Packing<D>, law: &dyn PairLaw, count: usize, name: &str) -> f64 {
     let (mut values, norm) = dense(packing, law);
     let found = lowest(packing, law, count);
     if found.translation_count > 0 {
@@ -91,7 +91,7 @@ fn at_a_saddle_the_negative_modes_come_first() {
 }
 
 /// ω² of all waves of a triangular lattice of disks in a box, translations left out, ascending.
-fn waves<L: PairLaw>(lattice: &Lattice, cells: [usize; 2], law: &L) -> Vec<f64> {
+fn waves(lattice: &Lattice, cells: [usize; 2], law: &dyn PairLaw) -> Vec<f64> {
     let force = law.force(law.coefficient(lattice.radius(), lattice.radius()), lattice.overlap());
     let (along, across) = (law.stiffness(force, lattice.overlap()), -force / lattice.spacing());
     let mut values = Vec::new();
@@ -122,7 +122,7 @@ fn waves<L: PairLaw>(lattice: &Lattice, cells: [usize; 2], law: &L) -> Vec<f64> 
 
 #[test]
 fn waves_of_a_lattice_are_found_as_often_as_they_occur() {
-    fn check<L: PairLaw>(law: L) {
+    fn check(law: impl PairLaw + Copy) {
         let few = (1..13).flat_map(|count| [([8, 5], count), ([10, 6], count), ([7, 4], count)]);
         for (cells, count) in [([12, 7], 40), ([20, 11], 24)].into_iter().chain(few) {
             let lattice = Lattice::triangular(0.5, 0.03).expect("neighbours touch, second ones do not");

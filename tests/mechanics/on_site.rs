@@ -143,7 +143,7 @@ fn a_packing_without_enough_stiffness_runs_away_and_a_tied_one_does_not() {
 fn the_displacement_from_a_site_survives_new_anchors_without_rounding() {
     let packing = random_points::<2>(40, &Mixture::default(), 0.9, 5).expect("possible");
     let coupling = 3.0;
-    let mut assembly = Assembly::new(&packing, OnSite { law: Hookean { stiffness: 0.0 }, coupling }).expect("apart");
+    let mut assembly = Assembly::new(&packing, &OnSite { law: Hookean { stiffness: 0.0 }, coupling }).expect("apart");
     let steps: [Vector<2>; 4] = [[0.3, -0.2], [1e-9, 3e-8], [-0.7, 0.1], [2e-17, -5e-17]];
     for step in steps {
         for displacement in &mut assembly.displacements {
@@ -168,7 +168,7 @@ fn force_is_minus_the_gradient_of_the_energy_with_sites() {
     for coupling in [-0.8, 0.6] {
         let packing = random_points::<2>(24, &Mixture::default(), 1.1, 7).expect("possible").with_sites_here();
         let mut assembly =
-            Assembly::new(&packing, OnSite { law: Hookean { stiffness: 1.0 }, coupling }).expect("apart");
+            Assembly::new(&packing, &OnSite { law: Hookean { stiffness: 1.0 }, coupling }).expect("apart");
         for (index, displacement) in assembly.displacements.iter_mut().enumerate() {
             *displacement = [0.02 * (index as f64).sin(), 0.02 * (index as f64).cos()];
         }
@@ -197,8 +197,8 @@ fn force_is_minus_the_gradient_of_the_energy_with_sites() {
     }
 }
 
-fn forces_without(packing: &Packing<2>, like: &Assembly<2, OnSite<Hookean>>) -> ([[f64; 2]; 2], f64) {
-    let mut plain = Assembly::new(packing, Hookean { stiffness: 1.0 }).expect("apart");
+fn forces_without(packing: &Packing<2>, like: &Assembly<2>) -> ([[f64; 2]; 2], f64) {
+    let mut plain = Assembly::new(packing, &Hookean { stiffness: 1.0 }).expect("apart");
     plain.displacements.clone_from(&like.displacements);
     let totals = plain.evaluate_totals();
     (totals.virial, totals.force_sum)
@@ -232,7 +232,7 @@ fn energies_at_the_restarts_of_fire_never_increase_below_zero_either() {
 fn dense() -> Packing<2> {
     let target = Target::Pressure(2000.0);
     let preparation = Preparation { disk_count: 300, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
-    let prepared = prepare_with::<2, _>(&preparation, &hertzian(), &fire(1e-12), &mut ()).expect("a packing");
+    let prepared = prepare_with::<2>(&preparation, &hertzian(), &fire(1e-12), &mut ()).expect("a packing");
     prepared.packing.into_inner()
 }
 
@@ -321,7 +321,7 @@ fn a_run_reports_the_coupling_where_there_is_one() {
 
 #[test]
 fn laws_without_sites_know_nothing_of_them() {
-    fn check<L: PairLaw>(law: L) {
+    fn check(law: impl PairLaw + Copy) {
         assert!(!law.has_sites());
         assert_eq!(law.on_site_coupling(), 0.0);
         let packing = random_points::<2>(20, &Mixture::default(), 0.9, 1).expect("possible");

@@ -19,7 +19,7 @@ fn fire() -> Fire {
     Fire { limit: ForceLimit::Relative(1e-13), step_limit: 500_000, ..Fire::default() }
 }
 
-fn at_rest<L: PairLaw>(packing: Packing<2>, law: &L) -> Relaxed<Packing<2>> {
+fn at_rest(packing: Packing<2>, law: &dyn PairLaw) -> Relaxed<Packing<2>> {
     fire().relax(packing, law, &mut ()).expect("no coincidence").converged().expect("at rest")
 }
 

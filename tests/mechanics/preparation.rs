@@ -17,11 +17,11 @@ fn preparation(disk_count: usize, target: Target, seed: u64) -> Preparation {
     Preparation { disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed }
 }
 
-fn made<L: PairLaw>(preparation: &Preparation, law: &L) -> Result<Prepared<2>, PreparationError> {
-    prepare_with::<2, L>(preparation, law, &Fire::default(), &mut ())
+fn made(preparation: &Preparation, law: &dyn PairLaw) -> Result<Prepared<2>, PreparationError> {
+    prepare_with::<2>(preparation, law, &Fire::default(), &mut ())
 }
 
-fn meets_pressures<L: PairLaw>(law: L, seed: u64) {
+fn meets_pressures(law: impl PairLaw + Copy, seed: u64) {
     for pressure in [0.05, 1.0, 100.0, 2000.0] {
         let preparation = preparation(256, Target::Pressure(pressure), seed);
         let prepared = made(&preparation, &law).expect("a packing at this pressure");
@@ -54,10 +54,10 @@ fn meets_pressures<L: PairLaw>(law: L, seed: u64) {
 struct Recorded<'a>(Fire, &'a RefCell<Vec<f64>>);
 
 impl Relaxer for Recorded<'_> {
-    fn relax<const D: usize, L: PairLaw>(
+    fn relax<const D: usize>(
         &self,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         self.1.borrow_mut().push(self.0.limit.value());
@@ -76,7 +76,7 @@ fn states_on_the_way_to_a_pressure_are_passed_through_and_the_last_is_at_rest() 
         let limits = RefCell::new(Vec::new());
         let wanted = Preparation { tolerance, ..preparation(128, Target::Pressure(100.0), 7) };
         let fire = Recorded(Fire::default(), &limits);
-        let prepared = prepare_with::<2, _>(&wanted, &hertzian(), &fire, &mut ()).expect("a packing");
+        let prepared = prepare_with::<2>(&wanted, &hertzian(), &fire, &mut ()).expect("a packing");
         let limits = limits.into_inner();
         assert_eq!(limits.len(), prepared.relaxation_count);
         // Passed through first, at rest from the first that met the pressure on, and no way back.
@@ -135,7 +135,7 @@ fn the_same_seed_gives_the_same_bits_and_another_seed_another_packing() {
 #[test]
 fn balls_are_prepared_as_disks_are() {
     let preparation = preparation(200, Target::Pressure(100.0), 8);
-    let prepared = prepare_with::<3, _>(&preparation, &hookean(), &Fire::default(), &mut ()).expect("a packing");
+    let prepared = prepare_with::<3>(&preparation, &hookean(), &Fire::default(), &mut ()).expect("a packing");
     assert!((prepared.pressure / 100.0 - 1.0).abs() <= 0.01);
     let network = ContactNetwork::new(prepared.packing.get(), &hookean()).expect("no coincidence");
     let (balls, contacts) = (network.backbone_count(), network.backbone_contacts().count());
@@ -190,7 +190,7 @@ fn a_pressure_beyond_reach_is_refused_with_its_number() {
 fn too_few_steps_are_an_error_with_their_number() {
     let preparation = preparation(100, Target::PackingFraction(0.9), 9);
     let fire = Fire { step_limit: 12, ..Fire::default() };
-    let error = prepare_with::<2, _>(&preparation, &hertzian(), &fire, &mut ()).expect_err("too few steps");
+    let error = prepare_with::<2>(&preparation, &hertzian(), &fire, &mut ()).expect_err("too few steps");
     let PreparationError::NotAtRest { packing_fraction, stop, step_count, residual } = &error else {
         panic!("{error}")
     };
@@ -226,7 +226,7 @@ fn balls_are_prepared_and_inflated_by_the_same_code() {
         seed: 3,
     };
     let (law, fire) = (hertzian(), Fire::default());
-    let prepared = prepare_with::<3, _>(&preparation, &law, &fire, &mut ()).expect("within reach");
+    let prepared = prepare_with::<3>(&preparation, &law, &fire, &mut ()).expect("within reach");
     assert!((prepared.pressure / 2000.0 - 1.0).abs() <= 0.01);
     let network = ContactNetwork::new(prepared.packing.get(), &law).expect("valid");
     let count = network.backbone_count() as f64;

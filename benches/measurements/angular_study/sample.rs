@@ -108,7 +108,7 @@ impl Plan {
         let target = self.packing_fraction.map_or(Target::Pressure(pressure), Target::PackingFraction);
         let preparation =
             Preparation { disk_count: self.disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed };
-        let prepared = prepare_with::<2, _>(&preparation, &law, relaxer, &mut ())?;
+        let prepared = prepare_with::<2>(&preparation, &law, relaxer, &mut ())?;
         let boundary = Boundary::HeldRim { outer_radius_over_side: self.outer_radius_over_side };
         let inflation = Inflation { increase: self.increase, boundary, deflate: true, ..Inflation::default() };
         let inflated = inflate_with(&inflation, prepared.packing.get(), &law, relaxer, seed, &mut ())?;

@@ -74,7 +74,7 @@ pub fn prepared(disk_count: usize, seeds: Range<u64>, pressure: f64) -> Result<V
     let one = |seed: u64| {
         let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
         let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed };
-        let prepared = prepare_with::<2, _>(&preparation, &Hertzian::default(), &Staged::default(), &mut ());
+        let prepared = prepare_with::<2>(&preparation, &Hertzian::default(), &Staged::default(), &mut ());
         prepared.map(|prepared| prepared.packing.into_inner()).map_err(|error| error.to_string())
     };
     Ok(seeds.into_par_iter().map(one).collect::<Result<_, String>>()?)

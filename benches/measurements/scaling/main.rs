@@ -24,7 +24,7 @@ use jamscope::forces::Assembly;
 use jamscope::inflation::{Centre, Circle, choose_centre};
 use jamscope::io::read_packing;
 use jamscope::law::Hertzian;
-use jamscope::law::damping::ConstantDamping;
+use jamscope::law::damping::{ConstantDamping, ContactDamping};
 use jamscope::linear::{Analysis, LinearResponse};
 use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::observe::{AngularProfile, RadialProfile};
@@ -156,7 +156,7 @@ fn measured(packing: &Packing<2>, one: &rayon::ThreadPool) -> Result<Row, Failur
     let chosen = choose_centre(packing, &law, Centre::Backbone, 1)?;
     let turns = (4_000_000 / disks).clamp(3, 2000);
 
-    let mut assembly = Assembly::new(packing, law)?;
+    let mut assembly = Assembly::new(packing, &law)?;
     let list = least(5, || Ok(assembly.reanchor()?))?;
     let forces_on_all = least(5, || repeat(turns, || assembly.evaluate()))? / turns as f64;
     let of_all = assembly.forces.clone();
@@ -226,7 +226,7 @@ fn linear(packing: &Packing<2>, chosen: usize) -> Result<[f64; 6], Failure> {
     let circle = Circle::cut(packing, chosen, 0.49 * side)?;
     // Times are per disk of the packing, of which the circle has this part.
     let share = packing.len() as f64 / circle.mobile_count() as f64;
-    let assembly = Assembly::new(&circle.packing, law)?;
+    let assembly = Assembly::new(&circle.packing, &law)?;
     let mut hessian = Hessian::of(&assembly, Members::Backbone, Prestress::Included);
     let update = least(3, || {
         assert!(hessian.update(&assembly), "no contact has changed");
@@ -255,7 +255,12 @@ fn linear(packing: &Packing<2>, chosen: usize) -> Result<[f64; 6], Failure> {
     })?;
     let radius = circle.packing.radii()[circle.centre];
     let start = circle.packing.clone().with_radius(circle.centre, radius + 0.1)?;
-    let mut motion = ImplicitMotion::new(&start, &law, &ConstantDamping { rate: 500.0 }, Inertia::Massive)?;
+    let mut motion = ImplicitMotion::new(
+        &start,
+        &law,
+        &ContactDamping::Constant(ConstantDamping { rate: 500.0 }),
+        Inertia::Massive,
+    )?;
     let step = motion.longest_step(1e-3).min(1e-3);
     let _ = motion.step(step)?;
     let implicit = least(3, || motion.step(step).map(drop).map_err(Into::into))?;

@@ -96,9 +96,9 @@ impl IsostaticLength {
     ///
     /// # Errors
     /// Invalid settings; a packing with undefined forces.
-    pub fn of_inflation<const D: usize, L: PairLaw>(
+    pub fn of_inflation<const D: usize>(
         inflated: &Inflated<D>,
-        law: &L,
+        law: &dyn PairLaw,
         settings: &IsostaticSettings,
     ) -> Result<Self, IsostaticError> {
         let before = State::new(inflated.before.packing.get(), law)?;

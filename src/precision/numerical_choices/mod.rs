@@ -42,10 +42,10 @@ pub struct ChoiceRow {
 }
 
 /// All tables of a sample.
-pub(super) fn choice_tables<L: PairLaw>(
+pub(super) fn choice_tables(
     state: &State,
     grown: &Grown<2>,
-    law: &L,
+    law: &dyn PairLaw,
     damping: DampingChoice,
     observables: &Observables,
 ) -> Result<Vec<ChoiceTable>, PackingError> {

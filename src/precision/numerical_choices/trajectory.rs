@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::forces::assembly::{Assembly, SKIN};
 use crate::inflation::{Grown, displacement};
-use crate::law::damping::DampingLaw;
+use crate::law::damping::ContactDamping;
 use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::precision::numerical_choices::{ChoiceRow, ChoiceTable};
@@ -17,10 +17,10 @@ const FEWEST_STEPS: usize = 200;
 /// Longest step over the stability limit at the start \[1\].
 const LONGEST_STEP: f64 = 0.5;
 
-pub(super) fn time_steps<L: PairLaw, C: DampingLaw>(
+pub(super) fn time_steps(
     grown: &Grown<2>,
-    law: &L,
-    damping: &C,
+    law: &dyn PairLaw,
+    damping: &ContactDamping,
 ) -> Result<ChoiceTable, PackingError> {
     let longest = LONGEST_STEP * Motion::new(&grown.packing, law, damping)?.stable_step();
     let place = |division: usize| -> Result<(Packing<2>, f64), PackingError> {
@@ -60,15 +60,15 @@ const SKINS: [f64; 6] = [0.05, 0.1, 0.15, 0.35, 0.5, 1.0];
 const STEPS: usize = 2000;
 
 /// The skin changes no contact, so the largest difference from the skin in use must be 0 or rounding.
-pub(super) fn skins<L: PairLaw, C: DampingLaw>(
+pub(super) fn skins(
     grown: &Grown<2>,
-    law: &L,
-    damping: &C,
+    law: &dyn PairLaw,
+    damping: &ContactDamping,
 ) -> Result<ChoiceTable, PackingError> {
     let time_step = LONGEST_STEP * Motion::new(&grown.packing, law, damping)?.stable_step();
     let go = |skin: f64| -> Result<(Packing<2>, [f64; 3]), PackingError> {
         let start = Instant::now();
-        let mut motion = Motion::of(Assembly::with_skin(&grown.packing, *law, skin)?, damping);
+        let mut motion = Motion::of(Assembly::with_skin(&grown.packing, law, skin)?, damping);
         let pairs = motion.assembly.pairs().len() as f64 / motion.assembly.mobile_count() as f64;
         for _ in 0..STEPS {
             motion.step(time_step)?;

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::law::damping::{DampingChoice, DampingLaw};
+use crate::law::damping::{ContactDamping, DampingChoice};
 use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::relax::convergence::{CHECK_INTERVAL, Monitor};
@@ -88,10 +88,10 @@ const SHORTER: f64 = 0.5;
 const SHARE_GROWTH: f64 = 1.2;
 
 impl Relaxer for DampedDynamics {
-    fn relax<const D: usize, L: PairLaw>(
+    fn relax<const D: usize>(
         &self,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         self.relax_with(packing, law, &law.contact_damping(&self.damping), trace)
@@ -103,11 +103,11 @@ impl Relaxer for DampedDynamics {
 }
 
 impl DampedDynamics {
-    fn relax_with<const D: usize, L: PairLaw, C: DampingLaw>(
+    fn relax_with<const D: usize>(
         &self,
         packing: Packing<D>,
-        law: &L,
-        damping: &C,
+        law: &dyn PairLaw,
+        damping: &ContactDamping,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();

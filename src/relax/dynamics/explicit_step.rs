@@ -9,8 +9,6 @@
 //! then become the stiffest. So the bound is computed for the predicted overlaps. The number M of steps between two
 //! checks is halved if the step has become much shorter, and doubled otherwise.
 
-use crate::law::damping::DampingLaw;
-use crate::law::pair_law::PairLaw;
 use crate::relax::dynamics::verlet::Motion;
 
 /// Fewest steps between two checks of the bound.
@@ -62,7 +60,7 @@ impl ExplicitStep {
     }
 
     /// Length of the next step of this motion \[time\].
-    pub(crate) fn next<const D: usize, L: PairLaw, C: DampingLaw>(&mut self, motion: &mut Motion<D, L, C>) -> f64 {
+    pub(crate) fn next<const D: usize>(&mut self, motion: &mut Motion<D>) -> f64 {
         if self.left == 0 {
             let before = self.time_step;
             let now = if before > 0.0 { before } else { self.share * motion.stable_step() };

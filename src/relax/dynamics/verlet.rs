@@ -19,7 +19,7 @@
 
 use crate::forces::assembly::Assembly;
 use crate::forces::damped::{add_damping, damped_forces};
-use crate::law::damping::DampingLaw;
+use crate::law::damping::ContactDamping;
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::for_each_pair::{MovedPair, for_each_pair};
 use crate::packing::{Packing, PackingError};
@@ -28,14 +28,14 @@ use crate::vector::{Vector, difference, dot, larger};
 
 /// A packing in motion: disks of mass 1 under elastic and damping forces.
 #[derive(Debug, Clone)]
-pub struct Motion<const D: usize, L, C> {
+pub struct Motion<const D: usize> {
     /// Positions and elastic forces. The forces are those of the last evaluation; a step evaluates none.
-    pub assembly: Assembly<D, L>,
+    pub assembly: Assembly<D>,
     /// Velocities in working order; those of held disks stay 0 \[length / time\].
     pub velocities: Vec<Vector<D>>,
     pub(super) accelerations: Vec<Vector<D>>,
     predicted: Vec<Vector<D>>,
-    damping: C,
+    damping: ContactDamping,
     damping_coefficient: Vec<f64>,
     /// Work of damping since the start \[energy\].
     pub dissipated: f64,
@@ -56,17 +56,17 @@ struct Before<const D: usize> {
     dissipation: f64,
 }
 
-impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
+impl<const D: usize> Motion<D> {
     /// A packing at rest.
     ///
     /// # Errors
     /// As [`Assembly::new`].
-    pub fn new(packing: &Packing<D>, law: &L, damping: &C) -> Result<Self, PackingError> {
-        Ok(Self::of(Assembly::new(packing, *law)?, damping))
+    pub fn new(packing: &Packing<D>, law: &dyn PairLaw, damping: &ContactDamping) -> Result<Self, PackingError> {
+        Ok(Self::of(Assembly::new(packing, law)?, damping))
     }
 
     /// An assembled packing, at rest.
-    pub fn of(mut assembly: Assembly<D, L>, damping: &C) -> Self {
+    pub fn of(mut assembly: Assembly<D>, damping: &ContactDamping) -> Self {
         assembly.evaluate();
         let zero = vec![[0.0; D]; assembly.len()];
         let mut motion = Motion {
@@ -90,7 +90,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> Motion<D, L, C> {
     ///
     /// # Panics
     /// If the number of velocities differs from that of the mobile disks.
-    pub fn moving(assembly: Assembly<D, L>, velocities: &[Vector<D>], damping: &C) -> Self {
+    pub fn moving(assembly: Assembly<D>, velocities: &[Vector<D>], damping: &ContactDamping) -> Self {
         let mut motion = Self::of(assembly, damping);
         motion.velocities[..motion.assembly.mobile_count()].copy_from_slice(velocities);
         motion.dissipation = add_damping(
@@ -256,7 +256,7 @@ fn longest_stable(stiffness: f64, damping: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::damping::ConstantDamping;
+    use crate::law::damping::{ConstantDamping, ContactDamping};
     use crate::law::power_laws::Hookean;
     use crate::packing::Domain;
 
@@ -267,7 +267,8 @@ mod tests {
         let packing =
             Packing::new(Domain::<2>::Open, vec![[0.0, 0.0], [1.2 - first, 0.0]], vec![0.5, 0.7]).expect("valid");
         let mut motion =
-            Motion::new(&packing, &Hookean { stiffness }, &ConstantDamping { rate }).expect("two disks apart");
+            Motion::new(&packing, &Hookean { stiffness }, &ContactDamping::Constant(ConstantDamping { rate }))
+                .expect("two disks apart");
         for _ in 0..step_count {
             motion.step(time / step_count as f64).expect("no coincidence");
         }

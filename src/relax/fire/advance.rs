@@ -2,7 +2,6 @@
 
 use crate::forces::advance::Advanced;
 use crate::forces::assembly::Assembly;
-use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::column_operations::Products;
 use crate::relax::convergence::Monitor;
@@ -22,9 +21,9 @@ impl Run<'_> {
     }
 
     /// Takes one step. Returns whether the neighbour list has been rebuilt.
-    pub(super) fn advance<const D: usize, L: PairLaw>(
+    pub(super) fn advance<const D: usize>(
         &mut self,
-        assembly: &mut Assembly<D, L>,
+        assembly: &mut Assembly<D>,
         state: &mut State<D>,
         monitor: &Monitor,
         sums: &Products,

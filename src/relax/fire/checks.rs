@@ -2,7 +2,6 @@
 
 use crate::forces::assembly::Assembly;
 use crate::forces::totals::Totals;
-use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::column_operations::Products;
 use crate::relax::convergence::Monitor;
@@ -23,9 +22,9 @@ const BASE_LIMIT: f64 = 1e-3;
 
 impl Run<'_> {
     /// The products at the present state, and the totals if a check is due.
-    pub(super) fn evaluate<const D: usize, L: PairLaw>(
+    pub(super) fn evaluate<const D: usize>(
         &mut self,
-        assembly: &mut Assembly<D, L>,
+        assembly: &mut Assembly<D>,
         state: &mut State<D>,
     ) -> (Option<Totals<D>>, Products) {
         let totals = if self.due { Some(assembly.evaluate_totals()) } else { None };
@@ -45,9 +44,9 @@ impl Run<'_> {
     }
 
     /// Checks the residual. Returns the reason why the run ends, if it does.
-    pub(super) fn check<const D: usize, L: PairLaw>(
+    pub(super) fn check<const D: usize>(
         &mut self,
-        assembly: &mut Assembly<D, L>,
+        assembly: &mut Assembly<D>,
         state: &mut State<D>,
         monitor: &mut Monitor,
         (totals, sums): (&Totals<D>, &Products),
@@ -84,7 +83,7 @@ impl Run<'_> {
     }
 
     /// Recomputes the bound on the time step every [`BOUND_INTERVAL`] steps.
-    pub(super) fn check_bound<const D: usize, L: PairLaw>(&mut self, assembly: &mut Assembly<D, L>, state: &State<D>) {
+    pub(super) fn check_bound<const D: usize>(&mut self, assembly: &mut Assembly<D>, state: &State<D>) {
         if self.step_count.is_multiple_of(BOUND_INTERVAL) && self.step_count > 0 {
             state.write_displacements(assembly);
             self.set_largest_step(assembly);

@@ -17,14 +17,14 @@ use crate::relax::relaxer::Relaxer;
 use crate::relax::trace::Trace;
 
 impl Relaxer for Fire {
-    fn relax<const D: usize, L: PairLaw>(
+    fn relax<const D: usize>(
         &self,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();
-        let mut assembly = Assembly::with_incremental_updates(&packing, *law)?;
+        let mut assembly = Assembly::with_incremental_updates(&packing, law)?;
         let mut monitor = Monitor::new(self.limit, &assembly);
         let (stop, cost) = self.run(&mut assembly, &mut monitor, trace)?;
         Ok(monitor.outcome(assembly, packing, (stop, cost), start))
@@ -37,9 +37,9 @@ impl Relaxer for Fire {
 
 impl Fire {
     /// Moves an assembly until the monitor stops it or the steps are used up.
-    pub(crate) fn run<const D: usize, L: PairLaw>(
+    pub(crate) fn run<const D: usize>(
         &self,
-        assembly: &mut Assembly<D, L>,
+        assembly: &mut Assembly<D>,
         monitor: &mut Monitor,
         trace: &mut dyn Trace,
     ) -> Result<(Stop, Cost), PackingError> {
@@ -49,9 +49,9 @@ impl Fire {
         ended
     }
 
-    fn run_from_rest<const D: usize, L: PairLaw>(
+    fn run_from_rest<const D: usize>(
         &self,
-        assembly: &mut Assembly<D, L>,
+        assembly: &mut Assembly<D>,
         monitor: &mut Monitor,
         trace: &mut dyn Trace,
     ) -> Result<(Stop, Cost), PackingError> {
@@ -69,9 +69,9 @@ impl Fire {
 }
 
 impl Run<'_> {
-    fn descend<const D: usize, L: PairLaw>(
+    fn descend<const D: usize>(
         &mut self,
-        assembly: &mut Assembly<D, L>,
+        assembly: &mut Assembly<D>,
         state: &mut State<D>,
         monitor: &mut Monitor,
         trace: &mut dyn Trace,

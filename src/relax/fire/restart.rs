@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 
 use crate::forces::assembly::Assembly;
 use crate::forces::totals::Totals;
-use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::column_operations::Products;
 use crate::relax::convergence::Monitor;
@@ -18,9 +17,9 @@ use crate::relax::trace::{Check, Trace};
 impl Run<'_> {
     /// Stops all disks; if the energy is higher than at the last restart, returns to that restart. Returns the products
     /// there, or the reason why the run ends.
-    pub(super) fn restart<const D: usize, L: PairLaw>(
+    pub(super) fn restart<const D: usize>(
         &mut self,
-        assembly: &mut Assembly<D, L>,
+        assembly: &mut Assembly<D>,
         state: &mut State<D>,
         monitor: &Monitor,
         (totals, sums): (Option<Totals<D>>, &Products),
@@ -65,7 +64,7 @@ impl Run<'_> {
     }
 
     /// Whether the energy is above that at the last restart.
-    fn is_higher<const D: usize, L: PairLaw>(&self, assembly: &Assembly<D, L>, totals: &Totals<D>) -> bool {
+    fn is_higher<const D: usize>(&self, assembly: &Assembly<D>, totals: &Totals<D>) -> bool {
         let energy = totals.energy;
         if assembly.law().has_sites() {
             // Energies have either sign, so the rounding is relative to the sum of their absolute values.

@@ -1,7 +1,6 @@
 //! [`Run`]: the variables of one run of FIRE.
 
 use crate::forces::assembly::Assembly;
-use crate::law::pair_law::PairLaw;
 use crate::relax::column_operations::Products;
 use crate::relax::fire::settings::Fire;
 use crate::relax::outcome::Cost;
@@ -37,7 +36,7 @@ pub(super) struct Run<'a> {
 
 impl<'a> Run<'a> {
     /// A run from rest at the present state.
-    pub(super) fn new<const D: usize, L: PairLaw>(settings: &'a Fire, assembly: &Assembly<D, L>) -> Self {
+    pub(super) fn new<const D: usize>(settings: &'a Fire, assembly: &Assembly<D>) -> Self {
         let mut run = Run {
             settings,
             evaluation_count: 0,
@@ -59,7 +58,7 @@ impl<'a> Run<'a> {
     }
 
     /// Sets the largest time step from the present stiffness.
-    pub(super) fn set_largest_step<const D: usize, L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
+    pub(super) fn set_largest_step<const D: usize>(&mut self, assembly: &Assembly<D>) {
         let mut bound = assembly.stiffness_bound(&mut self.row);
         if bound == 0.0 {
             // Without contacts: the stiffness of a contact with an overlap of 0.1 % of a radius.

@@ -3,7 +3,6 @@
 use crate::forces::advance::Advanced;
 use crate::forces::assembly::Assembly;
 use crate::forces::single_precision::Single;
-use crate::law::pair_law::PairLaw;
 use crate::relax::column_operations::{Products, combine, products};
 use crate::relax::fire::step::Step;
 use crate::simd::lanes::Summed;
@@ -19,7 +18,7 @@ pub(super) enum State<const D: usize> {
 
 impl<const D: usize> State<D> {
     /// Disks at rest; in single precision if requested and possible.
-    pub(super) fn new<L: PairLaw>(assembly: &Assembly<D, L>, in_single: bool) -> Self {
+    pub(super) fn new(assembly: &Assembly<D>, in_single: bool) -> Self {
         let mobile = assembly.mobile_count();
         match in_single.then(|| Single::new(assembly)).flatten() {
             Some(disks) => State::Single(Box::new(disks), vec![[0.0; D]; mobile]),
@@ -41,7 +40,7 @@ impl<const D: usize> State<D> {
     }
 
     /// Writes the displacements into the assembly.
-    pub(super) fn write_displacements<L: PairLaw>(&self, assembly: &mut Assembly<D, L>) {
+    pub(super) fn write_displacements(&self, assembly: &mut Assembly<D>) {
         if let State::Single(disks, _) = self {
             disks.write_displacements(assembly);
         }
@@ -64,7 +63,7 @@ impl<const D: usize> State<D> {
     }
 
     /// Evaluates the forces and computes the products.
-    pub(super) fn evaluate<L: PairLaw>(&mut self, assembly: &mut Assembly<D, L>) -> Products {
+    pub(super) fn evaluate(&mut self, assembly: &mut Assembly<D>) -> Products {
         match self {
             State::Double(_) => {
                 assembly.evaluate();
@@ -78,7 +77,7 @@ impl<const D: usize> State<D> {
     }
 
     /// The products with the forces of the assembly's last evaluation.
-    pub(super) fn products<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) -> Products {
+    pub(super) fn products(&mut self, assembly: &Assembly<D>) -> Products {
         match self {
             State::Double(velocities) => products_of(&assembly.forces[..velocities.len()], velocities),
             State::Single(disks, velocities) => {
@@ -90,12 +89,7 @@ impl<const D: usize> State<D> {
 
     /// Moves the disks, evaluates their forces and computes the products, tile by tile ([`Assembly::advance`]). No
     /// displacement is longer than `reach` times the largest velocity component \[time\].
-    pub(super) fn advance<L: PairLaw>(
-        &mut self,
-        assembly: &mut Assembly<D, L>,
-        step: Step,
-        reach: f64,
-    ) -> Advanced<Products> {
+    pub(super) fn advance(&mut self, assembly: &mut Assembly<D>, step: Step, reach: f64) -> Advanced<Products> {
         match self {
             State::Double(velocities) => {
                 assembly.advance(velocities, |f, v, u| reach * step.kick(f, v, u), products_of)
@@ -120,7 +114,7 @@ impl<const D: usize> State<D> {
 
     /// Moves the disks and writes their displacements into the assembly. Returns the largest velocity component
     /// \[length / time\].
-    pub(super) fn kick<L: PairLaw>(&mut self, assembly: &mut Assembly<D, L>, step: Step) -> f64 {
+    pub(super) fn kick(&mut self, assembly: &mut Assembly<D>, step: Step) -> f64 {
         let mobile = assembly.mobile_count();
         match self {
             State::Double(velocities) => {
@@ -138,7 +132,7 @@ impl<const D: usize> State<D> {
     }
 
     /// `u ← u − (dt/2) v`: takes back half of an uphill step.
-    pub(super) fn step_back<L: PairLaw>(&mut self, assembly: &mut Assembly<D, L>, time_step: f64) {
+    pub(super) fn step_back(&mut self, assembly: &mut Assembly<D>, time_step: f64) {
         let mobile = assembly.mobile_count();
         let displacements = assembly.displacements[..mobile].as_flattened_mut();
         match self {

@@ -49,10 +49,10 @@ impl Default for NonlinearConjugateGradients {
 }
 
 impl Relaxer for NonlinearConjugateGradients {
-    fn relax<const D: usize, L: PairLaw>(
+    fn relax<const D: usize>(
         &self,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let NonlinearConjugateGradients { limit, step_limit, largest_step, flatness } = *self;

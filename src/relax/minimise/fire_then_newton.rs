@@ -56,14 +56,14 @@ impl Default for Staged {
 const PATIENCE: usize = 12;
 
 impl Relaxer for Staged {
-    fn relax<const D: usize, L: PairLaw>(
+    fn relax<const D: usize>(
         &self,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();
-        let mut assembly = Assembly::with_incremental_updates(&packing, *law)?;
+        let mut assembly = Assembly::with_incremental_updates(&packing, law)?;
         let (stop, cost, monitor) = self.run(&mut assembly, trace)?;
         Ok(monitor.outcome(assembly, packing, (stop, cost), start))
     }
@@ -74,9 +74,9 @@ impl Relaxer for Staged {
 }
 
 impl Staged {
-    fn run<const D: usize, L: PairLaw>(
+    fn run<const D: usize>(
         &self,
-        assembly: &mut Assembly<D, L>,
+        assembly: &mut Assembly<D>,
         trace: &mut dyn Trace,
     ) -> Result<(Stop, Cost, Monitor), PackingError> {
         let mut hand_over = self.hand_over;

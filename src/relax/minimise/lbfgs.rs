@@ -48,10 +48,10 @@ impl Default for QuasiNewton {
 }
 
 impl Relaxer for QuasiNewton {
-    fn relax<const D: usize, L: PairLaw>(
+    fn relax<const D: usize>(
         &self,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let QuasiNewton { limit, step_limit, largest_step, memory, flatness } = *self;

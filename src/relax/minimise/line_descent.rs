@@ -72,25 +72,25 @@ impl Descent {
     ///
     /// # Errors
     /// Only conditions that make forces undefined.
-    pub fn relax<const D: usize, L: PairLaw>(
+    pub fn relax<const D: usize>(
         &self,
         mut rule: impl DirectionRule,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();
-        let mut assembly = Assembly::new(&packing, *law)?;
+        let mut assembly = Assembly::new(&packing, law)?;
         let mut monitor = Monitor::with(self.limit, SCHEDULE, &assembly);
         let ended = self.run(&mut rule, &mut assembly, &mut monitor, trace)?;
         Ok(monitor.outcome(assembly, packing, ended, start))
     }
 
     /// Takes steps until the monitor stops it or the steps are used up.
-    fn run<const D: usize, L: PairLaw>(
+    fn run<const D: usize>(
         &self,
         rule: &mut impl DirectionRule,
-        assembly: &mut Assembly<D, L>,
+        assembly: &mut Assembly<D>,
         monitor: &mut Monitor,
         trace: &mut dyn Trace,
     ) -> Result<(Stop, Cost), PackingError> {

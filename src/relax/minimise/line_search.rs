@@ -14,7 +14,6 @@
 
 use crate::forces::assembly::Assembly;
 use crate::forces::totals::Totals;
-use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::column_operations::{combine, dot_product};
 use crate::relax::rounding::ENERGY_ROUNDING;
@@ -60,15 +59,15 @@ type End = (f64, f64);
 
 /// Searches along the line from the present state, which becomes the checkpoint. None if no point tried is accepted;
 /// the positions are then undefined. Every evaluation is counted.
-pub fn search<const D: usize, L: PairLaw>(
-    assembly: &mut Assembly<D, L>,
+pub fn search<const D: usize>(
+    assembly: &mut Assembly<D>,
     line: &Line<'_>,
     before: &Totals<D>,
     evaluation_count: &mut usize,
 ) -> Result<Option<Reached<D>>, PackingError> {
     assembly.set_checkpoint();
     let (distance, longest) = reach(assembly, line);
-    let mut go = |assembly: &mut Assembly<D, L>, length: f64, away: bool| -> Result<Reached<D>, PackingError> {
+    let mut go = |assembly: &mut Assembly<D>, length: f64, away: bool| -> Result<Reached<D>, PackingError> {
         if away {
             assembly.restore()?;
         }
@@ -131,7 +130,7 @@ fn beyond(first: End, second: End) -> f64 {
 }
 
 /// The longest displacement of a disk for length 1, and the length at which the largest step is reached.
-fn reach<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, line: &Line<'_>) -> (f64, f64) {
+fn reach<const D: usize>(assembly: &Assembly<D>, line: &Line<'_>) -> (f64, f64) {
     let (mut distance, mut share) = (0.0, 0.0);
     let disks = line.direction.as_chunks::<D>().0;
     for (&step, radius) in disks.iter().zip(assembly.radii()) {
@@ -180,7 +179,7 @@ mod tests {
         let packing = Packing::new(Domain::<2>::Open, positions, vec![0.5; 4])
             .and_then(|packing| packing.with_held(vec![false, true, true, true]))
             .expect("valid");
-        let mut assembly = Assembly::new(&packing, law).expect("no coincidence");
+        let mut assembly = Assembly::new(&packing, &law).expect("no coincidence");
         let before = assembly.evaluate_totals();
         let direction = [1.0, 0.0];
         // F·s = k δ = 0.1, to the rounding of 0.9.

@@ -50,14 +50,14 @@ impl Default for Newton {
 }
 
 impl Relaxer for Newton {
-    fn relax<const D: usize, L: PairLaw>(
+    fn relax<const D: usize>(
         &self,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let start = Instant::now();
-        let mut assembly = Assembly::new(&packing, *law)?;
+        let mut assembly = Assembly::new(&packing, law)?;
         let mut monitor = Monitor::with(self.limit, NEWTON_SCHEDULE, &assembly);
         let mut descent = NewtonDescent::new(self.largest_step, self.step_limit, Patience::Unlimited);
         let stop = match descent.run(&mut assembly, &mut monitor, trace)? {

@@ -3,7 +3,6 @@
 
 use crate::forces::assembly::Assembly;
 use crate::forces::totals::Totals;
-use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::convergence::{CheckSchedule, Monitor};
 use crate::relax::minimise::line_search::acceptance;
@@ -76,9 +75,9 @@ impl NewtonDescent {
     }
 
     /// Takes steps until the monitor stops it or its patience is exhausted.
-    pub(crate) fn run<const D: usize, L: PairLaw>(
+    pub(crate) fn run<const D: usize>(
         &mut self,
-        assembly: &mut Assembly<D, L>,
+        assembly: &mut Assembly<D>,
         monitor: &mut Monitor,
         trace: &mut dyn Trace,
     ) -> Result<End, PackingError> {
@@ -123,9 +122,9 @@ impl NewtonDescent {
     }
 
     /// One step: directions with ever larger shifts, until one leads down.
-    fn step<const D: usize, L: PairLaw>(
+    fn step<const D: usize>(
         &mut self,
-        assembly: &mut Assembly<D, L>,
+        assembly: &mut Assembly<D>,
         shifted: &mut ShiftedHessian<D>,
         (backbone, mean): (&[bool], f64),
         totals: &Totals<D>,
@@ -166,12 +165,7 @@ impl NewtonDescent {
     }
 
     /// Clips the steps of disks off the backbone. Returns the share of the step that the other disks may take.
-    fn bound<const D: usize, L: PairLaw>(
-        &self,
-        assembly: &Assembly<D, L>,
-        step: &mut [Vector<D>],
-        backbone: &[bool],
-    ) -> f64 {
+    fn bound<const D: usize>(&self, assembly: &Assembly<D>, step: &mut [Vector<D>], backbone: &[bool]) -> f64 {
         let mut share = 1.0f64;
         for (disk, step) in step.iter_mut().enumerate() {
             let (distance, longest) = (norm(*step), self.largest_step * assembly.radii()[disk]);
@@ -198,9 +192,9 @@ impl NewtonDescent {
     /// Its acceptance test is that of [`search`](crate::relax::minimise::line_search::search), but its lengths differ.
     /// The model gives the length, so no length above 1 is tried. The next point lies between a tenth and half of the
     /// bracket.
-    fn search<const D: usize, L: PairLaw>(
+    fn search<const D: usize>(
         &mut self,
-        assembly: &mut Assembly<D, L>,
+        assembly: &mut Assembly<D>,
         step: &[Vector<D>],
         longest: f64,
         totals: &Totals<D>,
@@ -241,9 +235,9 @@ impl NewtonDescent {
     }
 
     /// The point at a length along a direction from the checkpoint, and F·s there.
-    fn go<const D: usize, L: PairLaw>(
+    fn go<const D: usize>(
         &mut self,
-        assembly: &mut Assembly<D, L>,
+        assembly: &mut Assembly<D>,
         step: &[Vector<D>],
         length: f64,
     ) -> Result<(Totals<D>, f64), PackingError> {
@@ -258,7 +252,7 @@ impl NewtonDescent {
         Ok((reached, along(&assembly.forces, step)))
     }
 
-    fn evaluate<const D: usize, L: PairLaw>(&mut self, assembly: &mut Assembly<D, L>) -> Totals<D> {
+    fn evaluate<const D: usize>(&mut self, assembly: &mut Assembly<D>) -> Totals<D> {
         self.cost.force_evaluation_count += 1;
         assembly.evaluate_totals()
     }

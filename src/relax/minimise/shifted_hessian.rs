@@ -18,7 +18,6 @@
 
 use crate::forces::assembly::Assembly;
 use crate::forces::stiffness_bound::stiffness_rows;
-use crate::law::pair_law::PairLaw;
 use crate::linear::hessian::{Hessian, Members, Prestress, StiffContact};
 use crate::linear::{Analysis, LinearError};
 use crate::sparse::SymmetricMatrix;
@@ -65,7 +64,7 @@ pub struct ShiftedHessian<const D: usize> {
 
 impl<const D: usize> ShiftedHessian<D> {
     /// Buffers for an assembly; [`ShiftedHessian::update`] fills them.
-    pub fn new<L: PairLaw>(assembly: &Assembly<D, L>) -> Self {
+    pub fn new(assembly: &Assembly<D>) -> Self {
         ShiftedHessian {
             hessian: Hessian::of(assembly, Members::InContact, Prestress::Included),
             matrix: SymmetricMatrix::default(),
@@ -80,7 +79,7 @@ impl<const D: usize> ShiftedHessian<D> {
     }
 
     /// Updates the Hessian at the present displacements.
-    pub fn update<L: PairLaw>(&mut self, assembly: &Assembly<D, L>, backbone: &[bool]) {
+    pub fn update(&mut self, assembly: &Assembly<D>, backbone: &[bool]) {
         let power = assembly.law().exponent() - 1.0;
         let weights = |contact: &StiffContact| {
             if backbone[contact.ends.0 as usize] && backbone[contact.ends.1 as usize] {
@@ -95,7 +94,7 @@ impl<const D: usize> ShiftedHessian<D> {
         self.set_rows(assembly);
     }
 
-    fn set_rows<L: PairLaw>(&mut self, assembly: &Assembly<D, L>) {
+    fn set_rows(&mut self, assembly: &Assembly<D>) {
         let (law, pairs, mobile) = (assembly.law(), assembly.pairs(), assembly.mobile_count());
         let power = law.exponent() - 1.0;
         let displacements = &assembly.displacements;
@@ -109,7 +108,7 @@ impl<const D: usize> ShiftedHessian<D> {
     }
 
     /// Solves for the step under the forces of the last evaluation.
-    pub fn solve<L: PairLaw>(&mut self, assembly: &Assembly<D, L>, backbone: &[bool], mean: f64, shift: f64) -> Solved {
+    pub fn solve(&mut self, assembly: &Assembly<D>, backbone: &[bool], mean: f64, shift: f64) -> Solved {
         let coupling = assembly.law().on_site_coupling().abs();
         for (step, &force) in self.step.iter_mut().zip(&assembly.forces) {
             // Disks without rows feel at most their site.

@@ -12,7 +12,7 @@ use crate::scenes::starts::cross;
 
 /// A disk between four held ones comes to rest in their middle, with any law; what each took.
 pub fn rests_in_the_middle(choice: &RelaxerChoice) -> [Cost; 3] {
-    fn check<L: PairLaw>(choice: &RelaxerChoice, law: L) -> Cost {
+    fn check(choice: &RelaxerChoice, law: impl PairLaw + Copy) -> Cost {
         let outcome = relax(choice, cross([0.02, -0.013]), &law);
         let cost = outcome.cost;
         let force = law.force(law.coefficient(0.55, 0.5), 0.05);

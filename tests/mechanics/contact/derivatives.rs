@@ -7,7 +7,7 @@ use super::*;
 /// Away from contact, s²/6 times the third derivative, |u'''| + 3|u''|/r + 3|u'|/r², taken at the ends of the interval.
 /// Within s of contact u'' = F' is only Hölder continuous (for α < 3; it jumps for α = 2): F differs from its tangent by
 /// at most its growth over the interval.
-fn difference_error<L: PairLaw>(law: &L, coefficient: f64, overlap: f64, distance: f64, s: f64) -> f64 {
+fn difference_error(law: &dyn PairLaw, coefficient: f64, overlap: f64, distance: f64, s: f64) -> f64 {
     if overlap < -s {
         return 0.0;
     }
@@ -27,9 +27,9 @@ fn difference_error<L: PairLaw>(law: &L, coefficient: f64, overlap: f64, distanc
 
 /// What a central difference of the energy may be off by: truncation of each pair; over h, the rounding of the energy and
 /// that of the separations, `blur`.
-fn slope_error<const D: usize, L: PairLaw>(
+fn slope_error<const D: usize>(
     packing: &Packing<D>,
-    law: &L,
+    law: &dyn PairLaw,
     h: f64,
     blur: f64,
     speed: impl Fn(&all_pairs::Pair<D>) -> f64,
@@ -52,9 +52,9 @@ fn slope_error<const D: usize, L: PairLaw>(
 /// Step of the differences: rounding ε/h and truncation h^1.5 to h² are both near 1e-9 of what is differentiated.
 const STEP: f64 = 1.0 / 65536.0;
 
-fn check_gradient<const D: usize, L: PairLaw>(law: L, seed: u64, count: usize, domain: Domain<D>) {
+fn check_gradient<const D: usize>(law: impl PairLaw + Copy, seed: u64, count: usize, domain: Domain<D>) {
     let packing = disks(seed, count, domain, 0.2);
-    let mut assembly = Assembly::new(&packing, law).expect("no coincidence");
+    let mut assembly = Assembly::new(&packing, &law).expect("no coincidence");
     assembly.evaluate();
     let forces = assembly.forces.clone();
     for index in 0..assembly.mobile_count() {
@@ -81,7 +81,7 @@ fn check_gradient<const D: usize, L: PairLaw>(law: L, seed: u64, count: usize, d
 }
 
 /// Stretching the box along one axis with the positions: dE/dε = −(virial along that axis), radii kept.
-fn check_virial<const D: usize, L: PairLaw>(law: L, seed: u64, count: usize, sides: Vector<D>) {
+fn check_virial<const D: usize>(law: impl PairLaw + Copy, seed: u64, count: usize, sides: Vector<D>) {
     let packing = disks(seed, count, periodic(sides), 0.0);
     let (_, totals) = forces_of(&packing, law);
     for axis in 0..D {

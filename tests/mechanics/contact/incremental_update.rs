@@ -8,7 +8,7 @@ use jamscope::io::read_packing;
 
 /// A packing in which a few neighbouring disks are fast: each moves straight on in its own direction, through the others.
 struct Crossing<const D: usize> {
-    assembly: Assembly<D, Hertzian>,
+    assembly: Assembly<D>,
     fast: Vec<usize>,
     /// Displacements in a step of the fast disks and of the others \[length\].
     lengths: (f64, f64),
@@ -22,7 +22,7 @@ struct Crossing<const D: usize> {
 impl<const D: usize> Crossing<D> {
     /// The `count` disks nearest to `middle`, seen from the corner of the box, are fast.
     fn new(packing: &Packing<D>, (count, middle): (usize, Vector<D>), lengths: (f64, f64)) -> Self {
-        let mut assembly = Assembly::new(packing, Hertzian::default()).expect("no coincidence");
+        let mut assembly = Assembly::new(packing, &Hertzian::default()).expect("no coincidence");
         assembly.set_pruning(true);
         let away = |&disk: &usize| norm(difference(assembly.place(disk), middle));
         let mut fast: Vec<usize> = (0..packing.len()).collect();
@@ -328,7 +328,7 @@ fn an_inner_list_of_a_nearly_expired_list_misses_no_contact() {
     // Farther apart than is listed, by nearly nothing.
     let packing =
         Packing::new(Domain::Open, vec![[0.0, 0.0], [1.0 + 0.25 + 1e-9, 0.0]], vec![0.5; 2]).expect("two disks");
-    let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("apart");
+    let mut assembly = Assembly::new(&packing, &Hertzian::default()).expect("apart");
     assembly.set_pruning(true);
     assert_eq!(assembly.pairs().len(), 0);
     // Towards each other, fast, until the list has nearly expired, then slowly: at a speed check an inner list would seem to suffice.
@@ -351,7 +351,7 @@ fn a_list_that_all_disks_expire_is_rebuilt_with_a_wider_skin() {
     let smallest = packing.radii().iter().copied().fold(f64::INFINITY, f64::min);
     // Displacement of all disks in a step over the smallest radius, and the best skin: √(2 · 25 evaluations of a build / 0.75 · displacement).
     for (length, expected) in [(2e-4f64, 0.2), (2e-3, (50.0 / 0.75 * 2e-3f64).sqrt()), (1e-2, 0.5)] {
-        let mut assembly = Assembly::with_incremental_updates(&packing, Hertzian::default()).expect("no coincidence");
+        let mut assembly = Assembly::with_incremental_updates(&packing, &Hertzian::default()).expect("no coincidence");
         assembly.set_pruning(true);
         assert_eq!(assembly.skin(), 0.2 * smallest);
         while assembly.build_count() == 1 {
@@ -366,7 +366,7 @@ fn a_list_that_all_disks_expire_is_rebuilt_with_a_wider_skin() {
     // A short list has the wider one from the start.
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N5548_p100.xyz");
     let packing = read_packing::<2>(file).expect("a stored packing");
-    let assembly = Assembly::with_incremental_updates(&packing, Hertzian::default()).expect("no coincidence");
+    let assembly = Assembly::with_incremental_updates(&packing, &Hertzian::default()).expect("no coincidence");
     assert_eq!(assembly.skin(), 0.5 * smallest);
 }
 
@@ -376,7 +376,7 @@ fn fast_disks_in_an_inner_list_find_each_other() {
     let beside = [[-20.0, 0.0], [-20.0, 4.5]];
     let places = (0..4900).map(|disk| [3.0 * f64::from(disk % 70), 3.0 * f64::from(disk / 70)]).chain(beside).collect();
     let packing = Packing::new(Domain::Open, places, vec![0.5; 4902]).expect("disks apart");
-    let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("no coincidence");
+    let mut assembly = Assembly::new(&packing, &Hertzian::default()).expect("no coincidence");
     assembly.set_pruning(true);
     let [lower, upper] =
         [4900, 4901].map(|disk| assembly.order().iter().position(|&other| other == disk).expect("every disk"));

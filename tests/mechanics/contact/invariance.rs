@@ -10,9 +10,9 @@ fn translated<const D: usize>(packing: &Packing<D>, shift: Vector<D>) -> Packing
         .expect("valid")
 }
 
-fn check_same<const D: usize, L: PairLaw>(
+fn check_same<const D: usize>(
     what: &str,
-    law: L,
+    law: impl PairLaw + Copy,
     first: &Packing<D>,
     second: &Packing<D>,
     image: impl Fn(usize, Vector<D>) -> (usize, Vector<D>),

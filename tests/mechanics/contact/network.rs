@@ -43,7 +43,7 @@ proptest! {
 /// ```
 #[test]
 fn a_triangular_lattice_has_six_contacts_and_its_pressure_and_energy_in_closed_form() {
-    fn check<L: PairLaw>(law: L) {
+    fn check(law: impl PairLaw + Copy) {
         let (columns, rows, radius, apart) = (12usize, 14usize, 0.5, 0.97);
         let height = 3f64.sqrt() / 2.0 * apart;
         let positions: Vec<Vector<2>> = (0..rows * columns)

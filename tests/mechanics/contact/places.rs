@@ -15,7 +15,7 @@ fn places_without_a_pair_are_gaps_that_nothing_closes() {
 }
 
 fn check_vacant_places(packing: &Packing<2>) {
-    let mut assembly = Assembly::new(packing, Hertzian::default()).expect("no coincidence");
+    let mut assembly = Assembly::new(packing, &Hertzian::default()).expect("no coincidence");
     assembly.displacements[0] = [1e6; 2];
     let pairs = assembly.pairs();
     let mut has_pair = vec![false; pairs.place_count()];
@@ -37,10 +37,10 @@ fn disks_with_one_centre_are_found_and_others_are_not() {
         [positions[77], positions[19_000]] = places;
         Packing::new(*packing.domain(), positions, packing.radii().to_vec()).expect("as before")
     };
-    let found = Assembly::new(&with([[1.0, 2.0]; 2]), Hertzian::default()).err();
+    let found = Assembly::new(&with([[1.0, 2.0]; 2]), &Hertzian::default()).err();
     assert_eq!(found, Some(PackingError::CoincidentCentres { first: 77, second: 19_000 }));
     // Far nearer than the rounding of the sum of their radii, but apart.
-    let mut assembly = Assembly::new(&with([[1e-20, 0.0], [0.0; 2]]), Hertzian::default()).expect("apart");
+    let mut assembly = Assembly::new(&with([[1e-20, 0.0], [0.0; 2]]), &Hertzian::default()).expect("apart");
     assembly.evaluate();
     assert!(assembly.forces.as_flattened().iter().all(|force| force.is_finite()));
 }

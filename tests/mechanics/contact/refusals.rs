@@ -23,7 +23,7 @@ fn coincident_centres_are_named() {
     let positions = vec![[1.0, 1.0], [5.0, 5.0], [3.0, 3.0], [13.0, -7.0]];
     let packing = Packing::new(Domain::<2>::cube(10.0), positions, vec![0.5; 4]).expect("valid");
     // The fourth is an image of the third.
-    let error = Assembly::new(&packing, Hertzian::default()).expect_err("coincident");
+    let error = Assembly::new(&packing, &Hertzian::default()).expect_err("coincident");
     assert_eq!(error, PackingError::CoincidentCentres { first: 2, second: 3 });
     assert_eq!(
         error.to_string(),
@@ -31,7 +31,7 @@ fn coincident_centres_are_named() {
     );
     // Held ones do not push each other.
     let held = packing.with_held(vec![false, false, true, true]).expect("four flags");
-    assert!(Assembly::new(&held, Hertzian::default()).is_ok());
+    assert!(Assembly::new(&held, &Hertzian::default()).is_ok());
 }
 
 #[test]
@@ -40,13 +40,13 @@ fn a_box_in_which_a_pair_could_touch_twice_is_refused() {
         let domain = Domain::Periodic { corner: [0.0; 2], lengths: [20.0, side] };
         Packing::new(domain, vec![[1.0, 1.0], [3.0, 1.0]], vec![0.5, 0.7]).expect("valid")
     };
-    let error = Assembly::new(&packing(2.75), Hertzian::default()).expect_err("too small");
+    let error = Assembly::new(&packing(2.75), &Hertzian::default()).expect_err("too small");
     assert_eq!(error, PackingError::BoxTooSmall { axis: 1, length: 2.75, range: 1.4 });
     for number in ["axis 1", "2.75", "1.4"] {
         assert!(error.to_string().contains(number), "{error} does not say {number}");
     }
     // Two contact ranges are enough.
-    assert!(Assembly::new(&packing(2.8), Hertzian::default()).is_ok());
+    assert!(Assembly::new(&packing(2.8), &Hertzian::default()).is_ok());
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn held_disks_push_mobile_ones_but_not_each_other() {
 #[test]
 fn a_force_that_is_not_a_number_shows_in_energy_and_forces() {
     let packing = disks::<2>(3, 30, periodic([2.0; 2]), 0.0);
-    let mut assembly = Assembly::new(&packing, Hertzian::default()).expect("no coincidence");
+    let mut assembly = Assembly::new(&packing, &Hertzian::default()).expect("no coincidence");
     let touching = assembly.pairs().first[0] as usize;
     assembly.displacements[touching][0] = f64::NAN;
     // update_list leaves such a state to the relaxer.

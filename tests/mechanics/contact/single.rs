@@ -12,7 +12,7 @@ use crate::scenes::starts::{inflated, points};
 const ROUNDING: f64 = f64::EPSILON * (1u64 << 28) as f64;
 
 /// Disks of an assembly in single precision, each moved by up to `length` in a direction of its own.
-fn moved<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, length: f64) -> Single<D> {
+fn moved<const D: usize>(assembly: &Assembly<D>, length: f64) -> Single<D> {
     let mut single = Single::new(assembly).expect("in range");
     let unit = single.units().length;
     let mut velocities = vec![[0.0; D]; assembly.mobile_count()];
@@ -26,8 +26,8 @@ fn moved<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, length: f64) -> 
 
 /// Each contact is known to some roundings of its force and of what the way changes it by: r, its square and root, the reciprocal, δ, F and
 /// the product with r, a dozen of half a unit each; F' is less than 2.5 F/δ, or the largest of all contacts.
-fn compare<const D: usize, L: PairLaw>(packing: &Packing<D>, law: L, length: f64) {
-    let mut assembly = Assembly::new(packing, law).expect("no coincidence");
+fn compare<const D: usize>(packing: &Packing<D>, law: impl PairLaw + Copy, length: f64) {
+    let mut assembly = Assembly::new(packing, &law).expect("no coincidence");
     let mut single = moved(&assembly, length);
     single.evaluate(&assembly);
     single.write_displacements(&mut assembly);
@@ -48,7 +48,7 @@ fn compare<const D: usize, L: PairLaw>(packing: &Packing<D>, law: L, length: f64
 }
 
 /// Sum of the contact forces on a disk.
-fn pulls<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, disk: usize) -> f64 {
+fn pulls<const D: usize>(assembly: &Assembly<D>, disk: usize) -> f64 {
     let (law, pairs) = (assembly.law(), assembly.pairs());
     let with = pairs.numbers().filter(|&k| pairs.first[k] as usize == disk || pairs.second[k] as usize == disk);
     with.map(|k| {
@@ -74,7 +74,7 @@ fn forces_are_those_in_double_precision_to_the_rounding_of_single() {
 fn an_overlap_far_below_the_rounding_of_distances_has_its_force() {
     let overlap = (-50f64).exp2();
     let packing = Packing::new(Domain::Open, vec![[0.0; 2], [1.0 - overlap, 0.0]], vec![0.5; 2]).expect("valid");
-    let assembly = Assembly::new(&packing, Hookean { stiffness: 2.0 }).expect("no coincidence");
+    let assembly = Assembly::new(&packing, &Hookean { stiffness: 2.0 }).expect("no coincidence");
     let mut single = moved(&assembly, 0.0);
     single.evaluate(&assembly);
     let force = single.units().force * f64::from(single.forces[0][0].abs());
@@ -84,7 +84,7 @@ fn an_overlap_far_below_the_rounding_of_distances_has_its_force() {
 #[test]
 fn what_leaves_the_range_of_single_precision_is_not_begun() {
     let packing = points::<2>(30, 0.9, 1);
-    let single = |stiffness| Single::new(&Assembly::new(&packing, Hookean { stiffness }).expect("no coincidence"));
+    let single = |stiffness| Single::new(&Assembly::new(&packing, &Hookean { stiffness }).expect("no coincidence"));
     assert!(single(1e-100).is_some() && single(1e100).is_some());
     for stiffness in [f64::NAN, f64::INFINITY, 1e308, 1e-308] {
         assert!(single(stiffness).is_none(), "{stiffness}");

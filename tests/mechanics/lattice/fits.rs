@@ -10,7 +10,7 @@ fn fitted(profile: &RadialProfile, outer_radius: f64) -> ProfileFit {
 }
 
 /// κ fitted over κ put in, less one; the amplitude fitted over B d_0/a, less one; the branch.
-fn recovered<L: PairLaw>(law: L, ratio: f64, reduced: f64, effective: bool) -> (f64, f64, usize) {
+fn recovered(law: impl PairLaw + Copy, ratio: f64, reduced: f64, effective: bool) -> (f64, f64, usize) {
     let lattice = triangular(0.05);
     let circle = lattice.circle(0.5 * ratio).expect("a circle");
     let rim = lattice.effective_radius(&circle).expect("triangular");

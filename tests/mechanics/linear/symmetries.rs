@@ -58,7 +58,7 @@ fn turned_and_renamed<const D: usize>(packing: &Packing<D>) -> Packing<D> {
         .expect("valid")
 }
 
-fn check<const D: usize, L: PairLaw>(law: L, packing: &Packing<D>, members: Members, seed: u64) {
+fn check<const D: usize>(law: impl PairLaw + Copy, packing: &Packing<D>, members: Members, seed: u64) {
     let of = |packing: &Packing<D>, prestress| Hessian::new(packing, &law, members, prestress).expect("apart");
     for prestress in [Prestress::Included, Prestress::LeftOut] {
         let hessian = of(packing, prestress);

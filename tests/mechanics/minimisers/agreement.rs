@@ -32,7 +32,7 @@ fn all_end_in_the_minimum_of_newton_at_high_pressure() {
 /// From next to a minimum every relaxer goes back to it.
 #[test]
 fn all_meet_in_a_minimum_near_by() {
-    fn check<L: PairLaw>(law: L, name: &str) {
+    fn check(law: impl PairLaw + Copy, name: &str) {
         let fire = |limit| Fire { limit: ForceLimit::Relative(limit), ..Fire::default() };
         let minimum = at_rest(relax(&fire(1e-12), inflated(name, 5), &law));
         let start = shaken(&minimum, 1e-4, 7);

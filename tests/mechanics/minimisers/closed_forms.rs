@@ -108,7 +108,7 @@ fn disks_that_nothing_holds_run_away_from_their_sites_and_end_without_a_minimum(
 #[test]
 fn a_state_at_rest_is_left_as_it_was_found() {
     let packing = cross([0.0; 2]);
-    let mut assembly = Assembly::new(&packing, Hookean::default()).expect("no coincidence");
+    let mut assembly = Assembly::new(&packing, &Hookean::default()).expect("no coincidence");
     assert_eq!(assembly.evaluate_totals().contact_count, 4);
     for choice in all(1e-8) {
         let outcome = relax(&choice, packing.clone(), &Hookean::default());

@@ -15,7 +15,7 @@ use crate::scenes::starts::{inflated, points};
 
 #[test]
 fn the_energy_never_increases() {
-    fn check<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) {
+    fn check<const D: usize>(packing: &Packing<D>, law: &dyn PairLaw) {
         for choice in minimisers(1e-10) {
             let mut checks = Vec::new();
             let trace = &mut |check: &Check| checks.push(*check);

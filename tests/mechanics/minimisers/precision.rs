@@ -56,7 +56,7 @@ fn as_few_steps_as_in_double_precision() {
 /// From random points as well, loose and dense, and to the same end where only one is near.
 #[test]
 fn random_points_come_to_rest() {
-    fn check<L: PairLaw>(law: L) {
+    fn check(law: impl PairLaw + Copy) {
         for fraction in [0.5, 0.84, 0.9, 1.3] {
             for seed in 0..4 {
                 let outcome = relax(&fire(Precision::Mixed, 1e-12), points::<2>(200, fraction, seed), &law);

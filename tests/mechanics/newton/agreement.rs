@@ -42,7 +42,7 @@ proptest! {
 
 #[test]
 fn newton_and_fire_meet_in_a_minimum_near_by() {
-    fn check<L: PairLaw>(law: L, name: &str) {
+    fn check(law: impl PairLaw + Copy, name: &str) {
         let limit = 1e-11;
         let minimum = at_rest(relax(&fire(1e-12), inflated(name, 5), &law));
         let start = shaken(&minimum, 1e-4, 7);

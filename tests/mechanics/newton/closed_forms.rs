@@ -110,7 +110,7 @@ fn a_rattler_that_is_almost_free_costs_no_factorisation() {
 #[test]
 fn assemblies_are_left_where_they_were_found_when_nothing_is_to_do() {
     let packing = cross([0.0; 2]);
-    let mut assembly = Assembly::new(&packing, hookean()).expect("no coincidence");
+    let mut assembly = Assembly::new(&packing, &hookean()).expect("no coincidence");
     assert_eq!(assembly.evaluate_totals().contact_count, 4);
     let outcome = relax(&newton(1e-8), packing.clone(), &hookean());
     assert_eq!((outcome.state, outcome.cost.factorisation_count, outcome.cost.step_count), (packing, 0, 0));

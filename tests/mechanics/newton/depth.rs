@@ -30,7 +30,7 @@ fn a_limit_of_zero_ends_at_the_rounding_floor() {
 /// The work of inflated packings after FIRE's stage, and how deep they get.
 #[test]
 fn inflated_packings_come_to_rest_at_rounding_with_few_factorisations() {
-    fn check<L: PairLaw>(law: L, name: &str, most: usize) {
+    fn check(law: impl PairLaw + Copy, name: &str, most: usize) {
         for index in [0, 1, 2] {
             let outcome = relax(&staged(1e-12), inflated(name, index), &law);
             let (made, residual) = (outcome.cost.factorisation_count, outcome.residual.relative());
@@ -61,7 +61,7 @@ fn inflated_packings_come_to_rest_at_rounding_with_few_factorisations() {
 
 #[test]
 fn random_points_come_to_rest_at_rounding() {
-    fn check<const D: usize, L: PairLaw>(law: L, count: usize, fraction: f64) {
+    fn check<const D: usize>(law: impl PairLaw + Copy, count: usize, fraction: f64) {
         for seed in [1, 2] {
             let outcome = relax(&staged(1e-12), points::<D>(count, fraction, seed), &law);
             println!(
@@ -74,10 +74,10 @@ fn random_points_come_to_rest_at_rounding() {
             assert!(outcome.cost.factorisation_count > 0);
         }
     }
-    check::<2, _>(hertzian(), 400, 0.86);
-    check::<2, _>(hertzian(), 400, 1.0);
-    check::<2, _>(hookean(), 400, 0.9);
-    check::<2, _>(PowerLaw { energy_scale: 1e5, exponent: 3.0 }, 400, 0.95);
-    check::<3, _>(hertzian(), 200, 0.8);
-    check::<3, _>(hookean(), 200, 0.75);
+    check::<2>(hertzian(), 400, 0.86);
+    check::<2>(hertzian(), 400, 1.0);
+    check::<2>(hookean(), 400, 0.9);
+    check::<2>(PowerLaw { energy_scale: 1e5, exponent: 3.0 }, 400, 0.95);
+    check::<3>(hertzian(), 200, 0.8);
+    check::<3>(hookean(), 200, 0.75);
 }

@@ -20,7 +20,7 @@ use crate::scenes::starts::{inflated, points, shaken};
 
 /// What the second derivatives of the contact forces make of a step s: |D²f[s, s]| ≤ F'' s_n² + 2 (F'/r + F/r²) s² a contact, half of it
 /// for each disk. F = F' δ/(α − 1) gives F'' = F' (α − 2)/δ.
-fn remainders<L: PairLaw>(network: &ContactNetwork<2>, law: &L, step: &[Vector<2>]) -> Vec<f64> {
+fn remainders(network: &ContactNetwork<2>, law: &dyn PairLaw, step: &[Vector<2>]) -> Vec<f64> {
     let mut rows = vec![0.0; step.len()];
     for contact in &network.contacts {
         let (first, second) = (contact.first as usize, contact.second as usize);
@@ -90,7 +90,7 @@ fn the_residual_is_squared_at_each_step_near_a_minimum() {
 /// promise of a fall): not a look may show that.
 #[test]
 fn the_energy_falls_where_contacts_that_close_make_the_whole_step_climb() {
-    fn check<L: PairLaw>(law: L, name: &str) {
+    fn check(law: impl PairLaw + Copy, name: &str) {
         let near = at_rest(relax(&fire(1e-4), inflated(name, 0), &law));
         let mut checks = Vec::new();
         let settings = Newton { step_limit: 40, ..newton(1e-12) };
@@ -109,7 +109,7 @@ proptest! {
 
     #[test]
     fn the_energy_of_newton_never_increases(seed in 0..1000u64, fraction in 0.8..1.3f64, law in 0..3usize) {
-        fn check<const D: usize, L: PairLaw>(packing: Packing<D>, law: &L) {
+        fn check<const D: usize>(packing: Packing<D>, law: &dyn PairLaw) {
             let settings = Newton { step_limit: 60, ..newton(1e-10) };
             let mut checks = Vec::new();
             let _ = settings.relax(packing, law, &mut |check: &Check| checks.push(*check)).expect("no coincidence");
@@ -125,7 +125,7 @@ proptest! {
 
 #[test]
 fn a_saddle_is_left_downhill() {
-    fn check<L: PairLaw>(law: L) {
+    fn check(law: impl PairLaw + Copy) {
         let energy = |packing: &Packing<2>| ContactNetwork::new(packing, &law).expect("no coincidence").energy();
         let lattice_energy = energy(&square_lattice(6, f64::exp2(-6.0), 0.0));
         // The columns move out until the rows no longer touch: the half of the energy that the rows had is gone at least.

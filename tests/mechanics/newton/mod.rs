@@ -29,7 +29,7 @@ fn fire(limit: f64) -> Fire {
 }
 
 /// Softest stiffness of the backbone of a packing with held disks, by inverse iteration: an upper bound that falls to it.
-fn softest<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> f64 {
+fn softest<const D: usize>(packing: &Packing<D>, law: &dyn PairLaw) -> f64 {
     let hessian = Hessian::new(packing, law, Members::Backbone, Prestress::Included).expect("no coincidence");
     let matrix = hessian.matrix();
     let mut analysis = Analysis::of(&hessian).expect("small");
@@ -49,7 +49,7 @@ fn softest<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> f64 {
 }
 
 /// How far two states at rest to this relative limit may be apart: |u| ≤ |F|/λ_min each, |F| ≤ √N times the largest.
-fn allowed<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L, limit: f64) -> f64 {
+fn allowed<const D: usize>(packing: &Packing<D>, law: &dyn PairLaw, limit: f64) -> f64 {
     let mean = ContactNetwork::new(packing, law).expect("no coincidence").mean_contact_force();
     2.0 * limit * mean * (packing.len() as f64).sqrt() / softest(packing, law)
 }

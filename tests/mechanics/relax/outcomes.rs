@@ -27,7 +27,7 @@ fn a_limit_of_zero_ends_at_the_rounding_floor() {
         assert!(floor < 3e-14, "floor {floor:e}");
         let network = ContactNetwork::new(&outcome.state, &hertzian()).expect("no coincidence");
         assert!(network.coordination() >= 3.0);
-        let again = rounding_floor(&Assembly::new(&outcome.state, hertzian()).expect("no coincidence"));
+        let again = rounding_floor(&Assembly::new(&outcome.state, &hertzian()).expect("no coincidence"));
         assert!(again <= floor, "new anchors raise the floor: {again:e} from {floor:e}");
     }
 }

@@ -7,7 +7,7 @@ use jamscope::relax::{Outcome, Relaxer};
 use jamscope::vector::{Vector, larger, norm};
 
 /// Where a relaxer ends, converged or not.
-pub fn relax<const D: usize, L: PairLaw>(relaxer: &impl Relaxer, packing: Packing<D>, law: &L) -> Outcome<Packing<D>> {
+pub fn relax<const D: usize>(relaxer: &impl Relaxer, packing: Packing<D>, law: &dyn PairLaw) -> Outcome<Packing<D>> {
     relaxer.relax(packing, law, &mut ()).expect("no coincidence")
 }
 
@@ -24,7 +24,7 @@ pub fn moved<const D: usize>(one: &Packing<D>, two: &Packing<D>, disk: usize) ->
 }
 
 /// Largest distance of a backbone disk between two states.
-pub fn apart<const D: usize, L: PairLaw>(one: &Packing<D>, two: &Packing<D>, law: &L) -> f64 {
+pub fn apart<const D: usize>(one: &Packing<D>, two: &Packing<D>, law: &dyn PairLaw) -> f64 {
     let backbone = ContactNetwork::new(one, law).expect("no coincidence").backbone;
     (0..one.len()).filter(|&disk| backbone[disk]).map(|disk| norm(moved(one, two, disk))).fold(0.0, larger)
 }

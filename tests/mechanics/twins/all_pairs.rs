@@ -58,7 +58,7 @@ pub struct Mechanics<const D: usize> {
 }
 
 /// The plainest evaluation of a packing under a law.
-pub fn mechanics<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> Mechanics<D> {
+pub fn mechanics<const D: usize>(packing: &Packing<D>, law: &dyn PairLaw) -> Mechanics<D> {
     let mut total = Mechanics {
         energy: 0.0,
         virial: [[0.0; D]; D],

@@ -30,7 +30,7 @@ use super::generator;
 use crate::lammps_inflated::{INFLATED_RADIUS, Inflated as Stored};
 
 /// A state at rest, its pressure that of the circle of LAMMPS.
-fn rest(stored: &Stored, packing: Packing<2>, law: &impl PairLaw, limit: ForceLimit) -> Rest<2> {
+fn rest(stored: &Stored, packing: Packing<2>, law: &dyn PairLaw, limit: ForceLimit) -> Rest<2> {
     let fire = Fire { limit, ..Fire::default() };
     let outcome = fire.relax(packing, law, &mut ()).expect("no coincidence");
     let Outcome { residual, rounding_floor, cost, stop: Stop::Converged(criterion), .. } = outcome else {
@@ -65,7 +65,7 @@ fn inflated(stored: &Stored, before: Rest<2>, after: Rest<2>) -> Inflated<2> {
 }
 
 /// LAMMPS's states as they are: so lenient a limit that nothing moves.
-fn theirs(stored: &Stored, law: &impl PairLaw) -> Inflated<2> {
+fn theirs(stored: &Stored, law: &dyn PairLaw) -> Inflated<2> {
     let [before, after] = [stored.before(0.5), stored.packing(stored.after.clone(), INFLATED_RADIUS)].map(|packing| {
         let positions = packing.positions().to_vec();
         let rest = rest(stored, packing, law, ForceLimit::Absolute(0.1));
@@ -124,12 +124,12 @@ fn spectrum_and_correlation(ring: &RingSample) -> Vec<f64> {
 }
 
 /// Pairs of disks and the overlaps of the nearer.
-fn pairs(rest: &Rest<2>, law: &impl PairLaw) -> BTreeSet<(u32, u32)> {
+fn pairs(rest: &Rest<2>, law: &dyn PairLaw) -> BTreeSet<(u32, u32)> {
     let network = ContactNetwork::new(rest.packing.get(), law).expect("no coincidence");
     network.contacts.iter().map(|contact| (contact.first, contact.second)).collect()
 }
 
-fn observables_agree(stored: &Stored, ours: &Inflated<2>, law: &impl PairLaw) {
+fn observables_agree(stored: &Stored, ours: &Inflated<2>, law: &dyn PairLaw) {
     let (name, theirs) = (stored.name.as_str(), &theirs(stored, law));
     let network = ContactNetwork::new(ours.after.packing.get(), law).expect("no coincidence");
     let distance = stored.distance(ours.after.packing.get(), &network);
@@ -258,7 +258,7 @@ fn observables_agree(stored: &Stored, ours: &Inflated<2>, law: &impl PairLaw) {
 }
 
 /// From the inflated start, by FIRE.
-fn ours(stored: &Stored, law: &impl PairLaw) -> Inflated<2> {
+fn ours(stored: &Stored, law: &dyn PairLaw) -> Inflated<2> {
     let exact = ForceLimit::Relative(1e-12);
     let before = rest(stored, stored.before(0.5), law, exact);
     inflated(stored, before, rest(stored, stored.before(INFLATED_RADIUS), law, exact))

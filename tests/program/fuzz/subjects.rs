@@ -62,7 +62,7 @@ fn inspected<const D: usize>(path: &Path, law: LawChoice) -> Fault {
     measured.or_else(|| written(&packing, &path.with_extension("copy.xyz")))
 }
 
-fn measured<const D: usize, L: PairLaw>(packing: &Packing<D>, law: &L) -> Fault {
+fn measured<const D: usize>(packing: &Packing<D>, law: &dyn PairLaw) -> Fault {
     let named = |error: &dyn std::fmt::Display| {
         let message = error.to_string();
         let said = PACKING_FIELDS.iter().any(|field| message.contains(field));

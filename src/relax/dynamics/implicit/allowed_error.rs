@@ -1,7 +1,5 @@
 //! [`AllowedError`]: the largest error allowed in a step of a motion.
 
-use crate::law::damping::DampingLaw;
-use crate::law::pair_law::PairLaw;
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
 use crate::vector::larger;
 
@@ -21,10 +19,10 @@ pub(crate) struct AllowedError<'a> {
 
 impl AllowedError<'_> {
     /// Largest error of a disk in the last step over the allowed one \[1\]; NaN if an error is NaN.
-    pub(crate) fn largest_ratio<const D: usize, L: PairLaw, C: DampingLaw>(
+    pub(crate) fn largest_ratio<const D: usize>(
         &self,
-        motion: &ImplicitMotion<D, L, C>,
-        error: impl Fn(&ImplicitMotion<D, L, C>, usize) -> f64,
+        motion: &ImplicitMotion<D>,
+        error: impl Fn(&ImplicitMotion<D>, usize) -> f64,
     ) -> f64 {
         let of_disk = |disk: usize| error(motion, disk) * self.weight(disk);
         (0..motion.assembly.mobile_count()).map(of_disk).fold(0.0, |most, error| larger(error, most))

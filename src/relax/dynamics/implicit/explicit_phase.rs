@@ -1,8 +1,6 @@
 //! Phases of explicit steps, by velocity Verlet.
 
 use crate::forces::totals::Totals;
-use crate::law::damping::DampingLaw;
-use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::dynamics::energy_balance::{Energies, EnergyBalance};
 use crate::relax::dynamics::explicit_step::ExplicitStep;
@@ -13,22 +11,22 @@ use crate::relax::outcome::{Cost, Stop};
 use crate::vector::scaled;
 
 /// A trial phase of explicit steps. The original motion is unchanged.
-pub(crate) struct ExplicitPhase<const D: usize, L, C> {
-    motion: Motion<D, L, C>,
+pub(crate) struct ExplicitPhase<const D: usize> {
+    motion: Motion<D>,
     totals: Totals<D>,
     time: f64,
     dissipated: f64,
     peak: f64,
 }
 
-impl<const D: usize, L: PairLaw, C: DampingLaw> ExplicitPhase<D, L, C> {
+impl<const D: usize> ExplicitPhase<D> {
     /// Energies at its end.
     pub(crate) fn energies(&self) -> Energies {
         Energies::new(&self.totals, self.motion.kinetic_energy(), self.dissipated).with_peak(self.peak)
     }
 }
 
-impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
+impl<const D: usize> ImplicitMotion<D> {
     /// Tries this many explicit steps of damped dynamics.
     ///
     /// # Errors
@@ -37,7 +35,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         &mut self,
         count: usize,
         step: &mut ExplicitStep,
-    ) -> Result<ExplicitPhase<D, L, C>, PackingError> {
+    ) -> Result<ExplicitPhase<D>, PackingError> {
         let mut motion = Motion::moving(self.assembly.clone(), &self.velocities, &self.damping);
         let mut time = self.time;
         for _ in 0..count {
@@ -53,7 +51,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
 
     /// Continues from the end of a phase. `ahead` is the length of the next step, over which contacts may close
     /// \[time\].
-    pub(crate) fn accept_phase(&mut self, phase: ExplicitPhase<D, L, C>, ahead: f64) -> Totals<D> {
+    pub(crate) fn accept_phase(&mut self, phase: ExplicitPhase<D>, ahead: f64) -> Totals<D> {
         let ExplicitPhase { motion, time, dissipated, .. } = phase;
         (self.time, self.dissipated) = (time, dissipated);
         self.velocities.copy_from_slice(&motion.velocities[..self.assembly.mobile_count()]);
@@ -74,8 +72,8 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
 }
 
 /// Takes the explicit steps selected by [`MethodSelection`]. `time_step` becomes that of the next implicit trial step.
-pub(crate) fn explicit_phase<const D: usize, L: PairLaw, C: DampingLaw>(
-    motion: &mut ImplicitMotion<D, L, C>,
+pub(crate) fn explicit_phase<const D: usize>(
+    motion: &mut ImplicitMotion<D>,
     selection: &mut MethodSelection,
     time_step: &mut f64,
     (cost, balance): (&mut Cost, &mut EnergyBalance),

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::forces::assembly::Assembly;
 use crate::forces::totals::Totals;
-use crate::law::damping::DampingLaw;
+use crate::law::damping::ContactDamping;
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::for_each_pair::for_each_pair;
 use crate::packing::{Packing, PackingError};
@@ -51,11 +51,11 @@ const SMALLEST_OVERLAP: f64 = 1e-6;
 const LARGEST_SCALED_STIFFNESS: f64 = 1e12;
 
 impl Integration {
-    pub(crate) fn relax<const D: usize, L: PairLaw, C: DampingLaw>(
+    pub(crate) fn relax<const D: usize>(
         &self,
         packing: Packing<D>,
-        law: &L,
-        damping: &C,
+        law: &dyn PairLaw,
+        damping: &ContactDamping,
         inertia: Inertia,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
@@ -79,10 +79,10 @@ impl Integration {
         Ok(Outcome { state: assembly.placed(packing), stop, residual, rounding_floor, cost })
     }
 
-    fn run<const D: usize, L: PairLaw, C: DampingLaw>(
+    fn run<const D: usize>(
         &self,
         mut totals: Totals<D>,
-        motion: &mut ImplicitMotion<D, L, C>,
+        motion: &mut ImplicitMotion<D>,
         monitor: &mut Monitor,
         (cost, balance): (&mut Cost, &mut EnergyBalance),
         trace: &mut dyn Trace,
@@ -175,9 +175,9 @@ impl Integration {
 
     /// One implicit step, repeated with shorter lengths until its error is small enough. `time_step` becomes that of
     /// the next step. Returns None if another method is cheaper than such a short step.
-    fn advance<const D: usize, L: PairLaw, C: DampingLaw>(
+    fn advance<const D: usize>(
         &self,
-        motion: &mut ImplicitMotion<D, L, C>,
+        motion: &mut ImplicitMotion<D>,
         (cost, balance): (&mut Cost, &mut EnergyBalance),
         time_step: &mut f64,
         (allowed, selection): (&AllowedError<'_>, Option<&MethodSelection>),
@@ -221,10 +221,7 @@ impl Integration {
     }
 
     /// The net forces to which the limit applies.
-    fn net_forces<'a, const D: usize, L: PairLaw, C: DampingLaw>(
-        &self,
-        motion: &'a ImplicitMotion<D, L, C>,
-    ) -> &'a [Vector<D>] {
+    fn net_forces<'a, const D: usize>(&self, motion: &'a ImplicitMotion<D>) -> &'a [Vector<D>] {
         match self.net_force {
             NetForce::Elastic => &motion.assembly.forces[..motion.assembly.mobile_count()],
             NetForce::Total => motion.net_forces(),
@@ -234,7 +231,7 @@ impl Integration {
 
 /// The median overlap of all contacts \[length\]. It does not depend on the few overlaps that an inflation makes a
 /// thousand times larger.
-fn typical_overlap<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, overlaps: &mut Vec<f64>) -> f64 {
+fn typical_overlap<const D: usize>(assembly: &Assembly<D>, overlaps: &mut Vec<f64>) -> f64 {
     let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
     overlaps.clear();
     for_each_pair(assembly.pairs(), &assembly.displacements, &mut |pair| {
@@ -248,7 +245,7 @@ fn typical_overlap<const D: usize, L: PairLaw>(assembly: &Assembly<D, L>, overla
 }
 
 /// The step in which the largest force moves a disk by the allowed error.
-fn first_step<const D: usize, L: PairLaw, C: DampingLaw>(motion: &ImplicitMotion<D, L, C>, allowed: f64) -> f64 {
+fn first_step<const D: usize>(motion: &ImplicitMotion<D>, allowed: f64) -> f64 {
     let largest = motion.net_forces().iter().fold(0.0, |most, &force| larger(norm(force), most));
     let step = motion.time_to_move(allowed, largest);
     // Without forces any length serves, because the next check finds mechanical equilibrium.

@@ -14,8 +14,6 @@
 //! oscillations are weakly damped. After a phase of explicit steps an implicit step of 2 E h_x/V is tried. If it fails
 //! at once, the next phase is twice as long.
 
-use crate::law::damping::DampingLaw;
-use crate::law::pair_law::PairLaw;
 use crate::relax::dynamics::explicit_step::ExplicitStep;
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
 use crate::relax::dynamics::implicit::rkc::coefficients::Stiffness;
@@ -76,7 +74,7 @@ pub(crate) struct MethodSelection {
 }
 
 impl MethodSelection {
-    pub(crate) fn new<const D: usize, L: PairLaw, C: DampingLaw>(motion: &mut ImplicitMotion<D, L, C>) -> Self {
+    pub(crate) fn new<const D: usize>(motion: &mut ImplicitMotion<D>) -> Self {
         let implicit_cost = IMPLICIT_COST * libm::pow(motion.assembly.mobile_count() as f64, 0.125);
         let explicit_step = if motion.has_masses() { SHARE * motion.stable_step() } else { 0.0 };
         let stiffness = motion.stiffness();

@@ -14,7 +14,7 @@
 use crate::forces::assembly::Assembly;
 use crate::forces::damped::add_damping;
 use crate::forces::totals::Totals;
-use crate::law::damping::DampingLaw;
+use crate::law::damping::ContactDamping;
 use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
 use crate::relax::column_operations::products;
@@ -34,9 +34,9 @@ pub(super) struct Stage<const D: usize> {
 }
 
 /// A packing in motion under elastic and damping forces.
-pub struct ImplicitMotion<const D: usize, L, C> {
+pub struct ImplicitMotion<const D: usize> {
     /// Positions and elastic forces.
-    pub assembly: Assembly<D, L>,
+    pub assembly: Assembly<D>,
     /// Velocities of the mobile disks in working order; 0 for gradient flow \[length / time\].
     pub velocities: Vec<Vector<D>>,
     /// Work of damping and friction since the start \[energy\].
@@ -52,7 +52,7 @@ pub struct ImplicitMotion<const D: usize, L, C> {
     /// Initially all are marked.
     pub prestressed: Vec<bool>,
     pub(super) inertia: Inertia,
-    pub(super) damping: C,
+    pub(super) damping: ContactDamping,
     pub(super) damping_coefficient: Vec<f64>,
     /// Elastic and damping forces at the present positions and velocities.
     pub(super) net_forces: Vec<Vector<D>>,
@@ -77,8 +77,8 @@ pub struct ImplicitMotion<const D: usize, L, C> {
 }
 
 /// A motion at the start of a phase.
-pub(crate) struct Snapshot<const D: usize, L> {
-    assembly: Assembly<D, L>,
+pub(crate) struct Snapshot<const D: usize> {
+    assembly: Assembly<D>,
     velocities: Vec<Vector<D>>,
     dissipated: f64,
     time: f64,
@@ -95,13 +95,18 @@ pub(super) struct Before<const D: usize> {
     pub(super) time: f64,
 }
 
-impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
+impl<const D: usize> ImplicitMotion<D> {
     /// A packing at rest. A `damping` without rate belongs to gradient flow.
     ///
     /// # Errors
     /// As [`Assembly::new`].
-    pub fn new(packing: &Packing<D>, law: &L, damping: &C, inertia: Inertia) -> Result<Self, PackingError> {
-        let assembly = Assembly::new(packing, *law)?;
+    pub fn new(
+        packing: &Packing<D>,
+        law: &dyn PairLaw,
+        damping: &ContactDamping,
+        inertia: Inertia,
+    ) -> Result<Self, PackingError> {
+        let assembly = Assembly::new(packing, law)?;
         let mobile = assembly.mobile_count();
         let zero = vec![[0.0; D]; mobile];
         let mut motion = ImplicitMotion {
@@ -223,7 +228,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     }
 
     /// A copy of everything that a phase changes.
-    pub(crate) fn snapshot(&self) -> Snapshot<D, L> {
+    pub(crate) fn snapshot(&self) -> Snapshot<D> {
         Snapshot {
             assembly: self.assembly.clone(),
             velocities: self.velocities.clone(),
@@ -236,7 +241,7 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
     ///
     /// # Errors
     /// Two disks with the same centre.
-    pub(crate) fn return_to(&mut self, snapshot: Snapshot<D, L>) -> Result<(), PackingError> {
+    pub(crate) fn return_to(&mut self, snapshot: Snapshot<D>) -> Result<(), PackingError> {
         let Snapshot { assembly, velocities, dissipated, time } = snapshot;
         (self.assembly, self.velocities, self.dissipated, self.time) = (assembly, velocities, dissipated, time);
         self.taken_back = true;

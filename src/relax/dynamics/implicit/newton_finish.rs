@@ -8,8 +8,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::law::damping::DampingLaw;
-use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::convergence::Monitor;
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
@@ -118,9 +116,9 @@ impl<const D: usize> NewtonFinish<D> {
     ///
     /// # Errors
     /// Two disks with the same centre.
-    pub(crate) fn attempt<L: PairLaw, C: DampingLaw>(
+    pub(crate) fn attempt(
         &mut self,
-        motion: &mut ImplicitMotion<D, L, C>,
+        motion: &mut ImplicitMotion<D>,
         monitor: &mut Monitor,
         cost: &mut Cost,
         at: &FinishState,

@@ -78,10 +78,10 @@ impl Default for GradientFlow {
 }
 
 impl Relaxer for ImplicitDynamics {
-    fn relax<const D: usize, L: PairLaw>(
+    fn relax<const D: usize>(
         &self,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let run = Integration {
@@ -100,10 +100,10 @@ impl Relaxer for ImplicitDynamics {
 }
 
 impl Relaxer for GradientFlow {
-    fn relax<const D: usize, L: PairLaw>(
+    fn relax<const D: usize>(
         &self,
         packing: Packing<D>,
-        law: &L,
+        law: &dyn PairLaw,
         trace: &mut dyn Trace,
     ) -> Result<Outcome<Packing<D>>, PackingError> {
         let run = Integration {

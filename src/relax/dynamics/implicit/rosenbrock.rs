@@ -1,8 +1,6 @@
 //! One step of the Rosenbrock method of [`super::tableau`]: matrix, four stages, error.
 
 use crate::forces::totals::Totals;
-use crate::law::damping::DampingLaw;
-use crate::law::pair_law::PairLaw;
 use crate::linear::LinearError;
 use crate::packing::PackingError;
 use crate::relax::dynamics::implicit::inertia::{Inertia, Stepped};
@@ -11,7 +9,7 @@ use crate::relax::dynamics::implicit::step_matrix::{PreparedMatrix, StepMatrix, 
 use crate::relax::dynamics::implicit::tableau::{ROS34PW2, STAGE_COUNT};
 use crate::vector::{difference, dot, larger, scaled, sum};
 
-impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
+impl<const D: usize> ImplicitMotion<D> {
     /// One step of length h \[time\]; [`ImplicitMotion::take_back`] undoes it.
     ///
     /// # Errors

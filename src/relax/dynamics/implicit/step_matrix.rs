@@ -9,8 +9,7 @@
 //! incomplete factor need only a few matrix products. Otherwise a Cholesky factor serves all stages.
 
 use crate::forces::assembly::Assembly;
-use crate::law::damping::DampingLaw;
-use crate::law::pair_law::PairLaw;
+use crate::law::damping::ContactDamping;
 use crate::linear::hessian::{Hessian, Members, Prestress};
 use crate::linear::iterative::{IncompleteFactor, IterationLimits, conjugate_gradients};
 use crate::linear::{Analysis, Factorisation, LinearError};
@@ -39,11 +38,11 @@ pub(crate) struct Link<const D: usize> {
 }
 
 /// The terms that a step adds to the matrix.
-pub(crate) struct StepTerms<'a, C> {
+pub(crate) struct StepTerms<'a> {
     /// hg, step times diagonal coefficient of the tableau \[time\].
     pub(crate) scale: f64,
     pub(crate) inertia: Inertia,
-    pub(crate) damping: &'a C,
+    pub(crate) damping: &'a ContactDamping,
     /// One per pair.
     pub(crate) damping_coefficient: &'a [f64],
     /// See [`ImplicitMotion::margin`](super::ImplicitMotion::margin).
@@ -80,7 +79,7 @@ enum Solver<'a> {
 }
 
 impl<const D: usize> StepMatrix<D> {
-    pub(crate) fn of<L: PairLaw>(assembly: &Assembly<D, L>) -> Self {
+    pub(crate) fn of(assembly: &Assembly<D>) -> Self {
         StepMatrix {
             hessian: Hessian::of(assembly, Members::Mobile, Prestress::Included),
             matrix: SymmetricMatrix::default(),
@@ -98,10 +97,10 @@ impl<const D: usize> StepMatrix<D> {
     }
 
     /// The matrix of a step from the present state, factorised or prepared for conjugate gradients.
-    pub(crate) fn set<L: PairLaw, C: DampingLaw>(
+    pub(crate) fn set(
         &mut self,
-        assembly: &Assembly<D, L>,
-        terms: &StepTerms<'_, C>,
+        assembly: &Assembly<D>,
+        terms: &StepTerms<'_>,
         work: &mut Work,
     ) -> Result<PreparedMatrix<'_, D>, LinearError> {
         self.set_links(assembly, terms);
@@ -142,7 +141,7 @@ impl<const D: usize> StepMatrix<D> {
     }
 
     /// The pairs in the matrix: those in contact, and those that may touch during the step.
-    fn set_links<L: PairLaw, C: DampingLaw>(&mut self, assembly: &Assembly<D, L>, terms: &StepTerms<'_, C>) {
+    fn set_links(&mut self, assembly: &Assembly<D>, terms: &StepTerms<'_>) {
         let (pairs, law) = (assembly.pairs(), assembly.law());
         let last = |disk: u32| self.last_distances.get(disk as usize).copied().unwrap_or(0.0);
         self.links.clear();

@@ -13,8 +13,6 @@
 //! Savcenco, Hundsdorfer, Verwer (2007), BIT Numer. Math. 47, 137: first one step for all components, then shorter
 //! steps for those whose error is too large, with the others interpolated.
 
-use crate::law::damping::DampingLaw;
-use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::dynamics::implicit::motion::ImplicitMotion;
 use crate::relax::dynamics::implicit::multirate::patch::{Patch, PatchDisks};
@@ -39,7 +37,7 @@ const LARGEST_SHARE: f64 = 0.25;
 /// Displacement for which the list must be complete, over the width of the skin. At most half of the skin is possible.
 const LISTED_SKIN: f64 = 0.25;
 
-impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
+impl<const D: usize> ImplicitMotion<D> {
     /// Repeats the last stabilised step around some disks. Returns false if that is impossible: the step must then be
     /// taken back.
     ///
@@ -127,8 +125,8 @@ impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
         fast: &PatchDisks<'_, impl Fn(usize, f64) -> f64>,
         patch: &mut Patch<D>,
     ) -> Option<f64> {
-        let (law, time_step) = (*self.assembly.law(), fast.time_step);
-        let laws = (&law, &self.damping);
+        let (law, time_step) = (self.assembly.shared_law(), fast.time_step);
+        let laws = (law.as_ref(), &self.damping);
         patch.set_damping(&self.damping, self.assembly.radii());
         // Held disks have neither displacement nor velocity.
         let of_disk = |column: &[Vector<D>], disk: u32| column.get(disk as usize).copied().unwrap_or([0.0; D]);
@@ -179,11 +177,11 @@ fn total<const D: usize>(vectors: &[Vector<D>]) -> Vector<D> {
 mod tests {
     use super::*;
     use crate::io::read_packing;
-    use crate::law::damping::ConstantDamping;
+    use crate::law::damping::{ConstantDamping, ContactDamping};
     use crate::law::power_laws::Hertzian;
     use crate::relax::dynamics::implicit::inertia::Inertia;
 
-    type Motion = ImplicitMotion<2, Hertzian, ConstantDamping>;
+    type Motion = ImplicitMotion<2>;
 
     /// Length of a step that is too long for a few disks.
     const STEP: f64 = 0.01;
@@ -195,7 +193,7 @@ mod tests {
     fn knocked() -> Motion {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N5548_p100.xyz");
         let packing = read_packing::<2>(file).expect("a stored packing");
-        let (law, damping) = (Hertzian::default(), ConstantDamping { rate: 500.0 });
+        let (law, damping) = (Hertzian::default(), ContactDamping::Constant(ConstantDamping { rate: 500.0 }));
         let mut motion = ImplicitMotion::new(&packing, &law, &damping, Inertia::Massive).expect("no coincidence");
         motion.margin = 0.01;
         motion.velocities[2000] = [0.3, 0.15];

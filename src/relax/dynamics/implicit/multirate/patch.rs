@@ -8,7 +8,7 @@
 //! w is the displacement of an outer disk, h the long step.
 
 use crate::forces::damped::damped_forces;
-use crate::law::damping::DampingLaw;
+use crate::law::damping::ContactDamping;
 use crate::law::pair_law::PairLaw;
 use crate::neighbours::pair_list::PairList;
 use crate::relax::dynamics::implicit::rkc::coefficients::{Chebyshev, Stiffness};
@@ -153,7 +153,7 @@ impl<const D: usize> Patch<D> {
     }
 
     /// Sets the damping coefficients, from the radii of all disks.
-    pub(crate) fn set_damping(&mut self, damping: &impl DampingLaw, radii: &[f64]) {
+    pub(crate) fn set_damping(&mut self, damping: &ContactDamping, radii: &[f64]) {
         let radius = |place: u32| radii[self.disks[place as usize] as usize];
         let ends = self.pairs.first.iter().zip(&self.pairs.second);
         self.damping.clear();
@@ -180,9 +180,9 @@ impl<const D: usize> Patch<D> {
     }
 
     /// Repeats the long step, of length h \[time\], with interpolated outer disks. Stores its forces.
-    pub(crate) fn long_step<L: PairLaw, C: DampingLaw>(
+    pub(crate) fn long_step(
         &mut self,
-        laws: (&L, &C),
+        laws: (&dyn PairLaw, &ContactDamping),
         time_step: f64,
         method: &Chebyshev,
     ) -> LongStep {
@@ -199,9 +199,9 @@ impl<const D: usize> Patch<D> {
 
     /// Takes short steps over the long step. Returns the work of damping. Returns None if there are too many steps, or
     /// if a disk would move farther than `longest`.
-    pub(crate) fn short_steps<L: PairLaw, C: DampingLaw>(
+    pub(crate) fn short_steps(
         &mut self,
-        laws: (&L, &C),
+        laws: (&dyn PairLaw, &ContactDamping),
         longest: f64,
         fast: &PatchDisks<'_, impl Fn(usize, f64) -> f64>,
     ) -> Option<f64> {
@@ -244,7 +244,7 @@ impl<const D: usize> Patch<D> {
     }
 
     /// Sets everything to the start of the long step.
-    fn set_start<L: PairLaw, C: DampingLaw>(&mut self, laws: (&L, &C)) {
+    fn set_start(&mut self, laws: (&dyn PairLaw, &ContactDamping)) {
         self.displacements.clone_from(&self.start);
         self.stages.velocity.clone_from(&self.start_velocity);
         self.forces.resize(self.disks.len(), [0.0; D]);
@@ -266,9 +266,9 @@ impl<const D: usize> Patch<D> {
 
     /// One short step of the inner disks at this time of the long step. Returns the work of damping and a bound on
     /// displacements.
-    fn step<L: PairLaw, C: DampingLaw>(
+    fn step(
         &mut self,
-        laws: (&L, &C),
+        laws: (&dyn PairLaw, &ContactDamping),
         method: &Chebyshev,
         [time, time_step, whole]: [f64; 3],
     ) -> (f64, f64) {
@@ -311,7 +311,7 @@ impl<const D: usize> Patch<D> {
     }
 
     /// Evaluates forces and power at the present positions.
-    fn evaluate<L: PairLaw, C: DampingLaw>(&mut self, laws: (&L, &C)) {
+    fn evaluate(&mut self, laws: (&dyn PairLaw, &ContactDamping)) {
         self.pair_count += self.pairs.len();
         let (at, velocities) = (&self.displacements, &self.stages.velocity);
         self.power = damped_forces(laws, &self.pairs, &self.damping, at, velocities, &mut self.forces);

@@ -2,7 +2,6 @@
 
 use crate::forces::assembly::Assembly;
 use crate::forces::elastic::geometry;
-use crate::law::pair_law::PairLaw;
 use crate::neighbours::pair_list::PairList;
 use crate::relax::dynamics::implicit::multirate::patch::Patch;
 use crate::vector::{Vector, larger, norm};
@@ -76,9 +75,9 @@ impl<const D: usize> Shells<D> {
 
     /// Finds the shells of mobile disks around some disks; gaps up to `margin` count as contacts. Returns whether they
     /// contain at most `most` disks.
-    pub(crate) fn set_shells<L: PairLaw>(
+    pub(crate) fn set_shells(
         &mut self,
-        assembly: &Assembly<D, L>,
+        assembly: &Assembly<D>,
         (disks, last): (&[u32], u32),
         (margin, most): (f64, usize),
     ) -> bool {

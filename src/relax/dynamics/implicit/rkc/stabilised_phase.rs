@@ -1,8 +1,6 @@
 //! Phases of stabilised steps; the work of a phase is about that of an implicit step.
 
 use crate::forces::totals::Totals;
-use crate::law::damping::DampingLaw;
-use crate::law::pair_law::PairLaw;
 use crate::packing::PackingError;
 use crate::relax::dynamics::energy_balance::{Energies, EnergyBalance};
 use crate::relax::dynamics::implicit::allowed_error::AllowedError;
@@ -32,8 +30,8 @@ const RATIO_FROM_LONGEST: f64 = 20.0;
 
 /// Takes stabilised steps while they are cheapest, and repeats rejected ones with shorter lengths. `time_step` becomes
 /// the next one.
-pub(crate) fn rkc_phase<const D: usize, L: PairLaw, C: DampingLaw>(
-    motion: &mut ImplicitMotion<D, L, C>,
+pub(crate) fn rkc_phase<const D: usize>(
+    motion: &mut ImplicitMotion<D>,
     selection: &mut MethodSelection,
     time_step: &mut f64,
     (cost, balance): (&mut Cost, &mut EnergyBalance),

@@ -2,8 +2,6 @@
 //! stages.
 
 use crate::forces::damped::damped_forces;
-use crate::law::damping::DampingLaw;
-use crate::law::pair_law::PairLaw;
 use crate::neighbours::for_each_pair::{MovedPair, for_each_pair};
 use crate::packing::PackingError;
 use crate::relax::dynamics::implicit::inertia::Inertia;
@@ -12,7 +10,7 @@ use crate::relax::dynamics::implicit::rkc::coefficients::{Chebyshev, Stiffness};
 use crate::relax::dynamics::implicit::rkc::stages::{Stages, estimated_error};
 use crate::vector::{Vector, larger};
 
-impl<const D: usize, L: PairLaw, C: DampingLaw> ImplicitMotion<D, L, C> {
+impl<const D: usize> ImplicitMotion<D> {
     /// Stability requirement of stabilised steps, valid while no contact with a gap above [`ImplicitMotion::margin`]
     /// closes. None for gradient flow, and if stiff forces are undamped: an undamped contact, or sites.
     ///
@@ -169,14 +167,14 @@ mod tests {
     use super::*;
     use crate::forces::damped::add_damping;
     use crate::io::read_packing;
-    use crate::law::damping::ConstantDamping;
+    use crate::law::damping::{ConstantDamping, ContactDamping};
     use crate::law::power_laws::Hertzian;
     use crate::vector::{dot, scaled};
 
-    fn stored() -> ImplicitMotion<2, Hertzian, ConstantDamping> {
+    fn stored() -> ImplicitMotion<2> {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz");
         let packing = read_packing::<2>(file).expect("a stored packing");
-        let (law, damping) = (Hertzian::default(), ConstantDamping { rate: 500.0 });
+        let (law, damping) = (Hertzian::default(), ContactDamping::Constant(ConstantDamping { rate: 500.0 }));
         ImplicitMotion::new(&packing, &law, &damping, Inertia::Massive).expect("no coincidence")
     }
 
