@@ -45,7 +45,7 @@ pub fn fill<T: Send>(column: &mut Vec<T>, count: usize, make: impl Fn(usize) -> 
 /// # Panics
 /// If `work` panics.
 pub fn each<T: Send, R: Send>(pieces: impl Iterator<Item = T>, work: impl Fn(T) -> R + Send + Sync) -> Vec<R> {
-    // Plain loops: this is compiled for every piece of work, and each `collect` is some hundred lines of machine code.
+    // Plain loops: this is compiled once for every call site, and each `collect` is some hundred lines of machine code.
     let mut results = Vec::new();
     #[cfg(feature = "parallel")]
     {
@@ -61,9 +61,8 @@ pub fn each<T: Send, R: Send>(pieces: impl Iterator<Item = T>, work: impl Fn(T) 
         };
         for_each_index(places.len(), &at);
         for place in places {
-            if let Some(result) = place.into_inner().unwrap_or_else(PoisonError::into_inner).1 {
-                results.push(result);
-            }
+            let (_, result) = place.into_inner().unwrap_or_else(PoisonError::into_inner);
+            results.push(result.expect("every index comes once"));
         }
     }
     #[cfg(not(feature = "parallel"))]
@@ -73,7 +72,7 @@ pub fn each<T: Send, R: Send>(pieces: impl Iterator<Item = T>, work: impl Fn(T) 
     results
 }
 
-/// Calls `work` once for every index below `count`, on several threads if these are enough.
+/// Calls `work` once for every index below `count`, on several threads if there are enough indices.
 ///
 /// It is not generic, so the code of the thread pool is compiled only once.
 #[cfg(feature = "parallel")]

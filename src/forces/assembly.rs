@@ -139,7 +139,7 @@ impl<const D: usize> Assembly<D> {
         self.law.as_ref()
     }
 
-    /// The contact law, to be held by others.
+    /// The contact law, as a shared pointer.
     pub(crate) fn shared_law(&self) -> Arc<dyn PairLaw> {
         Arc::clone(&self.law)
     }

@@ -165,6 +165,9 @@ impl<const D: usize> WithSimd for Overlaps<'_, D> {
             inverse[k] = simd.mul_f64s(both, of_both);
             cache.prefetch(&block.distance, ahead + k * S::F64_LANES);
             cache.prefetch(&block.overlap, ahead + k * S::F64_LANES);
+            if anchors.has_coefficients {
+                cache.prefetch(&block.coefficient, ahead + k * S::F64_LANES);
+            }
         }
     }
 }
@@ -181,9 +184,7 @@ impl<const D: usize> WithSimd for Resolve<'_, D> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Resolve { columns, anchors } = self;
-        let (count, block) = (anchors.vector_count::<S>(), anchors.block);
-        let cache = Cache::here();
-        let ahead = places_ahead::<D>(cache);
+        let count = anchors.vector_count::<S>();
         let separation = columns.separation.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
         let force = &S::as_simd_f64s(&columns.force).0[..count];
         let inverse = &S::as_simd_f64s(&columns.inverse).0[..count];
@@ -192,9 +193,6 @@ impl<const D: usize> WithSimd for Resolve<'_, D> {
             let factor = simd.mul_f64s(force[k], inverse[k]);
             let along = separation.map(|column| simd.mul_f64s(factor, column[k]));
             components::join(simd, &along, &mut pair_forces[D * k..D * (k + 1)]);
-            if anchors.has_coefficients {
-                cache.prefetch(&block.coefficient, ahead + k * S::F64_LANES);
-            }
         }
     }
 }

@@ -53,7 +53,7 @@ pub fn damped_forces<const D: usize>(
     power
 }
 
-/// Subtracts the damping from the forces of the pairs of a block whose geometry is computed; returns its power.
+/// Subtracts the damping from the forces of a block; returns its power. Overlaps and forces must be computed before.
 struct Damping<'a, const D: usize> {
     law: &'a ContactDamping,
     coefficient: &'a [f64],

@@ -64,7 +64,9 @@ impl<const D: usize> Task<'_, D> {
             let anchors = Anchors::of(self.law, pairs, block);
             columns.compute_overlaps(&anchors);
             columns.compute_forces(self.law, &anchors);
-            self.law.stiffnesses(&columns.force, &columns.overlap, values.as_flattened_mut());
+            let count = block.pair_count;
+            let values_of_pairs = &mut values.as_flattened_mut()[..count];
+            self.law.stiffnesses(&columns.force[..count], &columns.overlap[..count], values_of_pairs);
             for ((pair, value), &overlap) in block.pairs().zip(&mut values).zip(&columns.overlap) {
                 let weighted = match self.weight {
                     Some(weight) if overlap > 0.0 => weight(pair, overlap, value[0]),

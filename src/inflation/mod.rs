@@ -75,8 +75,7 @@ pub fn inflate_with<const D: usize>(
     seed: u64,
     trace: &mut dyn Trace,
 ) -> Result<Inflated<D>, InflationError> {
-    let law = inflation.checked_law_with_sites(law)?;
-    let law = law.as_ref();
+    let law = &*inflation.checked_law_with_sites(law)?;
     let grown = Grown::new(inflation, packing, law, relaxer, seed, trace)?;
     let after = grown.rest(Stage::Inflated, grown.packing.clone(), law, relaxer, trace)?;
     let deflated = if inflation.deflate {

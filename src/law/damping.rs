@@ -4,9 +4,10 @@
 //! |---|---|
 //! | [`ConstantDamping`] | γ, as the model is usually printed |
 //! | [`ViscoelasticDamping`] on a Hertzian contact | γ m_eff √(δ R_ij), m_eff = 1/2, as LAMMPS `gran/hertz/history` computes it |
-//! | [`ViscoelasticDamping`] on a Hookean contact | γ m_eff, as LAMMPS `gran/hooke` computes it |
+//! | [`MassDamping`], for viscoelastic damping of a Hookean contact | γ m_eff, as LAMMPS `gran/hooke` computes it |
 //!
-//! The two lead to very different dynamics near jamming, so a scene specifies one of them.
+//! Constant and viscoelastic damping lead to very different dynamics near jamming. A scene names one of them
+//! ([`DampingChoice`]); with a contact law this is a [`ContactDamping`].
 
 use serde::{Deserialize, Serialize};
 
@@ -80,18 +81,6 @@ impl ContactDamping {
 impl From<ConstantDamping> for ContactDamping {
     fn from(law: ConstantDamping) -> Self {
         ContactDamping::Constant(law)
-    }
-}
-
-impl From<ViscoelasticDamping> for ContactDamping {
-    fn from(law: ViscoelasticDamping) -> Self {
-        ContactDamping::Viscoelastic(law)
-    }
-}
-
-impl From<MassDamping> for ContactDamping {
-    fn from(law: MassDamping) -> Self {
-        ContactDamping::Mass(law)
     }
 }
 

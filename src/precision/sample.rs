@@ -23,8 +23,7 @@ pub(super) fn of_sample(
     settings: &PrecisionSettings,
     progress: &dyn Progress,
 ) -> Result<SamplePrecision, RunError> {
-    let law = scene.inflation.checked_law_with_sites(law)?;
-    let law = law.as_ref();
+    let law = &*scene.inflation.checked_law_with_sites(law)?;
     let damping = damping_of(&sample.relaxer);
     let grown = Grown::new(&scene.inflation, packing, law, &sample.relaxer, sample.seed, &mut ())?;
     let rungs = if grown.before.criterion == Criterion::Unjammed {

@@ -93,6 +93,6 @@ impl<const D: usize> Compared<D> {
             None => network.cluster_pressure(ball_volume::<D>(inflated.outer_radius), |disk| disk > centre),
         };
         let law = inflation.law_with_sites(law);
-        Self::of_start(&start, &law, protocols, settings, before, pressure, trace)
+        Self::of_start(&start, law.as_ref(), protocols, settings, before, pressure, trace)
     }
 }

@@ -214,8 +214,7 @@ fn verdict(scene: &Scene, inflated: &Inflated<2>, law: &dyn PairLaw) -> Result<R
     fn state<'a>(rest: &'a Rest<2>, law: &dyn PairLaw) -> Result<State<'a, 2>, PackingError> {
         State::new(rest.packing.get(), law)
     }
-    let law = scene.inflation.law_with_sites(law);
-    let law = law.as_ref();
+    let law = &*scene.inflation.law_with_sites(law);
     let (before, after) = (state(&inflated.before, law)?, state(&inflated.after, law)?);
     let deflated = inflated.deflated.as_ref().map(|rest| state(rest, law)).transpose()?;
     let mut named = vec![("before", &before), ("after", &after)];

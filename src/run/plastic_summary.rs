@@ -17,8 +17,7 @@ pub(super) fn of(
     law: &dyn PairLaw,
     ring_width: f64,
 ) -> Result<PlasticSummary, LinearError> {
-    let law = inflation.law_with_sites(law);
-    let law = law.as_ref();
+    let law = &*inflation.law_with_sites(law);
     let (before, centre) = (inflated.before.packing.get(), inflated.centre);
     let response = LinearResponse::of_inflation(before, centre, law, Prestress::Included)?;
     let plastic = PlasticPart::of(inflated, &response);

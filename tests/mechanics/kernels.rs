@@ -16,7 +16,6 @@ use jamscope::relax::{DampedDynamics, Fire, ForceLimit, NonlinearConjugateGradie
 use jamscope::relax::{GradientFlow, ImplicitDynamics, Newton, Staged};
 use jamscope::vector::Vector;
 
-use crate::scenes::laws::{hertzian, hookean};
 use crate::scenes::starts::{inflated, points, shaken};
 
 /// What `work` gives with every kernel, which is to be one and the same.
@@ -124,30 +123,6 @@ fn relaxations_of_disks_end_in_the_same_bits_with_every_kernel() {
     // From random points disks go far: lists are rebuilt, and pairs inserted.
     check_relaxer(&fire, &points::<2>(400, 0.9, 5), Hertzian::default());
     check_relaxer(&Fire { precision: Precision::Mixed, ..fire }, &points::<2>(400, 0.9, 5), Hertzian::default());
-}
-
-/// The other tests of relaxers take laws that are chosen at run time: here those of a type of their own end where these do.
-#[test]
-fn a_law_chosen_at_run_time_has_the_bits_of_its_own_type() {
-    fn ends(relaxer: &impl Relaxer, start: Packing<2>, law: impl PairLaw + Copy) -> (Vec<u64>, Vec<u64>, usize) {
-        let outcome = relaxer.relax(start, &law, &mut ()).expect("disks apart");
-        (bits(outcome.state.positions()), bits(outcome.state.corrections()), outcome.cost.step_count)
-    }
-    fn check(relaxer: &impl Relaxer) {
-        let (hertzian_start, hookean_start) = (inflated("hertz_N1000_p10", 3), inflated("hooke_N1000_p10", 3));
-        assert_eq!(
-            ends(relaxer, hertzian_start.clone(), Hertzian::default()),
-            ends(relaxer, hertzian_start, hertzian())
-        );
-        assert_eq!(ends(relaxer, hookean_start.clone(), Hookean::default()), ends(relaxer, hookean_start, hookean()));
-    }
-    let limit = ForceLimit::Relative(1e-8);
-    for precision in [Precision::Double, Precision::Mixed] {
-        check(&Fire { limit, step_limit: STEPS, precision, ..Fire::default() });
-    }
-    check(&DampedDynamics { limit, step_limit: STEPS, ..DampedDynamics::default() });
-    #[cfg(feature = "linear")]
-    check(&Newton { limit, ..Newton::default() });
 }
 
 #[test]

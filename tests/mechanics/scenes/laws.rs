@@ -1,5 +1,4 @@
-//! The laws of the model as a scene has them: relaxers and matrices are then compiled once, not once a law. The types of the laws
-//! themselves are compared in `contact`, `kernels` and `stability`.
+//! The laws of the model as a scene has them.
 
 use jamscope::law::{Hertzian, Hookean, LawChoice};
 

@@ -125,8 +125,8 @@ impl<const D: usize> ImplicitMotion<D> {
         fast: &PatchDisks<'_, impl Fn(usize, f64) -> f64>,
         patch: &mut Patch<D>,
     ) -> Option<f64> {
-        let (law, time_step) = (self.assembly.shared_law(), fast.time_step);
-        let laws = (law.as_ref(), &self.damping);
+        let time_step = fast.time_step;
+        let laws = (self.assembly.law(), &self.damping);
         patch.set_damping(&self.damping, self.assembly.radii());
         // Held disks have neither displacement nor velocity.
         let of_disk = |column: &[Vector<D>], disk: u32| column.get(disk as usize).copied().unwrap_or([0.0; D]);
