@@ -46,7 +46,7 @@ pub fn damped_forces<const D: usize>(
         let anchors = Anchors::of(law, pairs, block);
         columns.compute_overlaps(&anchors);
         columns.compute_forces(law, &anchors);
-        power += processor::dispatch(Damping { law: damping, coefficient, relative_velocity, columns: &mut columns });
+        power += processor::dispatch(Damping { damping, coefficient, relative_velocity, columns: &mut columns });
         columns.resolve(&anchors);
         scatter(&columns.pair_vectors, pairs, block, (forces, 0));
     }
@@ -55,7 +55,7 @@ pub fn damped_forces<const D: usize>(
 
 /// Subtracts the damping from the forces of a block; returns its power. Overlaps and forces must be computed before.
 struct Damping<'a, const D: usize> {
-    law: &'a ContactDamping,
+    damping: &'a ContactDamping,
     coefficient: &'a [f64],
     /// Relative velocities.
     relative_velocity: &'a [Vector<D>],
@@ -79,7 +79,7 @@ impl<const D: usize> WithSimd for Damping<'_, D> {
                 along += relative_velocity[k][d] * separation[d][k];
             }
             let normal_velocity = along * inverse[k];
-            let resistance = self.law.damping(coefficient[k], overlap[k]);
+            let resistance = self.damping.damping(coefficient[k], overlap[k]);
             let resisted = if overlap[k] > 0.0 { resistance * normal_velocity } else { 0.0 };
             power[k] = resisted * normal_velocity;
             force[k] -= resisted;
@@ -93,7 +93,7 @@ impl<const D: usize> WithSimd for Damping<'_, D> {
 /// # Shape
 /// `damping_coefficient` has one entry per pair, `velocities` one per disk.
 pub fn add_damping<const D: usize>(
-    law: &ContactDamping,
+    damping: &ContactDamping,
     pairs: &PairList<D>,
     damping_coefficient: &[f64],
     displacements: &[Vector<D>],
@@ -104,14 +104,14 @@ pub fn add_damping<const D: usize>(
     for_each_pair(pairs, displacements, &mut |&MovedPair { pair, ends, separation, distance, overlap, .. }| {
         if overlap > 0.0 {
             let (i, j) = (ends.0 as usize, ends.1 as usize);
-            let damping = law.damping(damping_coefficient[pair], overlap);
+            let resistance = damping.damping(damping_coefficient[pair], overlap);
             let mut along = 0.0;
             for d in 0..D {
                 along += (velocities[i][d] - velocities[j][d]) * separation[d];
             }
             let normal_velocity = along / distance;
-            dissipation += damping * normal_velocity * normal_velocity;
-            let factor = damping * normal_velocity / distance;
+            dissipation += resistance * normal_velocity * normal_velocity;
+            let factor = resistance * normal_velocity / distance;
             for d in 0..D {
                 forces[i][d] -= factor * separation[d];
                 forces[j][d] += factor * separation[d];

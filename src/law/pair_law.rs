@@ -1,7 +1,7 @@
 //! [`PairLaw`]: force, energy and stiffness of one overlap.
 //!
 //! All other code takes a `&dyn PairLaw`, and is compiled once and not once per law. The loop over contacts calls the law
-//! once per block of pairs, for a column of forces ([`PairLaw::forces`]); the call takes a hundredth of the block.
+//! once per block of pairs, for a column of forces ([`PairLaw::forces`]), and not once per pair.
 
 use std::sync::Arc;
 
@@ -83,8 +83,8 @@ pub trait PairLaw: ShareLaw + std::fmt::Debug + Send + Sync + 'static {
     /// [`force`](Self::force) of each pair of a column, with the same bits \[force\].
     ///
     /// # Shape
-    /// All columns are of one length; `forces` is overwritten. The last places may belong to no pair, and their results
-    /// are not used.
+    /// All columns must be of one length; `forces` is overwritten. The last places may belong to no pair, and their
+    /// results are not used.
     fn forces(&self, coefficients: &[f64], overlaps: &[f64], forces: &mut [f64]) {
         combine([coefficients, overlaps], forces, |c, overlap| self.force(c, overlap));
     }

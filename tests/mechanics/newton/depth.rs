@@ -37,7 +37,7 @@ fn inflated_packings_come_to_rest_at_rounding_with_few_factorisations() {
             println!("{name}: {:?}, residual {residual:e}, {:?}", outcome.stop, outcome.cost);
             assert_eq!(outcome.stop, Stop::Converged(Criterion::RelativeForce), "{name}, {index}");
             assert!(made > 0 && made <= most, "{name}, {index}: {made} factorisations");
-            // Measured anew from the packing handed out, whose anchors are its own.
+            // The residual is computed again from the returned packing, which has anchors of its own.
             let network = ContactNetwork::new(&outcome.state, &law).expect("no coincidence");
             let (held, backbone) = (outcome.state.held(), &network.backbone);
             let largest = (0..outcome.state.len())

@@ -41,7 +41,7 @@ fn a_packing_far_from_the_origin_comes_to_rest_all_the_same() {
     let outcome = relax(&fire(1e-13), packing, &hertzian());
     assert_eq!(outcome.stop, Stop::Converged(Criterion::RelativeForce));
     let network = ContactNetwork::new(&outcome.state, &hertzian()).expect("no coincidence");
-    // Measured anew from the packing handed out, corrections included.
+    // The residual is computed again from the returned packing, with the rounding errors of its positions.
     let residual = (0..network.backbone.len())
         .filter(|&disk| network.backbone[disk])
         .map(|disk| norm(network.forces()[disk]))
