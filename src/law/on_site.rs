@@ -48,3 +48,75 @@ impl<L: PairLaw + Clone> PairLaw for OnSite<L> {
         self.coupling + self.law.on_site_coupling()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::law::damping::{ConstantDamping, ContactDamping, DampingChoice};
+    use crate::law::pair_law::ShareLaw;
+
+    /// A law that defines everything itself.
+    #[derive(Debug, Clone)]
+    struct Own;
+
+    const DAMPING: ContactDamping = ContactDamping::Constant(ConstantDamping { rate: 7.0 });
+
+    impl PairLaw for Own {
+        fn viscoelastic(&self, _: f64) -> ContactDamping {
+            DAMPING
+        }
+        fn contact_damping(&self, _: &DampingChoice) -> ContactDamping {
+            DAMPING
+        }
+        fn coefficient(&self, first_radius: f64, second_radius: f64) -> f64 {
+            first_radius + 2.0 * second_radius
+        }
+        fn coefficient_growth(&self, _: f64, _: f64) -> f64 {
+            11.0
+        }
+        fn force(&self, _: f64, _: f64) -> f64 {
+            13.0
+        }
+        fn exponent(&self) -> f64 {
+            17.0
+        }
+        fn energy(&self, _: f64, _: f64) -> f64 {
+            19.0
+        }
+        fn stiffness(&self, _: f64, _: f64) -> f64 {
+            23.0
+        }
+        fn is_power(&self) -> bool {
+            true
+        }
+        fn has_one_coefficient(&self) -> bool {
+            true
+        }
+        fn force_scale(&self, _: f64) -> f64 {
+            29.0
+        }
+    }
+
+    #[test]
+    fn a_law_with_sites_and_a_shared_one_keep_all_that_the_law_defines() {
+        let numbers = |law: &dyn PairLaw| {
+            let mut columns = [[0.0]; 3];
+            law.forces(&[1.0], &[1.0], &mut columns[0]);
+            law.energies(&[1.0], &[1.0], &mut columns[1]);
+            law.stiffnesses(&[1.0], &[1.0], &mut columns[2]);
+            let of_pair = [law.force(1.0, 1.0), law.energy(1.0, 1.0), law.stiffness(1.0, 1.0), law.force_scale(1.0)];
+            let of_radii = [law.coefficient(1.0, 2.0), law.coefficient_growth(1.0, 2.0), law.exponent()];
+            let damping = [law.viscoelastic(500.0), law.contact_damping(&DampingChoice::default())];
+            (columns, of_pair, of_radii, damping, law.is_power(), law.has_one_coefficient())
+        };
+        let shared: Arc<dyn PairLaw> = Own.shared();
+        let (plain, with_sites) = (OnSite { law: Own, coupling: 3.0 }, OnSite { law: shared.clone(), coupling: 3.0 });
+        for law in [&plain as &dyn PairLaw, &with_sites, &shared] {
+            assert_eq!(numbers(law), numbers(&Own), "{law:?}");
+        }
+        assert_eq!((plain.on_site_coupling(), with_sites.on_site_coupling()), (3.0, 3.0));
+        assert!(with_sites.has_sites() && !shared.has_sites());
+    }
+}
