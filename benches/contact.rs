@@ -14,16 +14,16 @@ use jamscope::relax::{Fire, ForceLimit, Relaxer};
 const SIZES: [usize; 4] = [1024, 5548, 22184, 88776];
 
 /// Random points at φ = 0.86, relaxed far enough that only touching disks overlap; the loop does not care for the rest.
-fn packing<L: PairLaw>(disks: usize, law: &L) -> Packing<2> {
+fn packing(disks: usize, law: &dyn PairLaw) -> Packing<2> {
     let points = random_points::<2>(disks, &Mixture::default(), 0.86, 1).expect("a valid mixture and packing fraction");
     let fire = Fire { limit: ForceLimit::Relative(1e-2), step_limit: 5000, ..Fire::default() };
     fire.relax(points, law, &mut ()).expect("random points never coincide").state
 }
 
-fn hot_loop<L: PairLaw>(criterion: &mut Criterion, name: &str, law: L) {
+fn hot_loop(criterion: &mut Criterion, name: &str, law: &dyn PairLaw) {
     let mut group = criterion.benchmark_group(format!("forces/{name}"));
     for disks in SIZES {
-        let mut assembly = Assembly::new(&packing(disks, &law), &law).expect("a valid packing");
+        let mut assembly = Assembly::new(&packing(disks, law), law).expect("a valid packing");
         group.throughput(Throughput::Elements(disks as u64));
         group.bench_function(BenchmarkId::new("forces", disks), |bencher| bencher.iter(|| assembly.evaluate()));
         group.bench_function(BenchmarkId::new("forces_and_totals", disks), |bencher| {
@@ -34,8 +34,8 @@ fn hot_loop<L: PairLaw>(criterion: &mut Criterion, name: &str, law: L) {
 }
 
 fn loops(criterion: &mut Criterion) {
-    hot_loop(criterion, "hertzian", Hertzian::default());
-    hot_loop(criterion, "hookean", Hookean::default());
+    hot_loop(criterion, "hertzian", &Hertzian::default());
+    hot_loop(criterion, "hookean", &Hookean::default());
 }
 
 fn lists(criterion: &mut Criterion) {

@@ -77,7 +77,6 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
     let (tiles, size) = (pairs.tiles.as_slice(), pairs.tile_size);
     let spent = AtomicBool::new(false);
     let is_expired = || spent.load(Ordering::Relaxed);
-    let nothing = [K::Number::default(); D];
     // Moves disks of a portion, beginning with this one.
     let moves = |disk: usize, (forces, velocities, displacements): Moving<'_, _, D>, bound: &mut Bound| {
         bound.step = kick(forces, velocities, displacements);
@@ -88,13 +87,13 @@ pub(crate) fn advance<const D: usize, K: Kernel<D>, P: Send>(
                 spent.store(true, Ordering::Relaxed);
             }
         }
-        forces.fill(nothing);
+        forces.as_flattened_mut().fill(K::Number::default());
     };
     let inside = |place: usize, (forces, velocities, displacements): Moving<'_, _, D>, bounds: &mut [Bound]| {
         let (tile, mobile, first) = (&tiles[place], velocities.len(), place * size);
         let interior = tile.interior.start.min(mobile)..tile.interior.end.min(mobile);
         let mut workspace = kernel.begin();
-        forces[mobile..].fill(nothing);
+        forces[mobile..].as_flattened_mut().fill(K::Number::default());
         for begin in (0..mobile).step_by(PORTION) {
             let disks = begin..mobile.min(begin + PORTION);
             let of_disks = (&mut forces[disks.clone()], &mut velocities[disks.clone()], &mut displacements[disks]);

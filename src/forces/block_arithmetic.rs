@@ -123,31 +123,29 @@ impl<const D: usize> WithSimd for Overlaps<'_, D> {
         let cache = Cache::here();
         let ahead = places_ahead::<D>(cache);
         let read = |column| &S::as_simd_f64s(column).0[..count];
-        let anchor_separation = block.separation.each_ref().map(|column| read(&column[..]));
         let anchor_overlap = read(&block.overlap);
         let moved = &S::as_simd_f64s(columns.pair_vectors.as_flattened()).0[..D * count];
-        let separation = columns.separation.each_mut().map(|column| &mut S::as_mut_simd_f64s(column).0[..count]);
         let overlap = &mut S::as_mut_simd_f64s(&mut columns.overlap).0[..count];
         let inverse = &mut S::as_mut_simd_f64s(&mut columns.inverse).0[..count];
         let anchor_distance = read(&block.distance);
         let (zero, roots) = (simd.splat_f64s(0.0), Processor::here().roots());
         for k in (0..count).step_by(2) {
             let mut squares = [zero; 2];
-            for (half, square) in squares.iter_mut().enumerate() {
+            for half in 0..2 {
                 let k = k + half;
                 let moved = components::split::<S, D>(simd, &moved[D * k..D * (k + 1)]);
                 let mut change = zero;
                 for d in 0..D {
-                    let anchored = anchor_separation[d][k];
+                    let anchored = S::as_simd_f64s(&block.separation[d]).0[k];
                     let along = simd.add_f64s(anchored, moved[d]);
                     let squared = simd.mul_f64s(along, along);
                     let changed = simd.mul_f64s(moved[d], simd.add_f64s(anchored, along));
                     // The first term is not added to zero, because the compiler may not omit that addition.
-                    (*square, change) = match d {
+                    (squares[half], change) = match d {
                         0 => (squared, changed),
-                        _ => (simd.add_f64s(*square, squared), simd.add_f64s(change, changed)),
+                        _ => (simd.add_f64s(squares[half], squared), simd.add_f64s(change, changed)),
                     };
-                    separation[d][k] = along;
+                    S::as_mut_simd_f64s(&mut columns.separation[d]).0[k] = along;
                     cache.prefetch(&block.separation[d], ahead + k * S::F64_LANES);
                 }
                 overlap[k] = change;
@@ -185,13 +183,15 @@ impl<const D: usize> WithSimd for Resolve<'_, D> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Resolve { columns, anchors } = self;
         let count = anchors.vector_count::<S>();
-        let separation = columns.separation.each_ref().map(|column| &S::as_simd_f64s(column).0[..count]);
         let force = &S::as_simd_f64s(&columns.force).0[..count];
         let inverse = &S::as_simd_f64s(&columns.inverse).0[..count];
         let pair_forces = &mut S::as_mut_simd_f64s(columns.pair_vectors.as_flattened_mut()).0[..D * count];
         for k in 0..count {
             let factor = simd.mul_f64s(force[k], inverse[k]);
-            let along = separation.map(|column| simd.mul_f64s(factor, column[k]));
+            let mut along = [factor; D];
+            for d in 0..D {
+                along[d] = simd.mul_f64s(factor, S::as_simd_f64s(&columns.separation[d]).0[k]);
+            }
             components::join(simd, &along, &mut pair_forces[D * k..D * (k + 1)]);
         }
     }

@@ -35,7 +35,7 @@ pub fn damped_forces<const D: usize>(
     velocities: &[Vector<D>],
     forces: &mut [Vector<D>],
 ) -> f64 {
-    forces.fill([0.0; D]);
+    forces.as_flattened_mut().fill(0.0);
     let mut power = 0.0;
     let (mut columns, mut relative_velocity) = (Columns::<D>::new(), [[0.0; D]; BLOCK]);
     for block in &pairs.blocks {
@@ -69,14 +69,13 @@ impl<const D: usize> WithSimd for Damping<'_, D> {
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let count = self.relative_velocity.len();
         let (relative_velocity, coefficient) = (&self.relative_velocity[..count], &self.coefficient[..count]);
-        let separation = self.columns.separation.each_ref().map(|column| &column[..count]);
         let (overlap, force) = (&self.columns.overlap[..count], &mut self.columns.force[..count]);
         let inverse = &self.columns.inverse[..count];
         let mut power = [0.0; BLOCK];
         for k in 0..count {
             let mut along = 0.0;
             for d in 0..D {
-                along += relative_velocity[k][d] * separation[d][k];
+                along += relative_velocity[k][d] * self.columns.separation[d][k];
             }
             let normal_velocity = along * inverse[k];
             let resistance = self.damping.damping(coefficient[k], overlap[k]);

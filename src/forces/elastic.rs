@@ -202,7 +202,7 @@ pub(crate) fn sweep_inner<const D: usize, K: Kernel<D>>(
     task: &Task<'_, D, K>,
     forces: &mut [[K::Number; D]],
 ) -> (K::Columns, K::Sums) {
-    forces.fill([K::Number::default(); D]);
+    forces.as_flattened_mut().fill(K::Number::default());
     let mut workspace = task.kernel.begin();
     sweep(task, task.tile.inner.clone(), forces, &mut workspace);
     workspace

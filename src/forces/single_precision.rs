@@ -349,23 +349,22 @@ impl<const D: usize> WithSimd for Overlaps<'_, D> {
         let read = |column| &S::as_simd_f32s(column).0[..count];
         let (zero, one) = (simd.splat_f32s(0.0), simd.splat_f32s(1.0));
         let pair_vectors = &S::as_simd_f32s(columns.pair_vectors.as_flattened()).0[..D * count];
-        let separation = columns.separation.each_mut().map(|column| &mut S::as_mut_simd_f32s(column).0[..count]);
         let overlap = &mut S::as_mut_simd_f32s(&mut columns.overlap).0[..count];
         let inverse = &mut S::as_mut_simd_f32s(&mut columns.inverse).0[..count];
-        let anchor_separation = block.separation.each_ref().map(|column| read(&column[..]));
         let (anchor_distance, anchor_overlap) = (read(&block.distance), read(&block.overlap));
         for k in 0..count {
             let offset = components::split_single::<S, D>(simd, &pair_vectors[D * k..D * (k + 1)]);
             let (mut square, mut changed) = (zero, zero);
             for d in 0..D {
-                let along = simd.add_f32s(anchor_separation[d][k], offset[d]);
+                let anchored = S::as_simd_f32s(&block.separation[d]).0[k];
+                let along = simd.add_f32s(anchored, offset[d]);
                 let squared = simd.mul_f32s(along, along);
-                let change = simd.mul_f32s(offset[d], simd.add_f32s(anchor_separation[d][k], along));
+                let change = simd.mul_f32s(offset[d], simd.add_f32s(anchored, along));
                 (square, changed) = match d {
                     0 => (squared, change),
                     _ => (simd.add_f32s(square, squared), simd.add_f32s(changed, change)),
                 };
-                separation[d][k] = along;
+                S::as_mut_simd_f32s(&mut columns.separation[d]).0[k] = along;
             }
             if let Some(cache) = prefetches {
                 block.prefetch(cache, blocks_ahead(cache), k * S::F32_LANES, has_coefficients);
@@ -397,13 +396,15 @@ impl<const D: usize> WithSimd for Resolve<'_, D> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Resolve { columns, pair_count } = self;
         let count = pair_count.div_ceil(S::F32_LANES).min(BLOCK / S::F32_LANES);
-        let separation = columns.separation.each_ref().map(|column| &S::as_simd_f32s(column).0[..count]);
         let force = &S::as_simd_f32s(&columns.force).0[..count];
         let inverse = &S::as_simd_f32s(&columns.inverse).0[..count];
         let pair_vectors = &mut S::as_mut_simd_f32s(columns.pair_vectors.as_flattened_mut()).0[..D * count];
         for k in 0..count {
             let factor = simd.mul_f32s(force[k], inverse[k]);
-            let along = separation.map(|column| simd.mul_f32s(factor, column[k]));
+            let mut along = [factor; D];
+            for d in 0..D {
+                along[d] = simd.mul_f32s(factor, S::as_simd_f32s(&columns.separation[d]).0[k]);
+            }
             components::join_single(simd, &along, &mut pair_vectors[D * k..D * (k + 1)]);
         }
     }

@@ -184,13 +184,15 @@ impl WithSimd for HertzianForces<'_> {
         let (coefficients, last_coefficients) = self.coefficients.split_at(whole);
         let (overlaps, last_overlaps) = self.overlaps.split_at(whole);
         let (forces, last_forces) = self.forces.split_at_mut(whole);
-        let coefficients = S::as_simd_f64s(coefficients).0.as_chunks::<2>().0;
-        let overlaps = S::as_simd_f64s(overlaps).0.as_chunks::<2>().0;
         let forces = S::as_mut_simd_f64s(forces).0.as_chunks_mut::<2>().0;
+        let count = forces.len();
+        let coefficients = &S::as_simd_f64s(coefficients).0.as_chunks::<2>().0[..count];
+        let overlaps = &S::as_simd_f64s(overlaps).0.as_chunks::<2>().0[..count];
         let roots = Processor::here().roots();
-        for (force, (&[c, d], &[a, b])) in forces.iter_mut().zip(coefficients.iter().zip(overlaps)) {
+        for k in 0..count {
+            let ([c, d], [a, b]) = (coefficients[k], overlaps[k]);
             let [a_root, b_root] = square_roots(simd, roots, [a, b]);
-            *force = [simd.mul_f64s(simd.mul_f64s(c, a), a_root), simd.mul_f64s(simd.mul_f64s(d, b), b_root)];
+            forces[k] = [simd.mul_f64s(simd.mul_f64s(c, a), a_root), simd.mul_f64s(simd.mul_f64s(d, b), b_root)];
         }
         for (force, (&c, &a)) in last_forces.iter_mut().zip(last_coefficients.iter().zip(last_overlaps)) {
             *force = c * a * a.sqrt();
@@ -213,8 +215,10 @@ impl WithSimd for SingleHertzianForces<'_> {
         let (coefficients, last_coefficients) = S::as_simd_f32s(self.coefficients);
         let (overlaps, last_overlaps) = S::as_simd_f32s(self.overlaps);
         let (forces, last_forces) = S::as_mut_simd_f32s(self.forces);
-        for (force, (&c, &a)) in forces.iter_mut().zip(coefficients.iter().zip(overlaps)) {
-            *force = simd.mul_f32s(simd.mul_f32s(c, a), simd.sqrt_f32s(a));
+        let count = forces.len();
+        let (coefficients, overlaps) = (&coefficients[..count], &overlaps[..count]);
+        for k in 0..count {
+            forces[k] = simd.mul_f32s(simd.mul_f32s(coefficients[k], overlaps[k]), simd.sqrt_f32s(overlaps[k]));
         }
         for (force, (&c, &a)) in last_forces.iter_mut().zip(last_coefficients.iter().zip(last_overlaps)) {
             *force = c * a * a.sqrt();
@@ -229,7 +233,7 @@ mod tests {
     use crate::law::on_site::OnSite;
     use crate::law::pair_law::ShareLaw;
 
-    fn check_law(law: impl PairLaw + Copy) {
+    fn check_law(law: &dyn PairLaw) {
         let coefficient = law.coefficient(0.5, 0.7);
         assert_eq!(law.force(coefficient, 0.0), 0.0);
         assert!(law.force(coefficient, f64::NAN).is_nan());
@@ -251,10 +255,10 @@ mod tests {
 
     #[test]
     fn force_and_stiffness_are_derivatives() {
-        check_law(Hertzian::default());
-        check_law(Hookean::default());
-        check_law(PowerLaw { energy_scale: 3.0, exponent: 2.0 });
-        check_law(PowerLaw { energy_scale: 3.0, exponent: 3.7 });
+        check_law(&Hertzian::default());
+        check_law(&Hookean::default());
+        check_law(&PowerLaw { energy_scale: 3.0, exponent: 2.0 });
+        check_law(&PowerLaw { energy_scale: 3.0, exponent: 3.7 });
     }
 
     fn check_columns(law: &dyn PairLaw) {

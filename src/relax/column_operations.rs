@@ -116,11 +116,13 @@ impl<T: Real> pulp::WithSimd for KickAndDrift<'_, T> {
         let (displacement, displacement_rest) = T::vectors_mut::<S>(self.displacement);
         // A NaN may be lost here; it stays in v and u.
         let mut fastest = splat(T::default());
-        for ((&f, v), u) in force.iter().zip(velocity).zip(displacement) {
+        let count = force.len();
+        let (velocity, displacement) = (&mut velocity[..count], &mut displacement[..count]);
+        for k in 0..count {
             // Kept in a register: a vector that crosses a cache line is slow to read after it was stored.
-            let kicked = T::plus(simd, T::times(simd, keep, *v), T::times(simd, push, f));
-            *v = kicked;
-            *u = T::plus(simd, *u, T::times(simd, time_step, kicked));
+            let kicked = T::plus(simd, T::times(simd, keep, velocity[k]), T::times(simd, push, force[k]));
+            velocity[k] = kicked;
+            displacement[k] = T::plus(simd, displacement[k], T::times(simd, time_step, kicked));
             fastest = T::larger_size(simd, fastest, kicked);
         }
         let mut fastest = T::largest(simd, fastest).widened();

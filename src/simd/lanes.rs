@@ -16,9 +16,10 @@ pub fn sum<S: pulp::Simd>(simd: S, column: &[f64]) -> f64 {
     let mut sums = [simd.splat_f64s(0.0); LANES];
     let (column, rest) = column.as_chunks::<LANES>();
     let each = LANES / S::F64_LANES;
-    for vectors in S::as_simd_f64s(column.as_flattened()).0.chunks_exact(each) {
+    let vectors = S::as_simd_f64s(column.as_flattened()).0;
+    for first in (0..vectors.len()).step_by(each) {
         for k in 0..each {
-            sums[k] = simd.add_f64s(sums[k], vectors[k]);
+            sums[k] = simd.add_f64s(sums[k], vectors[first + k]);
         }
     }
     let mut lanes = lanes_of::<S>(&sums);
@@ -35,7 +36,9 @@ pub fn dot_product<S: pulp::Simd>(simd: S, a: &[f64], b: &[f64]) -> f64 {
     let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
     let (a, b) = (S::as_simd_f64s(a.as_flattened()).0, S::as_simd_f64s(b.as_flattened()).0);
     let each = LANES / S::F64_LANES;
-    for (a, b) in a.chunks_exact(each).zip(b.chunks_exact(each)) {
+    let b = &b[..a.len()];
+    for first in (0..a.len()).step_by(each) {
+        let (a, b) = (&a[first..first + each], &b[first..first + each]);
         for k in 0..each {
             sums[k] = simd.add_f64s(sums[k], simd.mul_f64s(a[k], b[k]));
         }
@@ -89,7 +92,8 @@ pub fn products<S: pulp::Simd, T: Summed>(simd: S, a: &[T], b: &[T]) -> ([f64; 3
     let each = T::LANES / T::numbers::<S>(&[T::splat(simd, T::default())]).len();
     let zero = [T::splat(simd, T::default()); SINGLE_LANES];
     let (mut both, mut a_squared, mut b_squared, mut most) = (zero, zero, zero, zero[0]);
-    for (a, b) in a.chunks_exact(each).zip(b.chunks_exact(each)) {
+    for first in (0..a.len()).step_by(each) {
+        let (a, b) = (&a[first..first + each], &b[first..first + each]);
         for k in 0..each {
             both[k] = T::plus(simd, both[k], T::times(simd, a[k], b[k]));
             a_squared[k] = T::plus(simd, a_squared[k], T::times(simd, a[k], a[k]));

@@ -42,7 +42,7 @@ pub trait Real: Number {
 
 /// Implements [`Real`] for a precision, by pulp's names of its operations.
 macro_rules! real {
-    ($number:ty, $lanes:ident, $vectors:ident, $vectors_mut:ident, $splat:ident, $add:ident, $multiply:ident, $max:ident, $abs:ident, $reduce_max:ident) => {
+    ($number:ty, $bits:ty, $lanes:ident, $vectors:ident, $vectors_mut:ident, $splat:ident, $add:ident, $multiply:ident, $max:ident, $and:ident, $reduce_max:ident) => {
         impl Real for $number {
             type Lanes<S: Simd> = S::$lanes;
 
@@ -88,7 +88,7 @@ macro_rules! real {
 
             #[inline(always)]
             fn larger_size<S: Simd>(simd: S, a: S::$lanes, b: S::$lanes) -> S::$lanes {
-                simd.$max(a, simd.$abs(b))
+                simd.$max(a, simd.$and(b, simd.$splat(<$number>::from_bits(<$bits>::MAX >> 1))))
             }
 
             #[inline(always)]
@@ -99,5 +99,29 @@ macro_rules! real {
     };
 }
 
-real!(f64, f64s, as_simd_f64s, as_mut_simd_f64s, splat_f64s, add_f64s, mul_f64s, max_f64s, abs_f64s, reduce_max_f64s);
-real!(f32, f32s, as_simd_f32s, as_mut_simd_f32s, splat_f32s, add_f32s, mul_f32s, max_f32s, abs_f32s, reduce_max_f32s);
+real!(
+    f64,
+    u64,
+    f64s,
+    as_simd_f64s,
+    as_mut_simd_f64s,
+    splat_f64s,
+    add_f64s,
+    mul_f64s,
+    max_f64s,
+    and_f64s,
+    reduce_max_f64s
+);
+real!(
+    f32,
+    u32,
+    f32s,
+    as_simd_f32s,
+    as_mut_simd_f32s,
+    splat_f32s,
+    add_f32s,
+    mul_f32s,
+    max_f32s,
+    and_f32s,
+    reduce_max_f32s
+);

@@ -12,8 +12,8 @@ use crate::scenes::starts::cross;
 
 /// A disk between four held ones comes to rest in their middle, with any law; what each took.
 pub fn rests_in_the_middle(choice: &RelaxerChoice) -> [Cost; 3] {
-    fn check(choice: &RelaxerChoice, law: impl PairLaw + Copy) -> Cost {
-        let outcome = relax(choice, cross([0.02, -0.013]), &law);
+    fn check(choice: &RelaxerChoice, law: &dyn PairLaw) -> Cost {
+        let outcome = relax(choice, cross([0.02, -0.013]), law);
         let cost = outcome.cost;
         let force = law.force(law.coefficient(0.55, 0.5), 0.05);
         // Stiffness of the mobile disk: two contacts along, 2 F', two across, −2 F/r with r = 1.
@@ -25,7 +25,11 @@ pub fn rests_in_the_middle(choice: &RelaxerChoice) -> [Cost; 3] {
         assert!(off <= allowed, "{law:?}, {}: {off:e} from the middle", choice.name());
         cost
     }
-    [check(choice, hertzian()), check(choice, hookean()), check(choice, PowerLaw { energy_scale: 3.0, exponent: 3.5 })]
+    [
+        check(choice, &hertzian()),
+        check(choice, &hookean()),
+        check(choice, &PowerLaw { energy_scale: 3.0, exponent: 3.5 }),
+    ]
 }
 
 /// Three disks in a row between two held ones have no backbone, and nothing holds them across the row: they rest under

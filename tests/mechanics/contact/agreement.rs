@@ -9,9 +9,9 @@ proptest! {
     fn list_and_hot_loop_are_those_of_all_pairs_in_the_plane(
         seed: u64, count in 1usize..60, domain in domains::<2>(), exponent in 2.0..4.0f64,
     ) {
-        check_against_all_pairs(Hertzian::default(), seed, count, domain);
-        check_against_all_pairs(Hookean::default(), seed, count, domain);
-        check_against_all_pairs(PowerLaw { energy_scale: 1.0, exponent }, seed, count, domain);
+        check_against_all_pairs(&Hertzian::default(), seed, count, domain);
+        check_against_all_pairs(&Hookean::default(), seed, count, domain);
+        check_against_all_pairs(&PowerLaw { energy_scale: 1.0, exponent }, seed, count, domain);
     }
 
     #[test]
@@ -43,6 +43,6 @@ proptest! {
 
     #[test]
     fn list_and_hot_loop_are_those_of_all_pairs_in_space(seed: u64, count in 1usize..40, domain in domains::<3>()) {
-        check_against_all_pairs(Hertzian::default(), seed, count, domain);
+        check_against_all_pairs(&Hertzian::default(), seed, count, domain);
     }
 }

@@ -12,7 +12,7 @@ fn translated<const D: usize>(packing: &Packing<D>, shift: Vector<D>) -> Packing
 
 fn check_same<const D: usize>(
     what: &str,
-    law: impl PairLaw + Copy,
+    law: &dyn PairLaw,
     first: &Packing<D>,
     second: &Packing<D>,
     image: impl Fn(usize, Vector<D>) -> (usize, Vector<D>),
@@ -20,7 +20,7 @@ fn check_same<const D: usize>(
 ) {
     let (forces, totals) = forces_of(first, law);
     let (others, other_totals) = forces_of(second, law);
-    let allowed = allowed(first, &law, blur);
+    let allowed = allowed(first, law, blur);
     for (disk, &force) in forces.iter().enumerate() {
         let (index, expected) = image(disk, force);
         let off = norm(difference(others[index], expected));
@@ -45,7 +45,7 @@ proptest! {
         let packing = disks(seed, 40, domain, 0.2);
         for shift in [near, far] {
             let moved = translated(&packing, shift.map(on_grid));
-            check_same("moved", Hertzian::default(), &packing, &moved, |disk, force| (disk, force), 0.0);
+            check_same("moved", &Hertzian::default(), &packing, &moved, |disk, force| (disk, force), 0.0);
         }
     }
 
@@ -57,7 +57,7 @@ proptest! {
         let moved = |position: &Vector<2>| std::array::from_fn(|d| position[d] + lengths[d] * generator.random_range(-9..9) as f64);
         let positions = packing.positions().iter().map(moved).collect();
         let other = Packing::new(*packing.domain(), positions, packing.radii().to_vec()).and_then(|p| p.with_held(packing.held().to_vec()));
-        check_same("taken across", Hertzian::default(), &packing, &other.expect("valid"), |disk, force| (disk, force), 0.0);
+        check_same("taken across", &Hertzian::default(), &packing, &other.expect("valid"), |disk, force| (disk, force), 0.0);
     }
 
     #[test]
@@ -67,7 +67,7 @@ proptest! {
         let domain = Domain::Periodic { corner: [-y - lengths[1], x], lengths };
         let positions = packing.positions().iter().map(|&[x, y]| [-y, x]).collect();
         let turned = Packing::new(domain, positions, packing.radii().to_vec()).and_then(|p| p.with_held(packing.held().to_vec()));
-        check_same("turned", Hertzian::default(), &packing, &turned.expect("valid"), |disk, [x, y]| (disk, [-y, x]), 0.0);
+        check_same("turned", &Hertzian::default(), &packing, &turned.expect("valid"), |disk, [x, y]| (disk, [-y, x]), 0.0);
     }
 
     #[test]
@@ -77,7 +77,7 @@ proptest! {
         let turn = |[x, y]: Vector<2>| [cosine * x - sine * y, sine * x + cosine * y];
         let positions = packing.positions().iter().map(|&position| turn(position)).collect();
         let turned = Packing::new(Domain::Open, positions, packing.radii().to_vec()).and_then(|p| p.with_held(packing.held().to_vec()));
-        check_same("turned", Hertzian::default(), &packing, &turned.expect("valid"), |disk, force| (disk, turn(force)), blur(&packing));
+        check_same("turned", &Hertzian::default(), &packing, &turned.expect("valid"), |disk, force| (disk, turn(force)), blur(&packing));
     }
 
     #[test]
@@ -85,7 +85,7 @@ proptest! {
         let packing = disks(seed, 40, domain, 0.2);
         let place = shuffled(seed, packing.len());
         let other = relabelled(&packing, &place);
-        check_same("relabelled", Hertzian::default(), &packing, &other, |disk, force| (place[disk], force), 0.0);
+        check_same("relabelled", &Hertzian::default(), &packing, &other, |disk, force| (place[disk], force), 0.0);
         let networks = [&packing, &other].map(|packing| ContactNetwork::new(packing, &Hertzian::default()).expect("no coincidence"));
         for disk in 0..packing.len() {
             prop_assert_eq!(networks[0].backbone[disk], networks[1].backbone[place[disk]]);
@@ -111,9 +111,9 @@ proptest! {
             assert_eq!(ours.1.contact_count, theirs.1.contact_count);
         };
         let (one, two) = (Hertzian { stiffness: 3.0 }, Hertzian { stiffness: 3.0 * stiffness });
-        check(forces_of(&packing, one), forces_of(&other, two), stiffness * length * length);
+        check(forces_of(&packing, &one), forces_of(&other, &two), stiffness * length * length);
         let (one, two) = (Hookean { stiffness: 3.0 }, Hookean { stiffness: 3.0 * stiffness });
-        check(forces_of(&packing, one), forces_of(&other, two), stiffness * length);
+        check(forces_of(&packing, &one), forces_of(&other, &two), stiffness * length);
     }
 }
 

@@ -59,8 +59,8 @@ fn evaluated<const D: usize>(assembly: &mut Assembly<D>) -> (Vec<Vector<D>>, Tot
     (forces, totals)
 }
 
-fn forces_of<const D: usize>(packing: &Packing<D>, law: impl PairLaw + Copy) -> (Vec<Vector<D>>, Totals<D>) {
-    evaluated(&mut Assembly::new(packing, &law).expect("no coincidence"))
+fn forces_of<const D: usize>(packing: &Packing<D>, law: &dyn PairLaw) -> (Vec<Vector<D>>, Totals<D>) {
+    evaluated(&mut Assembly::new(packing, law).expect("no coincidence"))
 }
 
 /// How far forces and totals may be off when every separation is known to `blur` only, pair by pair: the force by
@@ -145,9 +145,9 @@ fn assert_list_is_complete<const D: usize>(assembly: &Assembly<D>, packing: &Pac
     }
 }
 
-fn check_against_all_pairs<const D: usize>(law: impl PairLaw + Copy, seed: u64, count: usize, domain: Domain<D>) {
+fn check_against_all_pairs<const D: usize>(law: &dyn PairLaw, seed: u64, count: usize, domain: Domain<D>) {
     let packing = disks(seed, count, domain, 0.2);
-    let mut assembly = Assembly::new(&packing, &law).expect("no coincidence");
+    let mut assembly = Assembly::new(&packing, law).expect("no coincidence");
     let mut generator = Pcg64::seed_from_u64(seed ^ 1);
     // First as listed, then in flight, each disk straight on by up to half the skin a round: between two
     // rounds the list stays or is rebuilt, and at the end disks have come together from well beyond the skin.
@@ -165,8 +165,8 @@ fn check_against_all_pairs<const D: usize>(law: impl PairLaw + Copy, seed: u64, 
         let placed = assembly.placed(packing.clone());
         assert_list_is_complete(&assembly, &placed, round == 0);
         let (forces, totals) = evaluated(&mut assembly);
-        let twin = mechanics(&placed, &law);
-        let allowed = allowed(&placed, &law, blur(&placed));
+        let twin = mechanics(&placed, law);
+        let allowed = allowed(&placed, law, blur(&placed));
         let theirs = (&twin.forces[..], twin.energy, &twin.virial, twin.force_sum);
         assert_agree("hot loop and twin", (&forces, &totals), theirs, &allowed);
         let near = pairs_within(&placed, blur(&placed)).len() - pairs_within(&placed, -blur(&placed)).len();

@@ -11,7 +11,7 @@ fn an_overlap_far_below_the_rounding_of_positions_has_its_force() {
         let packing = Packing::new(Domain::<2>::Open, vec![[start, 0.0], [start + 1.25, 0.0]], vec![0.5, 0.75])
             .and_then(|packing| packing.with_corrections(vec![[overlap, 0.0], [0.0; 2]]))
             .expect("valid");
-        let (forces, totals) = forces_of(&packing, law);
+        let (forces, totals) = forces_of(&packing, &law);
         assert_eq!(totals.contact_count, 1);
         // The product k δ rounds, and so do its division by and multiplication with the distance.
         assert!((forces[1][0] / (law.stiffness * overlap) - 1.0).abs() < 4.0 * EPSILON, "{:?} at {start}", forces[1]);
