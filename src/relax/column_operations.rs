@@ -135,25 +135,6 @@ impl<T: Real> pulp::WithSimd for KickAndDrift<'_, T> {
     }
 }
 
-/// a·b.
-pub fn dot_product(a: &[f64], b: &[f64]) -> f64 {
-    processor::dispatch(DotProduct { a, b })
-}
-
-struct DotProduct<'a> {
-    a: &'a [f64],
-    b: &'a [f64],
-}
-
-impl pulp::WithSimd for DotProduct<'_> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) -> f64 {
-        lanes::dot_product(simd, self.a, self.b)
-    }
-}
-
 /// `y ← keep·y + factor·x`.
 pub fn combine(keep: f64, y: &mut [f64], factor: f64, x: &[f64]) {
     processor::dispatch(Combine { keep, y, factor, x });

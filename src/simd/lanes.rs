@@ -2,6 +2,7 @@
 //!
 //! The loops use vectors explicitly, because the compiler does not vectorise sums over arrays of lanes well.
 
+use crate::processor;
 use crate::simd::real::Real;
 
 /// Lanes of a sum.
@@ -29,21 +30,33 @@ pub fn sum<S: pulp::Simd>(simd: S, column: &[f64]) -> f64 {
     lanes.iter().sum()
 }
 
-/// Σ a_k b_k.
-#[inline(always)]
-pub fn dot_product<S: pulp::Simd>(simd: S, a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [simd.splat_f64s(0.0); LANES];
-    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
-    let (a, b) = (S::as_simd_f64s(a.as_flattened()).0, S::as_simd_f64s(b.as_flattened()).0);
-    let each = LANES / S::F64_LANES;
-    let b = &b[..a.len()];
-    for first in (0..a.len()).step_by(each) {
-        let (a, b) = (&a[first..first + each], &b[first..first + each]);
-        for k in 0..each {
-            sums[k] = simd.add_f64s(sums[k], simd.mul_f64s(a[k], b[k]));
+/// Σ a_k b_k of two columns of the same length.
+pub fn dot_product(a: &[f64], b: &[f64]) -> f64 {
+    processor::dispatch(DotProduct { a, b })
+}
+
+struct DotProduct<'a> {
+    a: &'a [f64],
+    b: &'a [f64],
+}
+
+impl pulp::WithSimd for DotProduct<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> f64 {
+        let mut sums = [simd.splat_f64s(0.0); LANES];
+        let ((a, a_rest), (b, b_rest)) = (self.a.as_chunks::<LANES>(), self.b.as_chunks::<LANES>());
+        let (a, b) = (S::as_simd_f64s(a.as_flattened()).0, S::as_simd_f64s(b.as_flattened()).0);
+        let each = LANES / S::F64_LANES;
+        for first in (0..a.len()).step_by(each) {
+            let (a, b) = (&a[first..first + each], &b[first..first + each]);
+            for k in 0..each {
+                sums[k] = simd.add_f64s(sums[k], simd.mul_f64s(a[k], b[k]));
+            }
         }
+        with_rest(lanes_of::<S>(&sums), a_rest, b_rest)
     }
-    with_rest(lanes_of::<S>(&sums), a_rest, b_rest)
 }
 
 /// A number type whose products are summed in a fixed number of lanes.
@@ -173,7 +186,7 @@ mod tests {
 
         fn with_simd<S: pulp::Simd>(self, simd: S) -> [f64; 6] {
             let ([both, a_squared, b_squared], most) = products(simd, self.0, self.1);
-            [sum(simd, self.0), dot_product(simd, self.0, self.1), both, a_squared, b_squared, most]
+            [sum(simd, self.0), dot_product(self.0, self.1), both, a_squared, b_squared, most]
         }
     }
 

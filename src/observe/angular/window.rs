@@ -18,6 +18,7 @@ use num_complex::Complex64;
 
 use crate::observe::angular::fourier::fourier_sums;
 use crate::observe::angular::ring::{RingSample, Weights};
+use crate::simd::lanes::dot_product;
 
 /// Relative width of the bands of source frequencies above the highest f: S changes by 3 % within a band.
 const BAND_WIDTH: f64 = 0.02;
@@ -141,20 +142,11 @@ impl SpectralWindow {
         let own = self.bands.len();
         let beyond: f64 = sources[own..].iter().zip(&power[own..]).map(|(source, power)| source.count * power).sum();
         let rows = self.coupling.chunks_exact(own);
-        rows.zip(&self.white).map(|(row, white)| product(row, &power[..own]) + beyond * white).collect()
+        rows.zip(&self.white).map(|(row, white)| dot_product(row, &power[..own]) + beyond * white).collect()
     }
 
     /// K_fg of single frequencies: f and g from 1 to the limit.
     pub(super) fn coupling(&self, f: usize, g: usize) -> f64 {
         self.coupling[(f - 1) * self.bands.len() + g - 1]
     }
-}
-
-/// Σ a_i b_i in eight parallel sums.
-fn product(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    for (a, b) in a.chunks(8).zip(b.chunks(8)) {
-        sums.iter_mut().zip(a).zip(b).for_each(|((sum, a), b)| *sum += a * b);
-    }
-    sums.iter().sum()
 }

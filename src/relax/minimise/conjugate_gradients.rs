@@ -15,12 +15,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
-use crate::relax::column_operations::{combine, dot_product};
+use crate::relax::column_operations::combine;
 use crate::relax::force_limit::ForceLimit;
 use crate::relax::minimise::line_descent::{Descent, Direction, DirectionRule, Step};
 use crate::relax::outcome::Outcome;
 use crate::relax::relaxer::Relaxer;
 use crate::relax::trace::Trace;
+use crate::simd::lanes::dot_product;
 
 /// Nonlinear conjugate gradients.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -6,12 +6,12 @@ use std::time::Instant;
 use crate::forces::assembly::Assembly;
 use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError};
-use crate::relax::column_operations::dot_product;
 use crate::relax::convergence::{CheckSchedule, Monitor};
 use crate::relax::force_limit::ForceLimit;
 use crate::relax::minimise::line_search::{Line, search};
 use crate::relax::outcome::{Cost, Outcome, Stop};
 use crate::relax::trace::{Check, Trace};
+use crate::simd::lanes::dot_product;
 
 /// Steps between two checks of the residual. A step has one or two evaluations.
 const CHECK_INTERVAL: usize = 10;

@@ -15,8 +15,9 @@
 use crate::forces::assembly::Assembly;
 use crate::forces::totals::Totals;
 use crate::packing::PackingError;
-use crate::relax::column_operations::{combine, dot_product};
+use crate::relax::column_operations::combine;
 use crate::relax::rounding::ENERGY_ROUNDING;
+use crate::simd::lanes::dot_product;
 use crate::vector::{dot, larger};
 
 /// Share of the predicted fall of the energy that a step must reach. Source: Nocedal, Wright (2006), §3.1.
