@@ -1,6 +1,6 @@
 //! Angular spectra and correlation functions: Fourier sums by both routes, every estimator, the window, fits.
 //!
-//! `cargo bench --bench angular`; `cargo run --release --features measurements --example angular_estimators` has errors beside the times.
+//! `cargo bench --features measurements --bench angular`; `cargo run --release --features measurements --example angular_estimators` has errors beside the times.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use jamscope::observe::angular::synthetic::{SyntheticSettings, gaussian_rings};

@@ -1,6 +1,6 @@
 //! The hot loop, the neighbour list, and the contact network, at four sizes and for two laws.
 //!
-//! Times are per call; criterion's throughput is disks per second. `cargo bench --bench contact`.
+//! Times are per call; criterion's throughput is disks per second. `cargo bench --features measurements --bench contact`.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use jamscope::forces::Assembly;

@@ -1,6 +1,6 @@
 //! The Hessian, its analysis, factors and solutions, at four sizes: triangular lattices with a held rim.
 //!
-//! Times are per call; criterion's throughput is disks per second. `cargo bench --bench linear`.
+//! Times are per call; criterion's throughput is disks per second. `cargo bench --features measurements --bench linear`.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use jamscope::forces::Assembly;

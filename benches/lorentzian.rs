@@ -1,6 +1,6 @@
 //! The generalised Lorentzian: setting up, one G(θ), one G'(θ), one θ*.
 //!
-//! `cargo bench --bench lorentzian`; `cargo run --release --features measurements --example lorentzian_routes` has other routes beside it.
+//! `cargo bench --features measurements --bench lorentzian`; `cargo run --release --features measurements --example lorentzian_routes` has other routes beside it.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use jamscope::reference::lorentzian::{ContinuumLorentzian, Lorentzian};

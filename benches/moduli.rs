@@ -1,6 +1,6 @@
 //! Elastic moduli, lowest modes and certificate of packings at rest, and faer's partial eigensolver on the same operator.
 //!
-//! Times are per call, factorisations included. `cargo bench --bench moduli`.
+//! Times are per call, factorisations included. `cargo bench --features measurements --bench moduli`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};

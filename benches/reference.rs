@@ -1,6 +1,6 @@
 //! The exact solutions: a profile at 1000 radii, its derivatives, what setting it up costs, poles, Bessel functions.
 //!
-//! `cargo bench --bench reference`, or `-- GROUP` for one of `profile`, `derivative`, `antiscreened`, `setup`, `pole`,
+//! `cargo bench --features measurements --bench reference`, or `-- GROUP` for one of `profile`, `derivative`, `antiscreened`, `setup`, `pole`,
 //! `amplitude`, `bessel`. Of the errors beside these times there is a table: `cargo run --release --features measurements --example exact_routes`.
 
 use std::hint::black_box;

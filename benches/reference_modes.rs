@@ -1,6 +1,6 @@
 //! Angular modes: setting one up, and one radius, elastic and screened.
 //!
-//! Times are per call. `cargo bench --bench reference_modes`.
+//! Times are per call. `cargo bench --features measurements --bench reference_modes`.
 
 use std::hint::black_box;
 

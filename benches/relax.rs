@@ -1,6 +1,6 @@
 //! Relaxers to equal residuals, from the same inflated packing; force evaluations are printed beside the seconds.
 //!
-//! `cargo bench --bench relax`.
+//! `cargo bench --features measurements --bench relax`.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use jamscope::inflation::Circle;

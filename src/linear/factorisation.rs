@@ -67,7 +67,7 @@ impl Analysis {
     /// Not enough memory.
     ///
     /// # Cost
-    /// 50 % to 90 % of a factorisation, from 1 000 to 89 000 disks in two dimensions (`cargo bench --bench linear`).
+    /// 50 % to 90 % of a factorisation, from 1 000 to 89 000 disks in two dimensions (`cargo bench --features measurements --bench linear`).
     pub fn of<const D: usize>(hessian: &Hessian<D>) -> Result<Self, LinearError> {
         Self::in_order(hessian.matrix(), &ordering::best(hessian)?)
     }

@@ -51,7 +51,7 @@ impl<const D: usize> LinearResponse<D> {
     /// [`LinearError`].
     ///
     /// # Cost
-    /// One analysis, one factorisation, and at least two solutions (`cargo bench --bench linear`).
+    /// One analysis, one factorisation, and at least two solutions (`cargo bench --features measurements --bench linear`).
     pub fn of_inflation(
         packing: &Packing<D>,
         centre: usize,

@@ -40,7 +40,7 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// 3.3·10⁻¹⁶ of that factor, and 8.2·10⁻¹⁶.
 ///
 /// # Cost
-/// See `cargo bench --bench reference -- amplitude`.
+/// See `cargo bench --features measurements --bench reference -- amplitude`.
 ///
 /// # Example
 /// ```

@@ -37,7 +37,7 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// same in three).
 ///
 /// # Cost
-/// See `cargo bench --bench reference -- antiscreened`.
+/// See `cargo bench --features measurements --bench reference -- antiscreened`.
 ///
 /// # Example
 /// ```

@@ -39,7 +39,7 @@ const STEP_LIMIT: usize = 40;
 /// 1.001 to 10⁷, against multi-precision (`reference::precise_poles::poles_lie_between_numbers_of_opposite_sign`).
 ///
 /// # Cost
-/// See `cargo bench --bench reference -- pole/`.
+/// See `cargo bench --features measurements --bench reference -- pole/`.
 ///
 /// # Example
 /// ```

@@ -34,7 +34,7 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// 4.7·10⁻¹⁶ in three; for random annuli, R/a from 1.001 to 10⁷, κR from 10⁻⁸ to 10⁶: 6·10⁻¹⁶.
 ///
 /// # Cost
-/// See `cargo bench --bench reference -- profile`, `-- derivative` and `-- setup`.
+/// See `cargo bench --features measurements --bench reference -- profile`, `-- derivative` and `-- setup`.
 ///
 /// # Example
 /// ```
@@ -116,7 +116,7 @@ impl<const D: usize> Screened<D> {
     /// and the same in three); largest error found: 5·10⁻¹⁶ of twice the condition number.
     ///
     /// # Cost
-    /// A setup at first use (`cargo bench --bench reference -- setup`); then two to six times that of a value (`--
+    /// A setup at first use (`cargo bench --features measurements --bench reference -- setup`); then two to six times that of a value (`--
     /// derivative`).
     pub fn wavenumber_derivative(&self, radius: f64) -> f64 {
         if !self.annulus.contains(radius) {

@@ -22,7 +22,7 @@ const LANES: usize = 8;
 const SPREAD: usize = 15;
 
 /// Number of frequencies and of disks from which the fast method is faster: it takes 36 rotations per disk, independent
-/// of the number of frequencies (`cargo bench --bench angular`).
+/// of the number of frequencies (`cargo bench --features measurements --bench angular`).
 const FAST_FROM_FREQUENCY: usize = 40;
 const FAST_FROM_DISKS: usize = 100;
 

@@ -43,7 +43,7 @@ use crate::vector::two_product;
 /// [`ScreenedMode`](crate::reference::angular_modes::screened::ScreenedMode) without screening, tested to n = 5000.
 ///
 /// # Cost
-/// See `cargo bench --bench reference_modes`.
+/// See `cargo bench --features measurements --bench reference_modes`.
 ///
 /// # Example
 /// ```

@@ -60,7 +60,7 @@ impl Screening {
 /// (which have no r^(−n+1)) in a nearly incompressible medium, ν → 1, have errors up to Γ R² times larger.
 ///
 /// # Cost
-/// Proportional to the number of nodes for the setup; constant per radius (`cargo bench --bench reference_modes`).
+/// Proportional to the number of nodes for the setup; constant per radius (`cargo bench --features measurements --bench reference_modes`).
 ///
 /// # Example
 /// ```

@@ -20,7 +20,7 @@
 //! NaN gives NaN.
 //!
 //! # Cost
-//! See `cargo bench --bench reference -- bessel`.
+//! See `cargo bench --features measurements --bench reference -- bessel`.
 //!
 //! # Source
 //! Abramowitz & Stegun (1964), 9.1; DLMF §10.2. The approximations are those of Sun Microsystems' fdlibm (1993).

@@ -24,7 +24,7 @@
 //! K_n(0) = ∞, K_n(x) is NaN for x < 0. K_1(x) = 1/x overflows for x < 5.6·10⁻³⁰⁹. NaN gives NaN.
 //!
 //! # Cost
-//! See `cargo bench --bench reference -- bessel`.
+//! See `cargo bench --features measurements --bench reference -- bessel`.
 //!
 //! # Source
 //! Abramowitz & Stegun (1964), 9.6 and 9.7; DLMF §10.25. The polynomials: `fixtures/reference/make_modified_tables.py`.

@@ -92,7 +92,7 @@ pub struct ModulusPhase {
 /// `libm`, 10⁻¹⁵ and 6·10⁻¹⁶ (in units of the modulus).
 ///
 /// # Cost
-/// See `cargo bench --bench reference -- bessel`.
+/// See `cargo bench --features measurements --bench reference -- bessel`.
 pub fn modulus_phase(x: f64) -> ModulusPhase {
     if x >= EXPANDED_FROM {
         let shift = if x >= ASYMPTOTIC_FROM {

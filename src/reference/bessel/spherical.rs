@@ -20,7 +20,7 @@
 //! of order 1/x², overflow for x < 10⁻¹⁵⁴.
 //!
 //! # Cost
-//! See `cargo bench --bench reference -- bessel`.
+//! See `cargo bench --features measurements --bench reference -- bessel`.
 //!
 //! # Source
 //! Abramowitz & Stegun (1964), 10.1 and 10.2; DLMF §10.49 (closed forms) and §10.53 (series).

@@ -74,7 +74,7 @@ const TURN: (f64, f64) = (2.0 * PI, 2.449_293_598_294_706_4e-16);
 /// derivative is four times that for G; largest found: 2.1·10⁻¹⁵.
 ///
 /// # Cost
-/// Independent of θ and f†; grows with s (`cargo bench --bench lorentzian`). Memory: 0.7 kB per panel at s = 1.5, with
+/// Independent of θ and f†; grows with s (`cargo bench --features measurements --bench lorentzian`). Memory: 0.7 kB per panel at s = 1.5, with
 /// 42 panels of 16 nodes for f† ≤ 1 and 62 at f† = 10⁶; 28 nodes at s = 4.
 ///
 /// # Example
