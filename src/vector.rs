@@ -38,6 +38,16 @@ pub fn difference<T: Number, const D: usize>(a: [T; D], b: [T; D]) -> [T; D] {
     result
 }
 
+/// The vector at a place of D columns.
+#[inline(always)]
+pub fn vector_at<const D: usize, const N: usize>(columns: &[[f64; N]; D], place: usize) -> Vector<D> {
+    let mut result = [0.0; D];
+    for d in 0..D {
+        result[d] = columns[d][place];
+    }
+    result
+}
+
 /// `factor · a`.
 #[inline(always)]
 pub fn scaled<const D: usize>(factor: f64, a: Vector<D>) -> Vector<D> {

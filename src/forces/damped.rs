@@ -67,7 +67,7 @@ impl<const D: usize> WithSimd for Damping<'_, D> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let count = self.relative_velocity.len();
+        let count = self.relative_velocity.len().min(BLOCK);
         let (relative_velocity, coefficient) = (&self.relative_velocity[..count], &self.coefficient[..count]);
         let (overlap, force) = (&self.columns.overlap[..count], &mut self.columns.force[..count]);
         let inverse = &self.columns.inverse[..count];

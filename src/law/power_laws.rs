@@ -194,8 +194,10 @@ impl WithSimd for HertzianForces<'_> {
             let [a_root, b_root] = square_roots(simd, roots, [a, b]);
             forces[k] = [simd.mul_f64s(simd.mul_f64s(c, a), a_root), simd.mul_f64s(simd.mul_f64s(d, b), b_root)];
         }
-        for (force, (&c, &a)) in last_forces.iter_mut().zip(last_coefficients.iter().zip(last_overlaps)) {
-            *force = c * a * a.sqrt();
+        let count = last_forces.len();
+        let (coefficients, overlaps) = (&last_coefficients[..count], &last_overlaps[..count]);
+        for k in 0..count {
+            last_forces[k] = coefficients[k] * overlaps[k] * overlaps[k].sqrt();
         }
     }
 }
@@ -220,8 +222,10 @@ impl WithSimd for SingleHertzianForces<'_> {
         for k in 0..count {
             forces[k] = simd.mul_f32s(simd.mul_f32s(coefficients[k], overlaps[k]), simd.sqrt_f32s(overlaps[k]));
         }
-        for (force, (&c, &a)) in last_forces.iter_mut().zip(last_coefficients.iter().zip(last_overlaps)) {
-            *force = c * a * a.sqrt();
+        let count = last_forces.len();
+        let (coefficients, overlaps) = (&last_coefficients[..count], &last_overlaps[..count]);
+        for k in 0..count {
+            last_forces[k] = coefficients[k] * overlaps[k] * overlaps[k].sqrt();
         }
     }
 }

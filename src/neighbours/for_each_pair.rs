@@ -5,7 +5,7 @@ use crate::neighbours::pair_block::PairBlock;
 use crate::neighbours::pair_list::PairList;
 use crate::neighbours::rows::gather;
 use crate::processor;
-use crate::vector::Vector;
+use crate::vector::{Vector, vector_at};
 
 /// A listed pair at the present positions, by the formula of [`geometry`](crate::forces::elastic::geometry).
 #[derive(Debug, Clone, Copy)]
@@ -40,7 +40,7 @@ pub fn for_each_pair<const D: usize>(
             look(&MovedPair {
                 pair,
                 ends: (pairs.first[pair], pairs.second[pair]),
-                separation: at.apart.each_ref().map(|column| column[place]),
+                separation: vector_at(&at.apart, place),
                 distance: at.distance[place],
                 overlap: at.overlap[place],
                 coefficient: listed.coefficient[place],
@@ -69,17 +69,17 @@ impl<const D: usize> pulp::WithSimd for Measure<'_, D> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
         let Measure { count, listed, moved, at } = self;
-        let separation = listed.separation.each_ref().map(|column| &column[..count]);
+        let count = count.min(BLOCK);
         let (anchored_distance, anchored_overlap) = (&listed.distance[..count], &listed.overlap[..count]);
-        let (moved, apart) = (&moved[..count], at.apart.each_mut().map(|column| &mut column[..count]));
+        let moved = &moved[..count];
         let (distance, overlap) = (&mut at.distance[..count], &mut at.overlap[..count]);
         for k in 0..count {
             let (mut squared, mut change) = (0.0, 0.0);
             for d in 0..D {
-                let along = separation[d][k] + moved[k][d];
+                let along = listed.separation[d][k] + moved[k][d];
                 squared += along * along;
-                change += moved[k][d] * (separation[d][k] + along);
-                apart[d][k] = along;
+                change += moved[k][d] * (listed.separation[d][k] + along);
+                at.apart[d][k] = along;
             }
             let length = f64::sqrt(squared);
             let inverse = 1.0 / (length * (length + anchored_distance[k]));

@@ -127,15 +127,14 @@ impl<const D: usize> pulp::WithSimd for Excess<'_, D> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        let count = self.excess.len();
+        let count = self.excess.len().min(BLOCK);
         let Excess { listed, skin, .. } = self;
-        let separation = listed.separation.each_ref().map(|column| &column[..count]);
         let (distance, overlap) = (&listed.distance[..count], &listed.overlap[..count]);
         let moved = &self.moved[..count];
         for k in 0..count {
             let mut squared = 0.0;
             for d in 0..D {
-                let apart = separation[d][k] + moved[k][d];
+                let apart = listed.separation[d][k] + moved[k][d];
                 squared += apart * apart;
             }
             // R_i + R_j = |D| + δ⁰ up to rounding, which is far below the tolerance of a skin.

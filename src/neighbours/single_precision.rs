@@ -133,20 +133,19 @@ impl<const D: usize> pulp::WithSimd for Round<'_, D> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _simd: S) {
         let Round { listed, count, moved, factors, rounded } = self;
-        let separation = listed.separation.each_ref().map(|column| &column[..count]);
+        let count = count.min(BLOCK);
         let (distances, overlaps) = (&listed.distance[..count], &listed.overlap[..count]);
         let coefficients = &listed.coefficient[..count];
         let moved = &moved[..count];
-        let apart = rounded.separation.each_mut().map(|column| &mut column[..count]);
         let (distance, overlap) = (&mut rounded.distance[..count], &mut rounded.overlap[..count]);
         let coefficient = &mut rounded.coefficient[..count];
         for k in 0..count {
             let (mut squared, mut change) = (0.0, 0.0);
             for d in 0..D {
-                let along = separation[d][k] + moved[k][d];
+                let along = listed.separation[d][k] + moved[k][d];
                 squared += along * along;
-                change += moved[k][d] * (separation[d][k] + along);
-                apart[d][k] = (factors.length * along) as f32;
+                change += moved[k][d] * (listed.separation[d][k] + along);
+                rounded.separation[d][k] = (factors.length * along) as f32;
             }
             let length = f64::sqrt(squared);
             distance[k] = (factors.length * length) as f32;

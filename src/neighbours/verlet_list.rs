@@ -13,7 +13,7 @@ use crate::neighbours::pair_list::{PairList, Search, Source};
 use crate::packing::{Domain, PackingError};
 use crate::parallel::{self, PIECE};
 use crate::processor;
-use crate::vector::{Vector, difference, dot, extended_norm, extended_sum, sum, two_sum};
+use crate::vector::{Vector, difference, dot, extended_norm, extended_sum, sum, two_sum, vector_at};
 
 /// The disks as seen by the list builder: mobile disks first, then held disks.
 pub struct Disks<'a, const D: usize> {
@@ -253,8 +253,7 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> pulp::WithSimd for Measure<'_, D, C
             }
         }
         for k in 0..BLOCK {
-            let component = |column: &[[f64; BLOCK]; D]| -> Vector<D> { std::array::from_fn(|d| column[d][k]) };
-            let (rounded, of_distance) = extended_norm(component(separation), component(&rest));
+            let (rounded, of_distance) = extended_norm(vector_at(separation, k), vector_at(&rest, k));
             let (gap, of_gap) = two_sum(radii[k].0 + radii[k].1, -rounded);
             distance[k] = rounded;
             overlap[k] = gap + (of_gap - of_distance);

@@ -79,17 +79,17 @@ impl<const D: usize> Domain<D> {
 
     /// The image of a point within the box; rounded, for looking up cells only.
     pub(crate) fn wrapped(&self, point: Vector<D>) -> Vector<D> {
-        match self {
-            Domain::Periodic { corner, lengths } => std::array::from_fn(|d| {
+        let mut image = point;
+        if let Domain::Periodic { corner, lengths } = self {
+            for d in 0..D {
                 let from = point[d] - corner[d];
-                if from >= 0.0 && from < lengths[d] {
-                    point[d]
-                } else {
-                    corner[d] + (from - (from / lengths[d]).floor() * lengths[d]).min(lengths[d])
+                let is_inside = from >= 0.0 && from < lengths[d];
+                if !is_inside {
+                    image[d] = corner[d] + (from - (from / lengths[d]).floor() * lengths[d]).min(lengths[d]);
                 }
-            }),
-            Domain::Open => point,
+            }
         }
+        image
     }
 
     pub(crate) fn check(&self) -> Result<(), PackingError> {

@@ -32,6 +32,7 @@ pub fn sum<S: pulp::Simd>(simd: S, column: &[f64]) -> f64 {
 
 /// Σ a_k b_k of two columns of the same length.
 pub fn dot_product(a: &[f64], b: &[f64]) -> f64 {
+    debug_assert_eq!(a.len(), b.len());
     processor::dispatch(DotProduct { a, b })
 }
 

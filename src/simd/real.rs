@@ -87,6 +87,7 @@ macro_rules! real {
             }
 
             #[inline(always)]
+            // The sign bit is masked here: pulp's `abs` remains a call.
             fn larger_size<S: Simd>(simd: S, a: S::$lanes, b: S::$lanes) -> S::$lanes {
                 simd.$max(a, simd.$and(b, simd.$splat(<$number>::from_bits(<$bits>::MAX >> 1))))
             }
