@@ -8,6 +8,8 @@ mod contact_law;
 mod exact;
 #[path = "cli/exit_code.rs"]
 mod exit_code;
+#[path = "cli/input.rs"]
+mod input;
 #[cfg(feature = "linear")]
 #[path = "cli/precision.rs"]
 mod precision;
@@ -28,6 +30,7 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
 use jamscope::inspection::inspect;
+use jamscope::io::{Frame, ReadWarning};
 use jamscope::read_packing;
 use jamscope::relax::RelaxerChoice;
 use jamscope::report;
@@ -70,7 +73,7 @@ enum Command {
 struct RunArguments {
     /// Scene file (TOML); by default the built-in scene.
     scene: Option<PathBuf>,
-    /// Use this packing (extended XYZ, LAMMPS data or dump) instead of the samples of the scene.
+    /// Use this packing (extended XYZ, LAMMPS data or dump; `-` is the standard input) instead of the samples of the scene.
     #[arg(long, value_name = "FILE")]
     packing: Option<PathBuf>,
     /// Folder for the report.
@@ -89,8 +92,11 @@ struct RunArguments {
 
 #[derive(Args)]
 struct InspectArguments {
-    /// Packing file: extended XYZ, LAMMPS data or dump.
+    /// Packing file: extended XYZ, LAMMPS data or dump, possibly compressed by gzip or zstd; `-` is the standard input.
     packing: PathBuf,
+    /// Frame of a file with several: `last`, `all` or its number, from 0.
+    #[arg(long, value_name = "FRAME", default_value = "last", value_parser = input::frames)]
+    frame: input::Frames,
     /// Contact law if the file gives none: `hertzian`, `hookean` or `power:ALPHA`; by default Hertzian.
     #[arg(long, value_name = "LAW", value_parser = contact_law::parse)]
     law: Option<contact_law::LawName>,
@@ -145,8 +151,9 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         Some(path) => scene_file::read_scene(path)?,
         None => Scene::default(),
     };
+    let mut inputs = input::Inputs::default();
     if let Some(path) = &arguments.packing {
-        scene.sample = vec![sample_of_file(path, &scene)];
+        scene.sample = vec![sample_of_file(&inputs.file(path)?, &scene)];
     }
     if let Some(seed) = arguments.seed {
         scene.sample.iter_mut().for_each(|sample| sample.seed = seed);
@@ -210,7 +217,8 @@ fn relaxer_of_file(path: &std::path::Path, scene: &Scene) -> RelaxerChoice {
 }
 
 fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
-    let law = contact_law::law_of(&arguments.packing, arguments.law, arguments.stiffness)?;
+    let mut inputs = input::Inputs::default();
+    let path = inputs.file(&arguments.packing)?;
     #[cfg(feature = "linear")]
     let mode_count = arguments.modes;
     #[cfg(not(feature = "linear"))]
@@ -218,15 +226,41 @@ fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
     let mut settings = VerdictSettings::default();
     override_limit(&mut settings, arguments.not_at_rest);
     let dimension = usize::from(arguments.dimension);
-    let inspection = inspect(&arguments.packing, law, dimension, mode_count, &settings)?;
-    if arguments.json {
-        print(&format!("{}\n", inspection.to_json()?))?;
-    } else {
-        print(&inspection.to_string())?;
+    let frames = arguments.frame.of(&path)?;
+    let (mut documents, mut refused) = (Vec::new(), Vec::new());
+    for &frame in &frames {
+        let law = contact_law::law_of(&path, frame, arguments.law, arguments.stiffness)?;
+        let inspection = inspect(&path, frame, law, dimension, mode_count, &settings)?;
+        warn(&arguments.packing, &inspection.warnings);
+        let name = match frame {
+            Frame::Index(frame) => format!("{}, frame {frame}", arguments.packing.display()),
+            Frame::Last => arguments.packing.display().to_string(),
+        };
+        if arguments.json {
+            documents.push(inspection.to_json()?);
+        } else if frames.len() > 1 {
+            print(&format!("{name}\n{inspection}\n"))?;
+        } else {
+            print(&inspection.to_string())?;
+        }
+        if inspection.verdict.decision() == Decision::NotAtRest {
+            refused.push(name);
+        }
     }
-    let refused = inspection.verdict.decision() == Decision::NotAtRest;
-    let name = refused.then(|| arguments.packing.display().to_string());
-    Ok(exit_code::of_states(&name.into_iter().collect::<Vec<_>>()))
+    match (arguments.json, arguments.frame) {
+        (true, input::Frames::All) => print(&format!("[{}]\n", documents.join(",\n")))?,
+        (true, input::Frames::One(_)) => print(&format!("{}\n", documents.join("")))?,
+        (false, _) => ExitCode::SUCCESS,
+    };
+    Ok(exit_code::of_states(&refused))
+}
+
+/// Prints warnings about a file to the standard error stream.
+fn warn(path: &std::path::Path, warnings: &[ReadWarning]) {
+    for warning in warnings {
+        // The standard error stream may be closed.
+        let _ = writeln!(std::io::stderr(), "jamscope: warning: {}, {warning}", path.display());
+    }
 }
 
 /// Prints to the standard output; a closed pipe (`| head`) is not an error.

@@ -56,7 +56,9 @@ pub enum AnalysisError {
     #[error("no disk changed its radius, so none was inflated")]
     NoCentre,
     /// Several radii changed.
-    #[error("{count} disks changed their radius, among them disks {first} and {second}: only one disk may be inflated")]
+    #[error(
+        "{count} disks changed their radius, among them disks {first} and {second}: only one disk may be inflated; name it with --centre LABEL if the others changed for another reason"
+    )]
     SeveralCentres {
         /// Number of these disks.
         count: usize,

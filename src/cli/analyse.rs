@@ -5,21 +5,25 @@ use std::process::ExitCode;
 
 use clap::Args;
 use jamscope::analysis::{Analysis, Pair, PairSettings};
-use jamscope::io::{read_packing, read_properties};
+use jamscope::io::{Contents, Frame, read_contents};
 use jamscope::report;
 use jamscope::scene::Observables;
 use jamscope::verdict::{Decision, VerdictSettings};
 
 use crate::contact_law::{self, LawName};
-use crate::{Failure, exit_code, override_limit, print, scene_file};
+use crate::{Failure, exit_code, input, override_limit, print, scene_file, warn};
 
 /// Arguments of `analyse`.
 #[derive(Args)]
 pub struct AnalyseArguments {
     /// A folder with pairs NAME.before.* and NAME.after.* (or NAME.displacement.*, as written by `run`) and optional files
-    /// NAME.deflated.*; or the file before, the file after and, optionally, the file after the deflation.
+    /// NAME.deflated.*; or the file before, the file after and, optionally, the file after the deflation; or one file, with
+    /// --frames.
     #[arg(required = true, num_args = 1..=3, value_name = "DIR | BEFORE AFTER [DEFLATED]")]
     states: Vec<PathBuf>,
+    /// Frames of one file that are the states before, after and, optionally, after the deflation: numbers from 0, or `last`.
+    #[arg(long, value_name = "A,B[,C]", value_delimiter = ',', num_args = 1, value_parser = input::frame)]
+    frames: Option<Vec<Frame>>,
     /// Label of the inflated disk; by default the disk whose radius changed.
     #[arg(long, value_name = "LABEL")]
     centre: Option<u64>,
@@ -44,12 +48,63 @@ pub struct AnalyseArguments {
     out: PathBuf,
 }
 
-/// The files of one packing.
+/// A state: a file and its frame.
+#[derive(Clone)]
+struct StateFile {
+    path: PathBuf,
+    frame: Frame,
+}
+
+impl StateFile {
+    /// The last frame of a file.
+    fn last(path: PathBuf) -> Self {
+        StateFile { path, frame: Frame::Last }
+    }
+
+    fn read(&self) -> Result<Contents<2>, Failure> {
+        let contents = read_contents(&self.path, self.frame)?;
+        warn(&self.path, &contents.warnings);
+        Ok(contents)
+    }
+}
+
+/// The states of one packing.
 struct Files {
     name: String,
-    before: PathBuf,
-    after: PathBuf,
-    deflated: Option<PathBuf>,
+    before: StateFile,
+    after: StateFile,
+    deflated: Option<StateFile>,
+}
+
+/// The states given on the command line.
+fn states(arguments: &AnalyseArguments, inputs: &mut input::Inputs) -> Result<Vec<Files>, Failure> {
+    let given = &arguments.states;
+    if let Some(frames) = &arguments.frames {
+        let ([path], [before, after, rest @ ..]) = (&given[..], &frames[..]) else {
+            return Err("--frames A,B or A,B,C takes the states from one file".into());
+        };
+        if rest.len() > 1 {
+            return Err(format!("--frames names {} frames: two or three are states", frames.len()).into());
+        }
+        let file = inputs.file(path)?;
+        let of = |frame: &Frame| StateFile { path: file.clone(), frame: *frame };
+        return Ok(vec![Files {
+            name: name_of(path),
+            before: of(before),
+            after: of(after),
+            deflated: rest.first().map(of),
+        }]);
+    }
+    match &given[..] {
+        [folder] => pairs_in(folder),
+        [before, after, deflated @ ..] => Ok(vec![Files {
+            name: name_of(before),
+            before: StateFile::last(inputs.file(before)?),
+            after: StateFile::last(inputs.file(after)?),
+            deflated: deflated.first().map(|path| inputs.file(path)).transpose()?.map(StateFile::last),
+        }]),
+        [] => Ok(Vec::new()),
+    }
 }
 
 /// Analyses all pairs; if one fails, the others are analysed before the error is returned.
@@ -62,16 +117,8 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
         None => (Observables::default(), VerdictSettings::default()),
     };
     override_limit(&mut verdict, arguments.not_at_rest);
-    let all = match &arguments.states[..] {
-        [folder] => pairs_in(folder)?,
-        [before, after, deflated @ ..] => vec![Files {
-            name: name_of(before),
-            before: before.clone(),
-            after: after.clone(),
-            deflated: deflated.first().cloned(),
-        }],
-        [] => Vec::new(),
-    };
+    let mut inputs = input::Inputs::default();
+    let all = states(arguments, &mut inputs)?;
     let output = report::OutputFolder::open(&arguments.out, report::Kind::Analysis)?;
     output.try_samples("name of a pair", all.iter().map(|files| files.name.as_str()))?;
     let mut analyses = Vec::new();
@@ -79,7 +126,9 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
     for files in &all {
         match analyse(files, arguments, &observables, &verdict) {
             Ok(analysis) => analyses.push(analysis),
-            Err(error) => failures.push(format!("{} and {}: {error}", files.before.display(), files.after.display())),
+            Err(error) => {
+                failures.push(format!("{} and {}: {error}", files.before.path.display(), files.after.path.display()))
+            }
         }
     }
     if !analyses.is_empty() {
@@ -102,10 +151,12 @@ fn analyse(
     observables: &Observables,
     verdict: &VerdictSettings,
 ) -> Result<Analysis, Failure> {
-    let law = |path: &Path| contact_law::law_of(path, arguments.law, arguments.stiffness);
+    let (before, after) = (files.before.read()?, files.after.read()?);
+    let deflated = files.deflated.as_ref().map(StateFile::read).transpose()?;
+    let law = |state: &StateFile| contact_law::law_of(&state.path, state.frame, arguments.law, arguments.stiffness);
     let (first, second) = (law(&files.before)?, law(&files.after)?);
     // A file without a law has that of the other file.
-    let law = match (says_law(&files.before)?, says_law(&files.after)?) {
+    let law = match (says_law(&before), says_law(&after)) {
         (true, true) if first != second => {
             return Err(format!("the files give different laws, {first:?} and {second:?}").into());
         }
@@ -114,24 +165,22 @@ fn analyse(
     };
     let outer_radius = match arguments.outer_radius {
         Some(radius) => Some(radius),
-        None => outer_radius_of(&files.before)?,
+        None => outer_radius_of(&before, &files.before.path)?,
     };
-    let deflated = files.deflated.as_ref().map(read_packing::<2>).transpose()?;
     let settings = PairSettings { centre_label: arguments.centre, outer_radius };
-    let (before, after) = (read_packing(&files.before)?, read_packing(&files.after)?);
-    let pair = Pair::new(before, &after, deflated.as_ref(), &settings)?;
+    let deflated = deflated.as_ref().map(|contents| &contents.packing);
+    let pair = Pair::new(before.packing, &after.packing, deflated, &settings)?;
     law.check()?;
     Ok(Analysis::of(&files.name, pair, &law, observables, verdict)?)
 }
 
-fn says_law(path: &Path) -> Result<bool, Failure> {
-    Ok(read_properties(path)?.iter().any(|(key, _)| key.eq_ignore_ascii_case("law")))
+fn says_law(contents: &Contents<2>) -> bool {
+    contents.properties.iter().any(|(key, _)| key.eq_ignore_ascii_case("law"))
 }
 
 /// R, if a file of a run contains it.
-fn outer_radius_of(path: &Path) -> Result<Option<f64>, Failure> {
-    let properties = read_properties(path)?;
-    let Some((_, text)) = properties.iter().find(|(key, _)| key == "outer_radius") else { return Ok(None) };
+fn outer_radius_of(contents: &Contents<2>, path: &Path) -> Result<Option<f64>, Failure> {
+    let Some((_, text)) = contents.properties.iter().find(|(key, _)| key == "outer_radius") else { return Ok(None) };
     let wrong = || format!("{}: outer_radius is `{text}`, not a number", path.display());
     Ok(Some(text.parse().map_err(|_| wrong())?))
 }
@@ -202,9 +251,9 @@ fn pairs_in(folder: &Path) -> Result<Vec<Files>, Failure> {
             )
             .into());
         };
-        let deflated = find(&sample, &["deflated"])?;
+        let deflated = find(&sample, &["deflated"])?.map(StateFile::last);
         let name = if sample.is_empty() { "pair".into() } else { sample };
-        pairs.push(Files { name, before, after, deflated });
+        pairs.push(Files { name, before: StateFile::last(before), after: StateFile::last(after), deflated });
     }
     if pairs.is_empty() {
         return Err(format!("{}: the folder contains no file NAME.before.*", folder.display()).into());

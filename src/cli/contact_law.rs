@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use jamscope::io::read_properties;
+use jamscope::io::{Frame, properties_of_frame};
 use jamscope::law::{Hertzian, Hookean, LawChoice, PairLaw, PowerLaw};
 
 /// A law on the command line.
@@ -17,11 +17,12 @@ pub enum LawName {
     Power(f64),
 }
 
-/// `hertzian`, `hookean` or `power:ALPHA`.
+/// `hertzian`, `hookean` or `power:ALPHA`; as in files, the first four letters decide: `hertz`, `Hooke`.
 pub fn parse(text: &str) -> Result<LawName, String> {
-    match text.split_once(':') {
-        None if text == "hertzian" => Ok(LawName::Hertzian),
-        None if text == "hookean" => Ok(LawName::Hookean),
+    let name = text.to_ascii_lowercase();
+    match name.split_once(':') {
+        None if name.starts_with("hert") => Ok(LawName::Hertzian),
+        None if name.starts_with("hook") => Ok(LawName::Hookean),
         Some(("power", exponent)) => exponent
             .parse()
             .map(LawName::Power)
@@ -95,14 +96,15 @@ pub enum LawOfFileError {
     },
 }
 
-/// The law of a packing file: from the file, then from `asked`, then that of the model.
+/// The law of a frame of a packing file: from the file, then from `asked`, then that of the model.
 pub fn law_of(
     path: &Path,
+    frame: Frame,
     asked: Option<LawName>,
     asked_stiffness: Option<f64>,
 ) -> Result<LawChoice, Box<dyn std::error::Error>> {
     let name = path.display().to_string();
-    let properties = read_properties(path)?;
+    let properties = properties_of_frame(path, frame)?;
     let value = |key: &str| properties.iter().find(|(other, _)| other.eq_ignore_ascii_case(key)).map(|(_, text)| text);
     // A parameter of the law by its key, or by a word of the law itself; both only if they agree.
     let number = |key: &'static str, word: &str| -> Result<Option<f64>, LawOfFileError> {

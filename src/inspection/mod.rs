@@ -12,7 +12,7 @@ use serde::Serialize;
 use crate::certificate::Certificate;
 #[cfg(feature = "linear")]
 use crate::certificate::Stability;
-use crate::io::{ReadError, read_packing};
+use crate::io::{Frame, ReadError, ReadWarning, read_contents};
 use crate::law::choice::{LawChoice, LawError};
 use crate::memory::{Limit, TooLarge};
 use crate::observe::ForceDistribution;
@@ -25,6 +25,9 @@ use crate::verdict::{RestVerdict, VerdictSettings};
 /// The properties of a packing.
 #[derive(Debug, Serialize)]
 pub struct Inspection {
+    /// What was read but should be known.
+    #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "as_text")]
+    pub warnings: Vec<ReadWarning>,
     /// Whether it is at rest; otherwise the likely causes.
     pub verdict: RestVerdict,
     /// The contact law used.
@@ -83,6 +86,11 @@ pub struct Inspection {
     pub modes: Option<Vibrations>,
 }
 
+/// Warnings as their text.
+fn as_text<S: serde::Serializer>(warnings: &[ReadWarning], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(warnings.iter().map(ToString::to_string))
+}
+
 /// Why a packing file has no inspection.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -117,7 +125,7 @@ pub enum InspectionError {
     },
 }
 
-/// Reads a packing of dimension 2 or 3 and measures it under a law.
+/// Reads a frame of a packing file, of dimension 2 or 3, and measures it under a law.
 ///
 /// `mode_count` is the number of vibrational modes, from the lowest; without the feature `linear` none are computed.
 ///
@@ -125,6 +133,7 @@ pub enum InspectionError {
 /// See [`InspectionError`].
 pub fn inspect(
     path: &Path,
+    frame: Frame,
     law: LawChoice,
     dimension: usize,
     mode_count: usize,
@@ -137,20 +146,21 @@ pub fn inspect(
         let checked = limit.check("--modes", mode_count, 8.0 * coordinate_count as f64);
         checked.map_err(|source| InspectionError::Modes { path: name(), source })
     };
-    let measured = match dimension {
+    let (measured, warnings) = match dimension {
         2 => {
-            let packing = read_packing::<2>(path)?;
-            modes(2 * packing.len())?;
-            Inspection::of(&packing, law, mode_count, settings)
+            let contents = read_contents::<2>(path, frame)?;
+            modes(2 * contents.packing.len())?;
+            (Inspection::of(&contents.packing, law, mode_count, settings), contents.warnings)
         }
         3 => {
-            let packing = read_packing::<3>(path)?;
-            modes(3 * packing.len())?;
-            Inspection::of(&packing, law, mode_count, settings)
+            let contents = read_contents::<3>(path, frame)?;
+            modes(3 * contents.packing.len())?;
+            (Inspection::of(&contents.packing, law, mode_count, settings), contents.warnings)
         }
         value => return Err(InspectionError::Dimension { value }),
     };
-    measured.map_err(|source| InspectionError::Packing { path: name(), source })
+    let inspection = measured.map_err(|source| InspectionError::Packing { path: name(), source })?;
+    Ok(Inspection { warnings, ..inspection })
 }
 
 impl Inspection {
@@ -173,6 +183,7 @@ impl Inspection {
         let contacts = &network.contacts;
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, larger);
         Ok(Inspection {
+            warnings: Vec::new(),
             verdict,
             law: choice,
             dimension: D,

@@ -1,4 +1,4 @@
-//! Reads extended XYZ, as written by ASE and OVITO, to a [`Packing`].
+//! Reads extended XYZ, as written by ASE and OVITO, to a [`Packing`](crate::packing::Packing).
 //!
 //! ```text
 //! 2
@@ -9,19 +9,22 @@
 //!
 //! | column | meaning | needed |
 //! |---|---|---|
-//! | `pos:R:3` (`R:2` for D = 2) | centre \[length\]; for D = 2 z must be 0 | yes |
-//! | `radius:R:1` | radius \[length\] | yes |
-//! | `id:I:1` | label, unique | no |
-//! | `label:I:1` | label, repeats allowed; has precedence over `id` | no |
+//! | `pos:R:3` (`R:2` for D = 2), or `x`, `y`, `z` | centre \[length\]; for D = 2 z must be the same for all disks | yes |
+//! | `radius:R:1`, or `diameter:R:1` | radius or diameter \[length\]; the radius has precedence | yes |
+//! | `id:I:1` | label; only held disks may repeat it, as images in a rim do | no |
+//! | `label:I:1` | label that any disk may repeat | no |
 //! | `held:I:1` or `held:L:1` | 1 or T: held in place | no |
-//! | `correction:R:D` | low part of the centre, below the spacing of numbers there \[length\], [`Packing::corrections`] | no |
-//! | `site:R:D` | site of the disk \[length\], [`Packing::sites`] | no |
+//! | `correction:R:D` | low part of the centre, below the spacing of numbers there \[length\], [`corrections`](crate::packing::Packing::corrections) | no |
+//! | `site:R:D` | site of the disk \[length\], [`sites`](crate::packing::Packing::sites) | no |
 //! | `site_correction:R:D` | low part of the site \[length\]; requires `site` | no |
 //!
-//! Columns may be in any order; others are ignored. `pbc` is all T in the directions of the packing (a periodic box,
-//! with sides from `Lattice` and corner from `Origin`) or all F (the open plane; the lattice is ignored). Without `pbc`
-//! a lattice is periodic, as in ASE; without both the file is refused. For D = 2 the third direction is ignored.
-//! `dimension`, if given, must be D. Duplicate keys and columns are refused.
+//! Names are compared without case, `_`, `-` and `.`. Other names of the first three, as programs of the field write
+//! them: `Position`, `coordinates`; `radii`; `Identifier`, `particle_identifier`, `particle_id`, `atom_id`. Two
+//! columns that could both be the label are refused. Columns may be in any order; others are ignored. `pbc` is all T in
+//! the directions of the packing (a periodic box, with sides from `Lattice` and corner from `Origin`) or all F (the open
+//! plane; the lattice is ignored). Without `pbc` a lattice is periodic, as in ASE; without both the file is refused. For
+//! D = 2 the third direction is ignored; `pbc` may then have two flags and `Lattice` four numbers. `dimension`, if given,
+//! must be D. Duplicate keys and columns are refused.
 //!
 //! ASE reads all digits of a file but writes eight decimals. A packing written by it is no longer at rest, and its
 //! corrections are lost.
@@ -30,14 +33,16 @@
 //! ASE, `ase.io.extxyz`; OVITO manual, "XYZ file reader".
 
 use crate::io::comment_line::{CommentLine, Problem, list};
+use crate::io::contents::Contents;
 use crate::io::frame::Frame;
+use crate::io::plane::Plane;
 use crate::io::read_error::ReadError;
 use crate::io::source::{AXES, Source, largest_radius};
 use crate::io::xyz_columns::{Columns, flag};
-use crate::packing::{Domain, Packing};
+use crate::packing::Domain;
 
 /// Reads one frame.
-pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Packing<D>, ReadError> {
+pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Contents<D>, ReadError> {
     let frames = frames(source)?;
     let (line, count) = frames[source.frame(frame, frames.len())?];
     if count == 0 {
@@ -56,16 +61,19 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
     let mut disks = Vec::with_capacity(count);
     let mut extras = Vec::with_capacity(count);
     let mut sites = Vec::with_capacity(if columns.has_sites() { count } else { 0 });
+    let mut plane = Plane::new();
     for row_line in line + 1..line + 1 + count {
         let row = source.row(row_line);
         row.expect_count(columns.total)?;
-        let disk = columns.disk(source, &row, row_line)?;
+        let disk = columns.disk(&row, row_line)?;
+        columns.take_third(&row, row_line, &mut plane)?;
         extras.push((columns.held(source, &row, row_line)?, columns.correction(source, &row, &disk)?));
         disks.push(disk);
         sites.extend(columns.site(source, &row, row_line)?);
     }
+    plane.check(source, "pos z", largest_radius(&disks), 0.0)?;
     if columns.has_ids() {
-        source.order_by_id(&disks)?;
+        source.check_ids(&disks, |disk| extras[disk].0)?;
     }
     let mut packing = source
         .packing(domain, &disks, columns.has_labels())?
@@ -86,7 +94,12 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
             .with_sites(sites)
             .map_err(|error| ReadError::Packing { path: source.path.into(), source: error })?;
     }
-    Ok(packing)
+    Ok(Contents { properties: comment.into_pairs(), ..Contents::from(packing) })
+}
+
+/// Number of frames.
+pub(super) fn frame_count(source: &Source) -> Result<usize, ReadError> {
+    frames(source).map(|frames| frames.len())
 }
 
 /// The pairs of the comment line of one frame.
@@ -133,7 +146,7 @@ fn domain<const D: usize>(source: &Source, line: usize, comment: &CommentLine) -
     let lattice = comment.value("Lattice");
     if let Some(value) = comment.value("pbc") {
         let flags: Option<Vec<bool>> = list(value).into_iter().map(flag).collect();
-        let Some(flags) = flags.filter(|flags| flags.len() == 3) else {
+        let Some(flags) = flags.filter(|flags| flags.len() == 3 || flags.len() == D) else {
             return Err(source.bad(line, "pbc", value, "three of T and F"));
         };
         if flags[..D].iter().all(|periodic| !periodic) {
@@ -148,7 +161,12 @@ fn domain<const D: usize>(source: &Source, line: usize, comment: &CommentLine) -
     let Some(lattice) = lattice else {
         return Err(source.missing(line, "Lattice", comment.keys()));
     };
-    let cell = components::<9>(source, line, "Lattice", lattice, "nine numbers")?;
+    let cell = if D == 2 && list(lattice).len() == 4 {
+        let [xx, xy, yx, yy] = components::<4>(source, line, "Lattice", lattice, "four numbers")?;
+        [xx, xy, 0.0, yx, yy, 0.0, 0.0, 0.0, 1.0]
+    } else {
+        components::<9>(source, line, "Lattice", lattice, "nine numbers, or four in two dimensions")?
+    };
     for (index, &component) in cell.iter().enumerate() {
         let (vector, axis) = (index / 3, index % 3);
         if vector != axis && component != 0.0 {
@@ -157,6 +175,10 @@ fn domain<const D: usize>(source: &Source, line: usize, comment: &CommentLine) -
         }
     }
     let corner = match comment.value("Origin") {
+        Some(value) if D == 2 && list(value).len() == 2 => {
+            let [x, y] = components::<2>(source, line, "Origin", value, "two numbers")?;
+            [x, y, 0.0]
+        }
         Some(value) => components::<3>(source, line, "Origin", value, "three numbers")?,
         None => [0.0; 3],
     };

@@ -16,8 +16,8 @@
 //! ```
 //!
 //! Columns of `Atoms`: id, type, diameter \[length\], density, x, y, z \[length\] and optionally three image flags,
-//! which are ignored. A style other than `sphere` after `#` is refused. Without a style `sphere` is assumed, and then
-//! types must be within the announced number and densities positive. For D = 2 z must be 0. A data file does not
+//! which are ignored. The style after `#` must be `sphere`; without it the file is refused, since other styles have rows of the
+//! same length. For D = 2 z must be the same for all disks. A data file does not
 //! contain the periodicity: all directions are periodic, the default of LAMMPS. Other sections are skipped. Duplicate
 //! header lines and sections are refused, where LAMMPS would use the last. Disks are in ascending order of their ids.
 //!
@@ -25,8 +25,9 @@
 //! LAMMPS manual, commands `read_data` and `write_data`.
 
 use crate::io::frame::Frame;
+use crate::io::plane::Plane;
 use crate::io::read_error::ReadError;
-use crate::io::source::{Disk, Source};
+use crate::io::source::{Disk, Source, largest_radius};
 use crate::packing::{Domain, Packing};
 
 /// Number of columns of `Atoms` in style sphere, without and with image flags.
@@ -59,13 +60,17 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
     };
     let start = sections[place];
     let style = source.lines[start].split('#').nth(1).unwrap_or("").trim();
-    if !matches!(style, "" | "sphere") {
+    if style.is_empty() {
+        return Err(ReadError::NoAtomStyle { path: source.path.into(), line: start + 1 });
+    }
+    if style != "sphere" {
         let style = crate::io::source::excerpt(style);
         return Err(ReadError::AtomStyle { path: source.path.into(), line: start + 1, style });
     }
     let end = sections.get(place + 1).copied().unwrap_or(source.lines.len());
     let mut disks: Vec<Disk<D>> = Vec::new();
     let mut columns = None;
+    let mut plane = Plane::new();
     for line in start + 1..end {
         let row = source.row_without_comment(line);
         let found = row.values.len();
@@ -90,8 +95,8 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
         for axis in 0..D {
             position[axis] = row.number(4 + axis, &SIDES[axis][..1])?;
         }
-        if D == 2 && row.number(6, "z")? != 0.0 {
-            return Err(source.dimension(line, "z", row.values[6], D));
+        if D == 2 {
+            plane.take(row.number(6, "z")?, line, row.values[6]);
         }
         for column in 7..found {
             if row.values[column].parse::<i64>().is_err() {
@@ -103,6 +108,7 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
     if disks.len() < header.count {
         return Err(source.truncated(end, "disks of section Atoms", header.count, disks.len()));
     }
+    plane.check(source, "z", largest_radius(&disks), 0.0)?;
     source.order_by_id(&disks)?;
     disks.sort_by_key(|disk| disk.label);
     source.packing(header.domain, &disks, true)

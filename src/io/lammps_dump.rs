@@ -1,4 +1,4 @@
-//! Reads LAMMPS text dumps (`dump custom`) to a [`Packing`].
+//! Reads LAMMPS text dumps (`dump custom`) to a [`Packing`](crate::packing::Packing).
 //!
 //! ```text
 //! ITEM: TIMESTEP
@@ -23,31 +23,35 @@
 //! | `xu yu zu` | the value; unwrapped, so possibly outside the box, which nearest images take into account |
 //! | `xs ys zs`, `xsu ysu zsu` | lower end of the box + value × side |
 //!
-//! For D = 2 z is not required, and must be 0 if given. Other columns are ignored. LAMMPS writes six digits by default
-//! (see `dump_modify format float %.17g`). Disks are in ascending order of their ids. Duplicate items in a frame are
-//! refused.
+//! For D = 2 z is not required, and must be the same for all disks if given; the box may have no height. Other columns
+//! are ignored, and case in the names of columns. LAMMPS writes six digits by default (see `dump_modify format float
+//! %.17g`). Disks are in ascending order of their ids. Duplicate items in a frame are refused.
 //!
-//! A box that is not periodic in the directions of the packing is refused, because a dump does not contain its walls.
+//! A box that is periodic in no direction of the packing is the open plane: a dump does not contain its walls. A box
+//! that is periodic in some of them is refused. Without boundary flags, as in old dumps, the box is periodic.
 //!
 //! # Source
 //! LAMMPS manual, commands `dump` and `dump_modify`.
 
+use crate::io::contents::Contents;
 use crate::io::frame::Frame;
+use crate::io::plane::Plane;
 use crate::io::read_error::ReadError;
-use crate::io::source::{Disk, Source};
-use crate::packing::{Domain, Packing};
+use crate::io::read_warning::ReadWarning;
+use crate::io::source::{Disk, Source, largest_radius};
+use crate::packing::Domain;
 
 /// The forms of a position, in order of preference, and whether they are fractions of the box.
 const KINDS: [([&str; 3], bool); 4] =
     [(["x", "y", "z"], false), (["xu", "yu", "zu"], false), (["xs", "ys", "zs"], true), (["xsu", "ysu", "zsu"], true)];
 
-/// Largest |z| / height at which a scaled z counts as 0 in two dimensions; LAMMPS writes six digits by default.
-const SCALED_ZERO: f64 = 1e-5;
+/// Spacing of a scaled z; LAMMPS writes six digits by default.
+const SCALED_SPACING: f64 = 1e-5;
 
 /// Reads one frame.
-pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Packing<D>, ReadError> {
+pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Contents<D>, ReadError> {
     let lines = &source.lines;
-    let starts: Vec<usize> = (0..lines.len()).filter(|&line| lines[line].trim() == "ITEM: TIMESTEP").collect();
+    let starts = starts(source);
     if starts.is_empty() {
         return Err(source.missing(0, "ITEM: TIMESTEP", lines[0]));
     }
@@ -72,10 +76,16 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
     let Some(disks) = parts.disks else {
         return Err(source.missing(end - 1, "ITEM: ATOMS", "a frame that ends before it"));
     };
-    let Some((domain, _)) = parts.bounds else {
+    let Some(Bounds { domain, warning, .. }) = parts.bounds else {
         return Err(source.missing(end - 1, "ITEM: BOX BOUNDS", "a frame without it"));
     };
-    source.packing(domain, &disks, true)
+    let packing = source.packing(domain, &disks, true)?;
+    Ok(Contents { warnings: warning.into_iter().collect(), ..Contents::from(packing) })
+}
+
+/// The line index of the first item of every frame.
+pub(super) fn starts(source: &Source) -> Vec<usize> {
+    (0..source.lines.len()).filter(|&line| source.lines[line].trim() == "ITEM: TIMESTEP").collect()
 }
 
 /// The items of a frame read so far.
@@ -112,7 +122,7 @@ impl<const D: usize> Parts<D> {
             let Some(count) = self.count else {
                 return Err(source.missing(title, "ITEM: NUMBER OF ATOMS", "ITEM: ATOMS before it"));
             };
-            let Some((_, sides)) = &self.bounds else {
+            let Some(Bounds { sides, .. }) = &self.bounds else {
                 return Err(source.missing(title, "ITEM: BOX BOUNDS", "ITEM: ATOMS before it"));
             };
             let columns = Columns::new(source, columns, title)?;
@@ -122,8 +132,13 @@ impl<const D: usize> Parts<D> {
     }
 }
 
-/// A domain, and lower end and length of all three sides.
-type Bounds<const D: usize> = (Domain<D>, [(f64, f64); 3]);
+/// The box of a frame.
+struct Bounds<const D: usize> {
+    domain: Domain<D>,
+    /// Lower end and length of all three sides.
+    sides: [(f64, f64); 3],
+    warning: Option<ReadWarning>,
+}
 
 fn bounds<const D: usize>(source: &Source, flags: &str, title: usize, end: usize) -> Result<Bounds<D>, ReadError> {
     let words: Vec<&str> = flags.split_ascii_whitespace().collect();
@@ -132,10 +147,13 @@ fn bounds<const D: usize>(source: &Source, flags: &str, title: usize, end: usize
         ["abc", ..] => return Err(source.tilted(title, "ITEM: BOX BOUNDS", flags.trim())),
         _ => (false, &words[..]),
     };
-    if flags.len() != 3 {
+    if !matches!(flags.len(), 0 | 3) {
         return Err(source.missing(title, "three boundary flags after ITEM: BOX BOUNDS", flags.join(" ")));
     }
-    if let Some(axis) = flags[..D].iter().position(|&flag| flag != "pp") {
+    let is_open = |flag: &&str| *flag != "pp";
+    let open_count = flags.iter().take(D).filter(|flag| is_open(flag)).count();
+    if open_count > 0 && open_count < D {
+        let axis = flags.iter().position(is_open).unwrap_or(0);
         return Err(source.not_periodic(title, "ITEM: BOX BOUNDS", flags[axis], axis));
     }
     let mut sides = [(0.0, 0.0); 3];
@@ -149,12 +167,23 @@ fn bounds<const D: usize>(source: &Source, flags: &str, title: usize, end: usize
         if tilted && row.number(2, ["xy", "xz", "yz"][axis])? != 0.0 {
             return Err(source.tilted(line, ["xy", "xz", "yz"][axis], row.values[2]));
         }
-        sides[axis] = source.side(line, ["xlo xhi", "ylo yhi", "zlo zhi"][axis], row.values[0], row.values[1])?;
+        let field = ["xlo xhi", "ylo yhi", "zlo zhi"][axis];
+        sides[axis] = if axis >= D {
+            source.height(line, field, row.values[0], row.values[1])?
+        } else {
+            source.side(line, field, row.values[0], row.values[1])?
+        };
     }
     expect_end(source, "ITEM: BOX BOUNDS", title + 4, end)?;
     let corner = std::array::from_fn(|axis| sides[axis].0);
     let lengths = std::array::from_fn(|axis| sides[axis].1);
-    Ok((Domain::Periodic { corner, lengths }, sides))
+    let line = title + 1;
+    let (domain, warning) = match flags {
+        [] => (Domain::Periodic { corner, lengths }, Some(ReadWarning::NoBoundaryFlags { line })),
+        _ if open_count > 0 => (Domain::Open, Some(ReadWarning::Walls { line, flags: flags.join(" ") })),
+        _ => (Domain::Periodic { corner, lengths }, None),
+    };
+    Ok(Bounds { domain, sides, warning })
 }
 
 /// Refuses lines after the last value of an item.
@@ -188,7 +217,7 @@ impl Columns {
                 return Err(source.repeated(title, "column", name, title));
             }
         }
-        let find = |wanted: &str| names.iter().position(|&name| name == wanted);
+        let find = |wanted: &str| names.iter().position(|name| name.eq_ignore_ascii_case(wanted));
         let missing = |field| source.missing(title, field, names.join(" "));
         let radius = match (find("radius"), find("diameter")) {
             (Some(column), _) => (column, "radius", 1.0),
@@ -213,6 +242,7 @@ impl Columns {
         count: usize,
     ) -> Result<Vec<Disk<D>>, ReadError> {
         let mut disks: Vec<Disk<D>> = Vec::new();
+        let mut plane = Plane::new();
         for line in first..end {
             if source.lines[line].trim().is_empty() {
                 continue;
@@ -233,10 +263,7 @@ impl Columns {
                 };
             }
             if D == 2 {
-                let limit = if self.position.scaled { SCALED_ZERO * sides[2].1 } else { 0.0 };
-                if all[2].abs() > limit {
-                    return Err(source.dimension(line, self.position.names[2], &all[2].to_string(), D));
-                }
+                plane.take(all[2], line, &all[2].to_string());
             }
             let (column, name, factor) = self.radius;
             let radius = row.radius(column, name, factor)?;
@@ -246,6 +273,8 @@ impl Columns {
         if disks.len() < count {
             return Err(source.truncated(end, "disks of ITEM: ATOMS", count, disks.len()));
         }
+        let spacing = if self.position.scaled { SCALED_SPACING * sides[2].1 } else { 0.0 };
+        plane.check(source, self.position.names[2], largest_radius(&disks), spacing)?;
         source.order_by_id(&disks)?;
         disks.sort_by_key(|disk| disk.label);
         Ok(disks)

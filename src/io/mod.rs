@@ -7,19 +7,25 @@
 //! | LAMMPS data, `atom_style sphere` | yes | yes, without corrections | column `diameter` |
 //! | LAMMPS text dump | yes | no | column `radius` or `diameter` |
 //!
-//! Missing information is an error and never guessed: radii, sides of the box, periodic directions. Duplicate
+//! Files compressed by gzip or zstd are decompressed.
+//!
+//! Missing information is an error and never guessed: radii, sides of the box, the style of atoms. Duplicate
 //! information is also refused: a key, a header line, a section, an item of a frame. So are coordinates beyond a
 //! million of the largest radii: a number has 16 digits, and six of them are lost there. Each [`ReadError`] contains
-//! the file, the line, the field and the text found. A file must end with a line break, as all these programs write it.
-//! Otherwise a file cut in the middle of its last number could not be distinguished from a complete one.
+//! the file, the line, the field and the text found. What is read but should be known is a [`ReadWarning`]: a last line
+//! without a line break, which may have been cut; a box without boundary flags; walls that are not in the file.
 
 pub mod atomic;
 mod comment_line;
+mod contents;
+mod decompress;
 pub mod extended_xyz;
 mod frame;
 pub mod lammps_data;
 pub mod lammps_dump;
+mod plane;
 mod read_error;
+mod read_warning;
 mod source;
 mod unfinished;
 mod write_lammps_data;
@@ -29,8 +35,10 @@ mod xyz_columns;
 use std::path::Path;
 
 pub use atomic::{WriteError, write_atomically};
+pub use contents::Contents;
 pub use frame::Frame;
 pub use read_error::ReadError;
+pub use read_warning::ReadWarning;
 pub use unfinished::{remove_unfinished, try_name};
 pub use write_lammps_data::write_lammps_data;
 pub use write_packing::{Column, write_packing};
@@ -73,11 +81,46 @@ pub fn read_packing<const D: usize>(path: impl AsRef<Path>) -> Result<Packing<D>
 /// # Errors
 /// See [`read_packing`]; also [`ReadError::NoSuchFrame`].
 pub fn read_frame<const D: usize>(path: impl AsRef<Path>, frame: Frame) -> Result<Packing<D>, ReadError> {
+    read_contents(path, frame).map(|contents| contents.packing)
+}
+
+/// Like [`read_frame`], with the key-value pairs of the frame and the warnings.
+///
+/// # Errors
+/// See [`read_frame`].
+///
+/// # Example
+/// ```
+/// use jamscope::io::{Frame, read_contents};
+/// let contents = read_contents::<2>("fixtures/packings/hooke_N1000_p100.xyz", Frame::Last)?;
+/// assert!(contents.properties.contains(&("law".into(), "hooke".into())));
+/// assert!(contents.warnings.is_empty());
+/// # Ok::<(), jamscope::io::ReadError>(())
+/// ```
+pub fn read_contents<const D: usize>(path: impl AsRef<Path>, frame: Frame) -> Result<Contents<D>, ReadError> {
     const { assert!(D == 2 || D == 3, "packings have two or three dimensions") };
+    with_source(path.as_ref(), |source, format| {
+        let mut contents = match format {
+            Format::ExtendedXyz => extended_xyz::parse(source, frame),
+            Format::LammpsData => lammps_data::parse(source, frame).map(Contents::from),
+            Format::LammpsDump => lammps_dump::parse(source, frame),
+        }?;
+        if source.is_open() {
+            contents.warnings.insert(0, ReadWarning::LastLineOpen { line: source.lines.len() });
+        }
+        Ok(contents)
+    })
+}
+
+/// Number of frames of a file.
+///
+/// # Errors
+/// [`ReadError`] as for [`read_packing`], without those of the disks.
+pub fn frame_count(path: impl AsRef<Path>) -> Result<usize, ReadError> {
     with_source(path.as_ref(), |source, format| match format {
-        Format::ExtendedXyz => extended_xyz::parse(source, frame),
-        Format::LammpsData => lammps_data::parse(source, frame),
-        Format::LammpsDump => lammps_dump::parse(source, frame),
+        Format::ExtendedXyz => extended_xyz::frame_count(source),
+        Format::LammpsData => Ok(1),
+        Format::LammpsDump => Ok(lammps_dump::starts(source).len()),
     })
 }
 
@@ -94,8 +137,16 @@ pub fn read_frame<const D: usize>(path: impl AsRef<Path>, frame: Frame) -> Resul
 /// # Ok::<(), jamscope::io::ReadError>(())
 /// ```
 pub fn read_properties(path: impl AsRef<Path>) -> Result<Vec<(String, String)>, ReadError> {
+    properties_of_frame(path, Frame::Last)
+}
+
+/// Like [`read_properties`], for a given frame.
+///
+/// # Errors
+/// See [`read_properties`]; also [`ReadError::NoSuchFrame`].
+pub fn properties_of_frame(path: impl AsRef<Path>, frame: Frame) -> Result<Vec<(String, String)>, ReadError> {
     with_source(path.as_ref(), |source, format| match format {
-        Format::ExtendedXyz => extended_xyz::properties(source, Frame::Last),
+        Format::ExtendedXyz => extended_xyz::properties(source, frame),
         Format::LammpsData | Format::LammpsDump => Ok(Vec::new()),
     })
 }
@@ -103,10 +154,13 @@ pub fn read_properties(path: impl AsRef<Path>) -> Result<Vec<(String, String)>, 
 /// Opens a file, recognises its format and calls `read`.
 fn with_source<T>(path: &Path, read: impl FnOnce(&Source, Format) -> Result<T, ReadError>) -> Result<T, ReadError> {
     let bytes = std::fs::read(path).map_err(|source| ReadError::Io { path: path.into(), source })?;
+    let bytes = decompress::decompressed(path, bytes)?;
     let text = std::str::from_utf8(&bytes).map_err(|error| ReadError::NotText {
         path: path.into(),
         line: 1 + bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count(),
     })?;
+    // A byte-order mark.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let source = Source::new(path, text);
     let Some(first) = source.lines.iter().find(|line| !line.trim().is_empty()) else {
         return Err(ReadError::Empty { path: path.into() });
@@ -114,9 +168,6 @@ fn with_source<T>(path: &Path, read: impl FnOnce(&Source, Format) -> Result<T, R
     let Some(format) = recognise(&source.lines, first) else {
         return Err(ReadError::UnknownFormat { path: path.into(), first_line: source::excerpt(first) });
     };
-    if !text.ends_with('\n') {
-        return Err(ReadError::LineCut { path: path.into(), line: source.lines.len() });
-    }
     read(&source, format)
 }
 

@@ -22,8 +22,16 @@ pub enum ReadError {
         /// The file.
         path: PathBuf,
     },
+    /// A compressed file cannot be decompressed.
+    #[error("{path}: the compressed file is damaged or cut: {source}")]
+    Compressed {
+        /// The file.
+        path: PathBuf,
+        /// The error of the decompression.
+        source: std::io::Error,
+    },
     /// The file is not UTF-8 text.
-    #[error("{path}, line {line}: not text; binary and compressed files are not read")]
+    #[error("{path}, line {line}: not text; of binary files only those compressed by gzip or zstd are read")]
     NotText {
         /// The file.
         path: PathBuf,
@@ -39,16 +47,6 @@ pub enum ReadError {
         path: PathBuf,
         /// Its first line that is not blank.
         first_line: String,
-    },
-    /// There is no line break at the end.
-    #[error(
-        "{path}, line {line}: the last line has no line break, so the file may have been cut; add one if it is complete"
-    )]
-    LineCut {
-        /// The file.
-        path: PathBuf,
-        /// The last line, from 1.
-        line: usize,
     },
     /// The file ends too early.
     #[error("{path}, line {line}: the file or section ends after {found} of {expected} {what}")]
@@ -178,7 +176,7 @@ pub enum ReadError {
     },
     /// A direction is not periodic while others are, or a LAMMPS box has walls or free sides.
     #[error(
-        "{path}, line {line}: {field} is `{value}`, so axis {axis} is not periodic; a packing is periodic in all its directions or lies in the open plane (extended XYZ with pbc=\"F F F\")"
+        "{path}, line {line}: {field} is `{value}`, so axis {axis} is not periodic while another is; a packing is periodic in all its directions or in none. If the disks within the outer radius touch no wall and no image, write all flags as not periodic (pbc=\"F F F\", or ff ff in a dump) and give --outer-radius"
     )]
     NotPeriodic {
         /// The file.
@@ -193,7 +191,7 @@ pub enum ReadError {
         axis: char,
     },
     /// The packing has another dimension.
-    #[error("{path}, line {line}: {field} is `{value}`: this is not a packing in {dimension} dimensions")]
+    #[error("{path}, line {line}: {field} is `{value}`: this is not a packing in {dimension} dimensions{}", other_dimension(*.dimension))]
     Dimension {
         /// The file.
         path: PathBuf,
@@ -205,6 +203,30 @@ pub enum ReadError {
         value: String,
         /// The dimension requested.
         dimension: usize,
+    },
+    /// Several columns could be the label of a disk.
+    #[error(
+        "{path}, line {line}: columns {first} and {second} could both be the label of a disk; leave out one of them or rename it"
+    )]
+    TwoLabels {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// The first column.
+        first: String,
+        /// The second column.
+        second: String,
+    },
+    /// A LAMMPS data file does not name its atom style.
+    #[error(
+        "{path}, line {line}: section Atoms names no style; several have rows of this length (sphere, full, ellipsoid, peri). If the columns are id type diameter density x y z, write `Atoms # sphere`"
+    )]
+    NoAtomStyle {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
     },
     /// A LAMMPS data file has another atom style.
     #[error("{path}, line {line}: atom style is `{style}`: must be `sphere`, the only supported style with diameters")]
@@ -234,6 +256,11 @@ pub enum ReadError {
         /// The problem.
         source: PackingError,
     },
+}
+
+/// The dimension to try instead.
+fn other_dimension(dimension: usize) -> &'static str {
+    if dimension == 2 { " (`jamscope inspect --dimension 3` reads three)" } else { "" }
 }
 
 /// The distance from a number to the next larger one in absolute value.

@@ -21,6 +21,7 @@ const FARTHEST: f64 = 1e6;
 pub(super) struct Source<'a> {
     pub path: &'a Path,
     pub lines: Vec<&'a str>,
+    text: &'a str,
 }
 
 /// The values of one line, separated by blanks.
@@ -46,6 +47,17 @@ pub(super) fn excerpt(text: &str) -> String {
     }
 }
 
+/// A number; its exponent may begin with d or D, as in Fortran.
+fn parsed(text: &str) -> Option<f64> {
+    text.parse().ok().or_else(|| {
+        let is_digit = |at: usize| text.as_bytes().get(at).is_some_and(u8::is_ascii_digit);
+        let at = text.find(['d', 'D'])?;
+        // A digit before and a number after it.
+        let has_digits = at > 0 && (is_digit(at - 1) || text[..at].ends_with('.'));
+        has_digits.then(|| text.replacen(['d', 'D'], "e", 1).parse().ok()).flatten()
+    })
+}
+
 /// The largest radius \[length\].
 pub(super) fn largest_radius<const D: usize>(disks: &[Disk<D>]) -> f64 {
     disks.iter().map(|disk| disk.radius).fold(0.0, f64::max)
@@ -53,7 +65,12 @@ pub(super) fn largest_radius<const D: usize>(disks: &[Disk<D>]) -> f64 {
 
 impl<'a> Source<'a> {
     pub fn new(path: &'a Path, text: &'a str) -> Self {
-        Source { path, lines: text.lines().collect() }
+        Source { path, lines: text.lines().collect(), text }
+    }
+
+    /// Whether the last line has no line break.
+    pub fn is_open(&self) -> bool {
+        !self.text.ends_with('\n')
     }
 
     pub fn row(&'a self, line: usize) -> Row<'a> {
@@ -109,16 +126,16 @@ impl<'a> Source<'a> {
 
     /// Parses a finite number.
     pub fn number(&self, line: usize, field: &str, value: &str) -> Result<f64, ReadError> {
-        match value.parse::<f64>() {
-            Ok(number) if number.is_finite() => Ok(number),
+        match parsed(value) {
+            Some(number) if number.is_finite() => Ok(number),
             _ => Err(self.bad(line, field, value, "a finite number")),
         }
     }
 
     /// Parses a positive finite number.
     pub fn positive(&self, line: usize, field: &str, value: &str) -> Result<f64, ReadError> {
-        match value.parse::<f64>() {
-            Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
+        match parsed(value) {
+            Some(number) if number.is_finite() && number > 0.0 => Ok(number),
             _ => Err(self.bad(line, field, value, "a positive finite number")),
         }
     }
@@ -137,6 +154,12 @@ impl<'a> Source<'a> {
             return Ok((start, length));
         }
         Err(self.bad(line, field, &format!("{low} {high}"), "a lower end below the upper one"))
+    }
+
+    /// Like [`Source::side`], for the third side of a plane, which may have no length.
+    pub fn height(&self, line: usize, field: &str, low: &str, high: &str) -> Result<(f64, f64), ReadError> {
+        let (start, end) = (self.number(line, field, low)?, self.number(line, field, high)?);
+        if start == end { Ok((start, 0.0)) } else { self.side(line, field, low, high) }
     }
 
     /// Index of the requested frame among `count`.
@@ -197,6 +220,23 @@ impl<'a> Source<'a> {
         let labels = || disks.iter().map(|disk| disk.label).collect();
         let packing = if labelled { packing.and_then(|packing| packing.with_labels(labels())) } else { packing };
         packing.map_err(|source| ReadError::Packing { path: self.path.into(), source })
+    }
+
+    /// Refuses an id that two mobile disks have. Held disks may repeat ids, as the periodic images of a rim do.
+    pub fn check_ids<const D: usize>(
+        &self,
+        disks: &[Disk<D>],
+        is_held: impl Fn(usize) -> bool,
+    ) -> Result<(), ReadError> {
+        let mut mobile: Vec<usize> = (0..disks.len()).filter(|&disk| !is_held(disk)).collect();
+        mobile.sort_by_key(|&disk| disks[disk].label);
+        for pair in mobile.windows(2) {
+            let (first, second) = (&disks[pair[0]], &disks[pair[1]]);
+            if first.label == second.label {
+                return Err(self.repeated(second.line, "id", &second.label.to_string(), first.line));
+            }
+        }
+        Ok(())
     }
 
     /// The indices of the disks in ascending order of their labels, which must be unique.

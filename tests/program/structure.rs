@@ -10,7 +10,7 @@ const LONGEST_FILE: usize = 450;
 const LONG: [&str; 1] = ["reference::bessel::modified_tables"];
 
 /// Names of files that are standard terms of physics, mathematics, numerical computing or programming.
-const STANDARD: [&str; 145] = [
+const STANDARD: [&str; 150] = [
     "analyse",
     "angular",
     "atomic",
@@ -23,6 +23,7 @@ const STANDARD: [&str; 145] = [
     "complex",
     "components",
     "conjugate_gradients",
+    "contents",
     "continuum",
     "contour",
     "convergence",
@@ -34,6 +35,7 @@ const STANDARD: [&str; 145] = [
     "damped",
     "damping",
     "data_file",
+    "decompress",
     "definition",
     "descent",
     "displacement",
@@ -62,6 +64,7 @@ const STANDARD: [&str; 145] = [
     "hessian",
     "implicit",
     "incomplete_beta",
+    "input",
     "inspection",
     "integration",
     "interval",
@@ -101,6 +104,7 @@ const STANDARD: [&str; 145] = [
     "pairs",
     "palette",
     "parallel",
+    "plane",
     "plastic",
     "plot",
     "point_force",
@@ -115,6 +119,7 @@ const STANDARD: [&str; 145] = [
     "radial",
     "radii",
     "read_error",
+    "read_warning",
     "real",
     "relax",
     "report",

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use jamscope::certificate::Certificate;
-use jamscope::io::{read_packing, write_packing};
+use jamscope::io::{Frame, read_packing, write_packing};
 use jamscope::law::{LawChoice, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::observe::ForceDistribution;
@@ -32,7 +32,7 @@ pub fn nameless(message: &str, path: &Path, fields: &[&str]) -> Fault {
 /// Reads a packing of either dimension and does what `inspect` does.
 pub fn packing(path: &Path) -> Fault {
     for asked in [None, contact_law::parse("power:2.5").ok()] {
-        match contact_law::law_of(path, asked, None) {
+        match contact_law::law_of(path, Frame::Last, asked, None) {
             Ok(law) if asked.is_none() => {
                 if let Some(fault) = inspected::<2>(path, law).or_else(|| inspected::<3>(path, law)) {
                     return Some(fault);

@@ -1,0 +1,79 @@
+//! [`Inputs`]: files given on the command line, which may be the standard input or a pipe, and their frames.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use jamscope::io::{Frame, frame_count};
+use tempfile::TempDir;
+
+use crate::Failure;
+
+/// Files given on the command line. A pipe can be read only once, so its content is copied to a temporary file, which
+/// is removed at the end.
+#[derive(Default)]
+pub struct Inputs {
+    copies: Vec<TempDir>,
+}
+
+impl Inputs {
+    /// The file itself, or a copy of the standard input (`-`) or of a pipe.
+    pub fn file(&mut self, path: &Path) -> Result<PathBuf, Failure> {
+        let is_standard = path == Path::new("-");
+        if !is_standard && !is_pipe(path) {
+            return Ok(path.to_path_buf());
+        }
+        let folder = tempfile::tempdir()?;
+        let name = if is_standard { "standard-input" } else { "pipe" };
+        let copy = folder.path().join(name);
+        let failed = |error| format!("{}: {error}", path.display());
+        let mut file = File::create(&copy)?;
+        let copied = if is_standard {
+            std::io::copy(&mut std::io::stdin().lock(), &mut file)
+        } else {
+            File::open(path).and_then(|mut pipe| std::io::copy(&mut pipe, &mut file))
+        };
+        copied.map_err(failed)?;
+        self.copies.push(folder);
+        Ok(copy)
+    }
+}
+
+/// Whether a path is neither a file nor a folder. A path that does not exist is left to its reader.
+fn is_pipe(path: &Path) -> bool {
+    path.metadata().is_ok_and(|it| !it.is_file() && !it.is_dir())
+}
+
+/// Frames of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Frames {
+    /// One of them.
+    One(Frame),
+    /// All of them.
+    All,
+}
+
+impl Frames {
+    /// The frames of a file.
+    pub fn of(self, path: &Path) -> Result<Vec<Frame>, Failure> {
+        match self {
+            Frames::One(frame) => Ok(vec![frame]),
+            Frames::All => Ok((0..frame_count(path)?).map(Frame::Index).collect()),
+        }
+    }
+}
+
+/// `last`, or the number of a frame, from 0.
+pub fn frame(text: &str) -> Result<Frame, String> {
+    match text {
+        "last" => Ok(Frame::Last),
+        number => number.parse().map(Frame::Index).map_err(|_| "not `last` or the number of a frame, from 0".into()),
+    }
+}
+
+/// `last`, `all`, or the number of a frame, from 0.
+pub fn frames(text: &str) -> Result<Frames, String> {
+    match text {
+        "all" => Ok(Frames::All),
+        one => frame(one).map(Frames::One).map_err(|_| "not `last`, `all` or the number of a frame, from 0".into()),
+    }
+}

@@ -1,0 +1,29 @@
+//! Decompression of gzip and zstd files, recognised by their first bytes.
+
+use std::io::Read;
+use std::path::Path;
+
+use crate::io::read_error::ReadError;
+
+/// The bytes of a file, decompressed if they are of gzip or zstd.
+pub(super) fn decompressed(path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, ReadError> {
+    let mut text = Vec::new();
+    let read = match bytes[..] {
+        [0x1f, 0x8b, ..] => flate2::read::MultiGzDecoder::new(&bytes[..]).read_to_end(&mut text),
+        [0x28, 0xb5, 0x2f, 0xfd, ..] => zstd_frames(&bytes, &mut text),
+        _ => return Ok(bytes),
+    };
+    match read {
+        Ok(_) => Ok(text),
+        Err(source) => Err(ReadError::Compressed { path: path.into(), source }),
+    }
+}
+
+/// All frames of zstd.
+fn zstd_frames(mut bytes: &[u8], text: &mut Vec<u8>) -> std::io::Result<usize> {
+    while !bytes.is_empty() {
+        let mut frame = ruzstd::decoding::StreamingDecoder::new(&mut bytes).map_err(std::io::Error::other)?;
+        frame.read_to_end(text)?;
+    }
+    Ok(text.len())
+}

@@ -1,0 +1,29 @@
+//! [`ReadWarning`]: what was read but should be known.
+
+/// What was read but should be known. Line numbers start at 1.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadWarning {
+    /// There is no line break at the end.
+    #[error("line {line}: the last line has no line break, so its last number may have been cut")]
+    LastLineOpen {
+        /// The last line.
+        line: usize,
+    },
+    /// A LAMMPS dump does not say whether its box is periodic.
+    #[error("line {line}: ITEM: BOX BOUNDS has no boundary flags; the box is taken as periodic")]
+    NoBoundaryFlags {
+        /// Line of the item.
+        line: usize,
+    },
+    /// A LAMMPS box has walls or free sides.
+    #[error(
+        "line {line}: ITEM: BOX BOUNDS is `{flags}`: the packing lies in the open plane, and walls are not in the file; disks at a wall are not balanced, so give an outer radius R within the walls"
+    )]
+    Walls {
+        /// Line of the item.
+        line: usize,
+        /// The flags.
+        flags: String,
+    },
+}
