@@ -278,6 +278,8 @@ mod book {
     #[cfg(feature = "fit")]
     #[doc = include_str!("../book/src/analysis.md")]
     mod analysis {}
+    #[doc = include_str!("../book/src/own_packing.md")]
+    mod own_packing {}
     #[doc = include_str!("../book/src/library.md")]
     mod library {}
     #[doc = include_str!("../book/src/exact.md")]

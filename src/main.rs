@@ -15,6 +15,8 @@ mod input;
 mod precision;
 #[path = "cli/progress.rs"]
 mod progress;
+#[path = "cli/relax.rs"]
+mod relax;
 #[path = "cli/scene_file.rs"]
 mod scene_file;
 #[path = "cli/study.rs"]
@@ -30,7 +32,8 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
 use jamscope::inspection::inspect;
-use jamscope::io::{Frame, ReadWarning};
+use jamscope::io::{Frame, ReadWarning, read_contents};
+use jamscope::network::ContactNetwork;
 use jamscope::read_packing;
 use jamscope::relax::RelaxerChoice;
 use jamscope::report;
@@ -56,6 +59,10 @@ enum Command {
     Scene,
     /// Print the properties of a packing file: certificate, energy, stress, contacts, forces, elastic moduli, modes.
     Inspect(InspectArguments),
+    /// Bring a packing file to rest and write it with the results of each disk.
+    Relax(relax::RelaxArguments),
+    /// Compress or decompress a packing file to a pressure or a packing fraction.
+    Compress(relax::CompressArguments),
     /// Measure the observables of states that another program relaxed, before and after an inflation.
     Analyse(analyse::AnalyseArguments),
     /// Run an experiment over sizes, pressures, inflations, laws and seeds; an interrupted study continues.
@@ -113,6 +120,9 @@ struct InspectArguments {
     /// Print JSON, with every number in full precision.
     #[arg(long)]
     json: bool,
+    /// Write the packing with the results of each disk to this file (extended XYZ).
+    #[arg(long, value_name = "FILE")]
+    write: Option<PathBuf>,
     /// Number of vibrational modes to compute, from the lowest.
     #[cfg(feature = "linear")]
     #[arg(long, value_name = "K", default_value_t = 0)]
@@ -137,6 +147,8 @@ fn run_command(command: Option<Command>) -> Result<ExitCode, Failure> {
         Some(Command::Run(arguments)) => run_scene(&arguments),
         Some(Command::Scene) => print(&scene_file::commented_scene()),
         Some(Command::Inspect(arguments)) => inspect_packing(&arguments),
+        Some(Command::Relax(arguments)) => relax::relax(&arguments),
+        Some(Command::Compress(arguments)) => relax::compress_file(&arguments),
         Some(Command::Analyse(arguments)) => analyse::run(&arguments),
         Some(Command::Study(arguments)) => study::run(&arguments),
         Some(Command::Merge(arguments)) => study::merge(&arguments),
@@ -247,12 +259,32 @@ fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
             refused.push(name);
         }
     }
+    if let Some(out) = &arguments.write {
+        let [frame] = frames[..] else { return Err("--write FILE takes one frame".into()) };
+        match dimension {
+            3 => write_inspected::<3>(&path, frame, arguments, out)?,
+            _ => write_inspected::<2>(&path, frame, arguments, out)?,
+        }
+    }
     match (arguments.json, arguments.frame) {
         (true, input::Frames::All) => print(&format!("[{}]\n", documents.join(",\n")))?,
         (true, input::Frames::One(_)) => print(&format!("{}\n", documents.join("")))?,
         (false, _) => ExitCode::SUCCESS,
     };
     Ok(exit_code::of_states(&refused))
+}
+
+/// Writes a packing with the results of each disk.
+fn write_inspected<const D: usize>(
+    path: &std::path::Path,
+    frame: Frame,
+    arguments: &InspectArguments,
+    out: &std::path::Path,
+) -> Result<(), Failure> {
+    let law = contact_law::law_of(path, frame, arguments.law, arguments.stiffness)?;
+    let contents = read_contents::<D>(path, frame)?;
+    let network = ContactNetwork::new(&contents.packing, &law)?;
+    Ok(report::write_state(out, &contents.packing, (&network, &law), &contents.properties)?)
 }
 
 /// Prints warnings about a file to the standard error stream.

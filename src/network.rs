@@ -238,6 +238,40 @@ impl<const D: usize> ContactNetwork<D> {
         stress.map(|row| row.map(|value| value / volume))
     }
 
+    /// Share of each disk in the virial tensor, half of every contact \[force · length\]. The sum over all disks, divided
+    /// by the volume, is [`stress`](ContactNetwork::stress) up to rounding.
+    ///
+    /// ```text
+    /// s_ab = ½ Σ F r_a r_b / r        over the contacts of the disk
+    /// ```
+    ///
+    /// # Shape
+    /// One tensor a disk.
+    pub fn disk_virials(&self) -> Vec<[[f64; D]; D]> {
+        let mut virials = vec![[[0.0; D]; D]; self.held.len()];
+        for contact in &self.contacts {
+            let factor = 0.5 * contact.force / norm(contact.separation);
+            for disk in [contact.first, contact.second] {
+                for a in 0..D {
+                    for b in 0..D {
+                        virials[disk as usize][a][b] += factor * (contact.separation[a] * contact.separation[b]);
+                    }
+                }
+            }
+        }
+        virials
+    }
+
+    /// Number of contacts of each disk.
+    pub fn contact_counts(&self) -> Vec<u32> {
+        let mut counts = vec![0; self.held.len()];
+        for contact in &self.contacts {
+            counts[contact.first as usize] += 1;
+            counts[contact.second as usize] += 1;
+        }
+        counts
+    }
+
     /// Pressure p = Σ F r / (D V) \[force / length^(D−1)\].
     pub fn pressure(&self, volume: f64) -> f64 {
         let virial = total(self.contacts.iter().map(|contact| contact.force * norm(contact.separation)));

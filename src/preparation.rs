@@ -119,6 +119,9 @@ pub enum PreparationError {
         /// The tolerance given.
         tolerance: f64,
     },
+    /// A packing in the open plane has no packing fraction and no pressure.
+    #[error("the packing lies in the open plane: only a periodic box can be compressed")]
+    NotPeriodic,
     /// A relaxation did not end at rest.
     #[error(
         "at packing fraction {packing_fraction} the relaxation stopped with {stop:?} after {step_count} steps, residual {residual:e}"
@@ -178,9 +181,7 @@ pub fn random_points<const D: usize>(
     packing_fraction: f64,
     seed: u64,
 ) -> Result<Packing<D>, PreparationError> {
-    if !(packing_fraction > 0.0 && packing_fraction < 4.0) {
-        return Err(PreparationError::PackingFractionOutOfRange { packing_fraction });
-    }
+    check_fraction(packing_fraction)?;
     let radii = mixture.radii(disk_count)?;
     let solid: f64 = radii.iter().map(|&radius| ball_volume::<D>(radius)).sum();
     let side = side_ratio::<D>(solid / packing_fraction);
@@ -226,17 +227,59 @@ pub fn prepare_with<const D: usize>(
                 .0)
         }
         Target::Pressure(pressure) => {
-            if !(pressure.is_finite() && pressure > 0.0) {
-                return Err(PreparationError::PressureNotPositive { pressure });
-            }
-            if !(*tolerance > 0.0 && *tolerance < 1.0) {
-                return Err(PreparationError::ToleranceOutOfRange { tolerance: *tolerance });
-            }
+            check_pressure(pressure, *tolerance)?;
             let quench = quench_fraction::<D>(law, mixture, pressure)?;
             let points = random_points::<D>(*disk_count, mixture, quench, *seed)?;
             Search { law, cost: Cost::default(), count: 0, quench }.meet(points, (pressure, *tolerance), relaxer, trace)
         }
     }
+}
+
+/// Compresses or decompresses a packing in its periodic box to a packing fraction or a pressure, with this law and
+/// relaxer; `trace` observes the relaxations.
+///
+/// Box and positions are scaled together, and the packing is relaxed. To a packing fraction this is done once. To a
+/// pressure it is done until the pressure is met to the relative `tolerance`, as in [`prepare_with`].
+///
+/// # Errors
+/// [`PreparationError`] says what is not possible, with numbers.
+pub fn compress<const D: usize>(
+    packing: Packing<D>,
+    (target, tolerance): (Target, f64),
+    law: &dyn PairLaw,
+    relaxer: &impl Relaxer,
+    trace: &mut dyn Trace,
+) -> Result<Prepared<D>, PreparationError> {
+    let fraction = packing.packing_fraction().ok_or(PreparationError::NotPeriodic)?;
+    let mut search = Search { law, cost: Cost::default(), count: 0, quench: fraction };
+    match target {
+        Target::PackingFraction(packing_fraction) => {
+            check_fraction(packing_fraction)?;
+            let scaled = packing.rescaled(side_ratio::<D>(fraction / packing_fraction));
+            Ok(search.rest(scaled, relaxer, trace)?.0)
+        }
+        Target::Pressure(pressure) => {
+            check_pressure(pressure, tolerance)?;
+            search.meet(packing, (pressure, tolerance), relaxer, trace)
+        }
+    }
+}
+
+fn check_fraction(packing_fraction: f64) -> Result<(), PreparationError> {
+    if packing_fraction > 0.0 && packing_fraction < 4.0 {
+        return Ok(());
+    }
+    Err(PreparationError::PackingFractionOutOfRange { packing_fraction })
+}
+
+fn check_pressure(pressure: f64, tolerance: f64) -> Result<(), PreparationError> {
+    if !(pressure.is_finite() && pressure > 0.0) {
+        return Err(PreparationError::PressureNotPositive { pressure });
+    }
+    if !(tolerance > 0.0 && tolerance < 1.0) {
+        return Err(PreparationError::ToleranceOutOfRange { tolerance });
+    }
+    Ok(())
 }
 
 /// Pressure after affine compression from jamming. Packings have about 0.7 of it; it only starts the search.

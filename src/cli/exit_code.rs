@@ -27,3 +27,10 @@ pub fn of_states(not_at_rest: &[String]) -> ExitCode {
     );
     ExitCode::from(NOT_AT_REST)
 }
+
+/// Ends a command that relaxed one packing, which may not be at rest.
+pub fn of_relaxation(not_at_rest: Option<String>) -> ExitCode {
+    let Some(name) = not_at_rest else { return ExitCode::SUCCESS };
+    let _ = writeln!(std::io::stderr(), "jamscope: not at rest: {name}; the state is written as it is");
+    ExitCode::from(NOT_AT_REST)
+}

@@ -244,7 +244,7 @@ impl Files<'_> {
 }
 
 /// The parameters of a law, in the form that `jamscope inspect` reads.
-fn numbers_of(law: &LawChoice) -> Vec<(&'static str, String)> {
+pub(super) fn numbers_of(law: &LawChoice) -> Vec<(&'static str, String)> {
     match law {
         LawChoice::Hertzian(law) => vec![("stiffness", format!("{:?}", law.stiffness))],
         LawChoice::Hookean(law) => vec![("stiffness", format!("{:?}", law.stiffness))],

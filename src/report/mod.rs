@@ -41,6 +41,7 @@ mod protocol;
 #[cfg(feature = "plot")]
 mod response_page;
 mod rows;
+mod state_file;
 #[cfg(all(feature = "fit", feature = "plot"))]
 pub mod study;
 pub mod table;
@@ -50,6 +51,7 @@ pub use error::ReportError;
 pub use files::write_study;
 pub use files::{write, write_analyses, write_analyses_into, write_into};
 pub use output::{Kind, OutputFolder};
+pub use state_file::write_state;
 
 #[cfg(doc)]
 use crate::run::Report;

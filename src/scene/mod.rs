@@ -31,7 +31,7 @@ pub use observables::{ProfileFitSettings, SpectrumFitSettings};
 pub use protocol::ProtocolChoice;
 pub use source::Source;
 #[cfg(feature = "cli")]
-pub use toml_text::{TomlError, relaxer_by_name};
+pub use toml_text::{TomlError, relaxer_by_name, relaxer_with_limit};
 
 #[cfg(test)]
 mod tests {

@@ -51,3 +51,11 @@ impl Scene {
 pub fn relaxer_by_name(name: &str) -> Result<RelaxerChoice, TomlError> {
     read(&format!("{name} = {{}}"))
 }
+
+/// Like [`relaxer_by_name`], with this relative limit of the net force \[1\].
+///
+/// # Errors
+/// No relaxer has this name.
+pub fn relaxer_with_limit(name: &str, limit: f64) -> Result<RelaxerChoice, TomlError> {
+    read(&format!("{name} = {{ limit = {{ relative = {limit:?} }} }}"))
+}

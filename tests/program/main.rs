@@ -14,6 +14,8 @@ mod fuzz;
 mod io;
 #[cfg(feature = "cli")]
 mod output_folder;
+#[cfg(feature = "cli")]
+mod packing_commands;
 #[cfg(feature = "linear")]
 mod precision;
 mod report;

@@ -10,7 +10,7 @@ const LONGEST_FILE: usize = 450;
 const LONG: [&str; 1] = ["reference::bessel::modified_tables"];
 
 /// Names of files that are standard terms of physics, mathematics, numerical computing or programming.
-const STANDARD: [&str; 150] = [
+const STANDARD: [&str; 151] = [
     "analyse",
     "angular",
     "atomic",
@@ -145,6 +145,7 @@ const STANDARD: [&str; 150] = [
     "spectrum",
     "spherical",
     "state",
+    "state_file",
     "statistics",
     "step",
     "store_error",

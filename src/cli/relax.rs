@@ -1,0 +1,234 @@
+//! `jamscope relax` and `jamscope compress`: one packing file brought to rest, or to a packing fraction or pressure.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Args;
+use jamscope::io::{Contents, Frame, read_contents};
+use jamscope::law::LawChoice;
+use jamscope::network::ContactNetwork;
+use jamscope::packing::Packing;
+use jamscope::preparation::{Target, compress};
+use jamscope::relax::{Check, Relaxer, RelaxerChoice, Stop, Trace};
+use jamscope::report::write_state;
+use jamscope::run::Progress;
+use jamscope::scene::{relaxer_by_name, relaxer_with_limit};
+
+use crate::contact_law::{self, LawName};
+use crate::progress::Bars;
+use crate::{Failure, exit_code, input, print, threads, warn};
+
+/// A packing file and how it is relaxed.
+#[derive(Args)]
+struct FileArguments {
+    /// Packing file: extended XYZ, LAMMPS data or dump, possibly compressed by gzip or zstd; `-` is the standard input.
+    packing: PathBuf,
+    /// Frame of a file with several: `last` or its number, from 0.
+    #[arg(long, value_name = "FRAME", default_value = "last", value_parser = input::frame)]
+    frame: Frame,
+    /// Relaxer, by its name in a scene: `fire`, `damped`, `conjugate_gradients`, `quasi_newton`, `implicit`,
+    /// `gradient_flow`, `newton` or `staged`.
+    #[arg(long, value_name = "NAME", default_value = "fire")]
+    relaxer: String,
+    /// Limit of the largest net force on the backbone over the mean contact force; by default that of the relaxer, 1e-8.
+    #[arg(long, value_name = "X")]
+    limit: Option<f64>,
+    /// Contact law if the file gives none: `hertzian`, `hookean` or `power:ALPHA`; by default Hertzian.
+    #[arg(long, value_name = "LAW", value_parser = contact_law::parse)]
+    law: Option<LawName>,
+    /// Stiffness k' (Hertzian, Hookean) or energy scale (power law) if the file gives none.
+    #[arg(long, value_name = "K")]
+    stiffness: Option<f64>,
+    /// Dimension of the packing.
+    #[arg(long, value_name = "D", default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
+    dimension: u8,
+    /// Number of threads; by default one per core. Changes no result.
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// File for the result, extended XYZ; by default NAME.relaxed.xyz or NAME.compressed.xyz in the current folder.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// Arguments of `relax`.
+#[derive(Args)]
+pub struct RelaxArguments {
+    #[command(flatten)]
+    file: FileArguments,
+}
+
+/// Arguments of `compress`.
+#[derive(Args)]
+pub struct CompressArguments {
+    #[command(flatten)]
+    file: FileArguments,
+    /// Pressure to reach.
+    #[arg(long, value_name = "P", conflicts_with = "packing_fraction", required_unless_present = "packing_fraction")]
+    pressure: Option<f64>,
+    /// Packing fraction to reach.
+    #[arg(long, value_name = "PHI")]
+    packing_fraction: Option<f64>,
+    /// Largest relative deviation of the pressure.
+    #[arg(long, value_name = "X", default_value_t = 0.01)]
+    tolerance: f64,
+}
+
+/// What is done with a packing.
+enum Task {
+    Relax,
+    Compress(Target, f64),
+}
+
+/// Relaxes a packing in the box, or within the held disks, that its file has.
+pub fn relax(arguments: &RelaxArguments) -> Result<ExitCode, Failure> {
+    run(&arguments.file, &Task::Relax)
+}
+
+/// Compresses or decompresses a packing to a packing fraction or a pressure.
+pub fn compress_file(arguments: &CompressArguments) -> Result<ExitCode, Failure> {
+    let target = match (arguments.pressure, arguments.packing_fraction) {
+        (_, Some(fraction)) => Target::PackingFraction(fraction),
+        (pressure, None) => Target::Pressure(pressure.unwrap_or(0.0)),
+    };
+    run(&arguments.file, &Task::Compress(target, arguments.tolerance))
+}
+
+fn run(arguments: &FileArguments, task: &Task) -> Result<ExitCode, Failure> {
+    threads::set_threads(arguments.threads)?;
+    let relaxer = match arguments.limit {
+        Some(limit) if limit.is_finite() && limit >= 0.0 => relaxer_with_limit(&arguments.relaxer, limit),
+        Some(limit) => return Err(format!("--limit is {limit}: must be a number, 0 or more").into()),
+        None => relaxer_by_name(&arguments.relaxer),
+    };
+    let relaxer = relaxer.map_err(|error| format!("--relaxer {}: {}", arguments.relaxer, error.message))?;
+    let mut inputs = input::Inputs::default();
+    let path = inputs.file(&arguments.packing)?;
+    let law = contact_law::law_of(&path, arguments.frame, arguments.law, arguments.stiffness)?;
+    law.check()?;
+    match arguments.dimension {
+        3 => run_in::<3>(&path, arguments, (&law, &relaxer), task),
+        _ => run_in::<2>(&path, arguments, (&law, &relaxer), task),
+    }
+}
+
+fn run_in<const D: usize>(
+    path: &Path,
+    arguments: &FileArguments,
+    (law, relaxer): (&LawChoice, &RelaxerChoice),
+    task: &Task,
+) -> Result<ExitCode, Failure> {
+    let Contents { packing, properties, warnings } = read_contents::<D>(path, arguments.frame)?;
+    warn(&arguments.packing, &warnings);
+    let name = arguments.packing.display();
+    let bars = Bars::new(std::iter::once(name.to_string().as_str()));
+    let mut trace = BarTrace { bars: &bars, limit: relaxer.limit().value() };
+    let first = Numbers::of(&packing, &ContactNetwork::new(&packing, law)?);
+    let (ending, state, end) = match task {
+        Task::Relax => {
+            let outcome = relaxer.relax(packing, law, &mut trace).map_err(|error| format!("{name}: {error}"))?;
+            let cost = outcome.cost;
+            let end = End { stop: outcome.stop, residual: outcome.residual.relative(), cost, relaxation_count: 1 };
+            ("relaxed", outcome.state, end)
+        }
+        Task::Compress(target, tolerance) => {
+            let prepared = compress(packing, (*target, *tolerance), law, relaxer, &mut trace)
+                .map_err(|error| format!("{name}: {error}"))?;
+            let end = End {
+                stop: Stop::Converged(prepared.criterion),
+                residual: prepared.residual.relative(),
+                cost: prepared.cost,
+                relaxation_count: prepared.relaxation_count,
+            };
+            ("compressed", prepared.packing.into_inner(), end)
+        }
+    };
+    bars.done(0, None);
+    let out = arguments.out.clone().unwrap_or_else(|| named(&arguments.packing, ending));
+    let network = ContactNetwork::new(&state, law)?;
+    write_state(&out, &state, (&network, law), &properties)?;
+    print(&table(&first, &Numbers::of(&state, &network), &end, &out))?;
+    let is_at_rest = matches!(end.stop, Stop::Converged(_));
+    Ok(exit_code::of_relaxation((!is_at_rest).then(|| format!("{name} ({:?})", end.stop))))
+}
+
+/// How the last relaxation ended, and what all of them cost.
+struct End {
+    stop: Stop,
+    residual: f64,
+    cost: jamscope::relax::Cost,
+    relaxation_count: usize,
+}
+
+/// Numbers of a state.
+struct Numbers {
+    packing_fraction: Option<f64>,
+    pressure: Option<f64>,
+    energy: f64,
+    contact_count: usize,
+    rattler_count: usize,
+    coordination: f64,
+}
+
+impl Numbers {
+    fn of<const D: usize>(packing: &Packing<D>, network: &ContactNetwork<D>) -> Self {
+        Numbers {
+            packing_fraction: packing.packing_fraction(),
+            pressure: packing.domain().volume().map(|volume| network.pressure(volume)),
+            energy: network.energy(),
+            contact_count: network.contacts.len(),
+            rattler_count: network.rattlers().count(),
+            coordination: network.coordination(),
+        }
+    }
+}
+
+/// The table on the terminal: before and after.
+fn table(first: &Numbers, last: &Numbers, end: &End, out: &Path) -> String {
+    let mut text = format!("{:<34}{:>24}{:>24}\n", "", "before", "after");
+    let mut row = |name: &str, of: &dyn Fn(&Numbers) -> Option<String>| {
+        if let (Some(first), Some(last)) = (of(first), of(last)) {
+            text.push_str(&format!("{name:<34}{first:>24}{last:>24}\n"));
+        }
+    };
+    row("packing fraction [1]", &|it| it.packing_fraction.map(|value| value.to_string()));
+    row("pressure [force / length^(D-1)]", &|it| it.pressure.map(|value| value.to_string()));
+    row("energy [energy]", &|it| Some(it.energy.to_string()));
+    row("contacts", &|it| Some(it.contact_count.to_string()));
+    row("rattlers", &|it| Some(it.rattler_count.to_string()));
+    row("coordination Z [1]", &|it| Some(it.coordination.to_string()));
+    let End { stop, residual, cost, relaxation_count } = end;
+    text.push_str(&format!(
+        "\n{stop:?}: residual {residual:.1e} after {} relaxations, {} force evaluations, {} factorisations, {:.2} s\n{}\n",
+        relaxation_count,
+        cost.force_evaluation_count,
+        cost.factorisation_count,
+        cost.seconds,
+        out.display()
+    ));
+    text
+}
+
+/// NAME.ENDING.xyz in the current folder.
+fn named(path: &Path, ending: &str) -> PathBuf {
+    let name = path.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+    let stem = name.split('.').next().unwrap_or_default();
+    let stem = if stem.is_empty() || stem == "-" { "packing" } else { stem };
+    PathBuf::from(format!("{stem}.{ending}.xyz"))
+}
+
+/// Shows the residual on a terminal.
+struct BarTrace<'a> {
+    bars: &'a Bars,
+    limit: f64,
+}
+
+impl Trace for BarTrace<'_> {
+    fn checked(&mut self, check: &Check) {
+        if check.step_count == 0 {
+            self.bars.stage(0, "relaxation", self.limit);
+        }
+        if !check.restart {
+            self.bars.residual(0, check.residual);
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! [`write_state`]: a packing with the results of each disk, as extended XYZ.
+
+use std::path::Path;
+
+use crate::io::{Column, WriteError, write_packing};
+use crate::law::choice::LawChoice;
+use crate::network::ContactNetwork;
+use crate::packing::Packing;
+use crate::report::files::numbers_of;
+
+/// Keys of the comment line that depend on the state or on the law; they are written anew.
+const OWN: [&str; 9] = [
+    "law",
+    "stiffness",
+    "exponent",
+    "pressure",
+    "packing_fraction",
+    "energy",
+    "relative_residual",
+    "rattlers",
+    "jamscope_version",
+];
+
+/// Keys of the format itself.
+const OF_FORMAT: [&str; 5] = ["Lattice", "Origin", "pbc", "Properties", "dimension"];
+
+/// Writes a packing with the results of each disk: its contact network under a law. `properties` are kept, but for those of the format, of
+/// the law and of the state.
+///
+/// | column | meaning |
+/// |---|---|
+/// | `contacts` | number of contacts \[1\] |
+/// | `rattler` | 1 for a mobile disk off the backbone, else 0 |
+/// | `net_force` | net force, D values \[force\] |
+/// | `virial` | share in the virial tensor, D × D values, [`ContactNetwork::disk_virials`] \[force · length\] |
+///
+/// # Errors
+/// [`WriteError`] with the file and the problem; nothing is written then.
+pub fn write_state<const D: usize>(
+    path: &Path,
+    packing: &Packing<D>,
+    (network, law): (&ContactNetwork<D>, &LawChoice),
+    properties: &[(String, String)],
+) -> Result<(), WriteError> {
+    let contacts: Vec<f64> = network.contact_counts().into_iter().map(f64::from).collect();
+    let mut rattler = vec![0.0; packing.len()];
+    network.rattlers().for_each(|disk| rattler[disk] = 1.0);
+    let virials = network.disk_virials();
+    let columns = [
+        Column { name: "contacts", width: 1, values: &contacts },
+        Column { name: "rattler", width: 1, values: &rattler },
+        Column { name: "net_force", width: D, values: network.forces().as_flattened() },
+        Column { name: "virial", width: D * D, values: virials.as_flattened().as_flattened() },
+    ];
+    let name = match law {
+        LawChoice::Hertzian(_) => "hertzian",
+        LawChoice::Hookean(_) => "hookean",
+        LawChoice::PowerLaw(_) => "power",
+    };
+    let mut own = vec![("jamscope_version", env!("CARGO_PKG_VERSION").into()), ("law", name.to_string())];
+    own.extend(numbers_of(law));
+    own.push(("energy", format!("{:?}", network.energy())));
+    if let (Some(volume), Some(packing_fraction)) = (packing.domain().volume(), packing.packing_fraction()) {
+        own.push(("pressure", format!("{:?}", network.pressure(volume))));
+        own.push(("packing_fraction", format!("{packing_fraction:?}")));
+    }
+    let is_kept = |key: &str| !OWN.iter().chain(&OF_FORMAT).any(|other| other.eq_ignore_ascii_case(key));
+    let kept = properties.iter().filter(|(key, _)| is_kept(key)).map(|(key, value)| (key.as_str(), value.as_str()));
+    let all: Vec<(&str, &str)> = own.iter().map(|(key, value)| (*key, value.as_str())).chain(kept).collect();
+    write_packing(path, packing, &columns, &all)
+}

@@ -1,0 +1,221 @@
+//! Commands on one packing file: `relax`, `compress`, frames of a trajectory, the standard input.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use jamscope::io::{Frame, read_contents, read_packing, write_packing};
+use jamscope::law::Hertzian;
+use jamscope::network::ContactNetwork;
+use jamscope::packing::Packing;
+use jamscope::preparation::Target;
+use jamscope::{Inflation, Preparation, inflate, prepare};
+use serde_json::Value;
+
+fn fixture(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name).to_string_lossy().into_owned()
+}
+
+/// The program with these arguments in a folder, and this text on its standard input.
+fn jamscope(folder: &Path, arguments: &[&str], input: &[u8]) -> Output {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_jamscope"));
+    program.args(arguments).current_dir(folder).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = program.spawn().expect("the program starts");
+    // A program that refuses its arguments does not read.
+    let _ = child.stdin.take().expect("a pipe").write_all(input);
+    child.wait_with_output().expect("the program ends")
+}
+
+fn done(folder: &Path, arguments: &[&str], input: &[u8]) -> String {
+    let output = jamscope(folder, arguments, input);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{arguments:?}: {message}");
+    String::from_utf8(output.stdout).expect("Unicode")
+}
+
+fn refused(folder: &Path, arguments: &[&str], parts: &[&str]) {
+    let output = jamscope(folder, arguments, b"");
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}: {message}");
+    for part in parts {
+        assert!(message.contains(part), "no `{part}` in: {message}");
+    }
+}
+
+/// The columns of a file written by the program, by name.
+fn column(path: &Path, name: &str) -> Vec<Vec<f64>> {
+    let text = std::fs::read_to_string(path).expect("a file");
+    let comment = text.lines().nth(1).expect("a comment line");
+    let layout = comment.split("Properties=").nth(1).and_then(|rest| rest.split(' ').next()).expect("columns");
+    let parts: Vec<&str> = layout.split(':').collect();
+    let mut start = 0;
+    for part in parts.chunks(3) {
+        let width: usize = part[2].parse().expect("a width");
+        if part[0] == name {
+            let rows = text.lines().skip(2).map(|line| line.split_whitespace().skip(start).take(width));
+            return rows.map(|row| row.map(|word| word.parse().expect("a number")).collect()).collect();
+        }
+        start += width;
+    }
+    panic!("no column {name} in {layout}");
+}
+
+#[test]
+fn a_relaxed_file_is_at_rest_and_holds_the_results_of_each_disk() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // A packing with one disk moved by a hundredth of a diameter.
+    let packing = read_packing::<2>(fixture("packings/hertz_N1000_p100.xyz")).expect("a fixture");
+    let pressure_before = {
+        let network = ContactNetwork::new(&packing, &Hertzian::default()).expect("no coincidence");
+        network.pressure(packing.domain().volume().expect("a box"))
+    };
+    let mut positions = packing.positions().to_vec();
+    positions[17][0] += 0.01;
+    let packing = Packing::new(*packing.domain(), positions, packing.radii().to_vec()).expect("valid");
+    let start = folder.path().join("moved.xyz");
+    write_packing(&start, &packing, &[], &[("law", "hertzian"), ("author", "me")]).expect("written");
+    for relaxer in ["fire", "quasi_newton", "conjugate_gradients"] {
+        let printed = done(folder.path(), &["relax", "moved.xyz", "--relaxer", relaxer, "--limit", "1e-9"], b"");
+        assert!(printed.contains("moved.relaxed.xyz") && printed.contains("Converged"), "{printed}");
+        let path = folder.path().join("moved.relaxed.xyz");
+        let contents = read_contents::<2>(&path, Frame::Last).expect("readable");
+        let value = |key: &str| {
+            let found = contents.properties.iter().find(|(other, _)| other == key).map(|(_, value)| value.clone());
+            found.unwrap_or_else(|| panic!("no key {key}"))
+        };
+        assert_eq!((value("author"), value("law")), ("me".into(), "hertzian".into()));
+        let network = ContactNetwork::new(&contents.packing, &Hertzian::default()).expect("no coincidence");
+        let volume = contents.packing.domain().volume().expect("a box");
+        // The disk returns to the minimum it came from: pressures agree to the residuals, 10⁻⁸ and 10⁻⁹.
+        let pressure: f64 = value("pressure").parse().expect("a number");
+        assert_eq!(pressure, network.pressure(volume));
+        assert!((pressure / pressure_before - 1.0).abs() < 1e-7, "{relaxer}: {pressure} and {pressure_before}");
+        // The results of the disks add up to those of the packing.
+        let contacts: f64 = column(&path, "contacts").into_iter().flatten().sum();
+        assert_eq!(contacts, 2.0 * network.contacts.len() as f64);
+        let rattlers: f64 = column(&path, "rattler").into_iter().flatten().sum();
+        assert_eq!(rattlers, network.rattlers().count() as f64);
+        let stress = network.stress(volume);
+        let virials = column(&path, "virial");
+        for component in 0..4 {
+            let sum: f64 = virials.iter().map(|virial| virial[component]).sum::<f64>() / volume;
+            let expected = stress[component / 2][component % 2];
+            // Two thousand terms, each with a rounding error of 10⁻¹⁶ of the pressure.
+            assert!((sum - expected).abs() < 1e-12 * pressure, "{component}: {sum} and {expected}");
+        }
+        let largest = column(&path, "net_force").iter().map(|force| force[0].hypot(force[1])).fold(0.0, f64::max);
+        assert!((largest / network.largest_net_force() - 1.0).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn a_relaxation_that_is_not_at_rest_is_written_and_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // No residual is 0: FIRE ends at the rounding floor.
+    let path = fixture("packings/hertz_N1000_p100.xyz");
+    let output = jamscope(folder.path(), &["relax", &path, "--limit", "0", "--out", "floor.xyz"], b"");
+    assert_eq!(output.status.code(), Some(3));
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(message.contains("not at rest") && message.contains("RoundingFloor"), "{message}");
+    assert_eq!(read_packing::<2>(folder.path().join("floor.xyz")).expect("readable").len(), 1000);
+}
+
+#[test]
+fn a_compressed_file_has_the_pressure_or_the_packing_fraction_asked_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = fixture("packings/hertz_N1000_p100.xyz");
+    for pressure in [50.0, 300.0] {
+        let asked = pressure.to_string();
+        done(folder.path(), &["compress", &path, "--pressure", &asked, "--tolerance", "1e-3", "--out", "p.xyz"], b"");
+        let packing = read_packing::<2>(folder.path().join("p.xyz")).expect("readable");
+        let network = ContactNetwork::new(&packing, &Hertzian::default()).expect("no coincidence");
+        let reached = network.pressure(packing.domain().volume().expect("a box"));
+        assert!((reached / pressure - 1.0).abs() <= 1e-3, "{reached}");
+        assert!(network.largest_net_force() <= 1e-3 * network.mean_contact_force());
+    }
+    done(folder.path(), &["compress", &path, "--packing-fraction", "0.9"], b"");
+    let packing = read_packing::<2>(folder.path().join("hertz_N1000_p100.compressed.xyz")).expect("readable");
+    assert!((packing.packing_fraction().expect("a box") - 0.9).abs() < 1e-14);
+}
+
+#[test]
+fn what_cannot_be_done_with_a_packing_is_refused_with_its_reason() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = fixture("packings/hertz_N1000_p100.xyz");
+    refused(folder.path(), &["relax", &path, "--relaxer", "magic"], &["--relaxer magic", "fire", "damped"]);
+    refused(folder.path(), &["relax", &path, "--limit=-1"], &["--limit is -1"]);
+    refused(folder.path(), &["relax", &path, "--frame", "3"], &["no frame 3", "1 frames"]);
+    refused(folder.path(), &["compress", &path, "--pressure=-2"], &["hertz_N1000_p100.xyz", "pressure is -2"]);
+    refused(folder.path(), &["compress", &path, "--packing-fraction", "5"], &["packing_fraction is 5"]);
+    let open = "1\npbc=\"F F F\" Properties=species:S:1:pos:R:2:radius:R:1\nX 0 0 0.5\n";
+    std::fs::write(folder.path().join("open.xyz"), open).expect("written");
+    refused(folder.path(), &["compress", "open.xyz", "--pressure", "1"], &["open.xyz", "open plane"]);
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing is written");
+}
+
+#[test]
+fn the_standard_input_and_compressed_files_are_read_like_the_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = fixture("packings/hertz_N1000_p100.xyz");
+    let text = std::fs::read(&path).expect("a fixture");
+    let mut gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    gzip.write_all(&text).expect("in memory");
+    let gzip = gzip.finish().expect("in memory");
+    let expected = done(folder.path(), &["inspect", &path], b"");
+    assert_eq!(done(folder.path(), &["inspect", "-"], &text), expected);
+    assert_eq!(done(folder.path(), &["inspect", "-"], &gzip), expected);
+    done(folder.path(), &["relax", &path, "--out", "a.xyz"], b"");
+    done(folder.path(), &["relax", "-", "--out", "b.xyz"], &text);
+    let [a, b] = ["a.xyz", "b.xyz"].map(|name| std::fs::read(folder.path().join(name)).expect("a file"));
+    assert!(a == b);
+    done(folder.path(), &["inspect", &path, "--write", "c.xyz"], b"");
+    let c = folder.path().join("c.xyz");
+    assert_eq!(read_packing::<2>(&c).expect("readable"), read_packing::<2>(&path).expect("readable"));
+    assert_eq!(column(&c, "virial").len(), 1000);
+}
+
+/// A packing before and after an inflation, as files and as the two frames of one.
+fn trajectory(folder: &Path) -> [PathBuf; 3] {
+    let target = Target::Pressure(1000.0);
+    let prepared = prepare(&Preparation { disk_count: 300, target, ..Preparation::default() }).expect("prepared");
+    let inflated = inflate(&Inflation::default(), prepared.packing.get()).expect("inflated");
+    let paths = ["before.xyz", "after.xyz", "both.xyz"].map(|name| folder.join(name));
+    write_packing(&paths[0], inflated.before.packing.get(), &[], &[]).expect("written");
+    write_packing(&paths[1], inflated.after.packing.get(), &[], &[]).expect("written");
+    let both = [&paths[0], &paths[1]].map(|path| std::fs::read_to_string(path).expect("text")).concat();
+    std::fs::write(&paths[2], both).expect("written");
+    paths
+}
+
+#[test]
+fn frames_of_one_file_are_analysed_like_two_files() {
+    let folder = tempfile::tempdir().expect("a folder");
+    trajectory(folder.path());
+    done(folder.path(), &["analyse", "before.xyz", "after.xyz", "--out", "two"], b"");
+    done(folder.path(), &["analyse", "both.xyz", "--frames", "0,1", "--out", "one"], b"");
+    let read = |out: &str, name: &str| {
+        let text = std::fs::read_to_string(folder.path().join(out).join(name)).expect("a file");
+        serde_json::from_str::<Value>(&text).expect("JSON")
+    };
+    let [two, one] = ["two", "one"].map(|out| read(out, "analysis.json").to_string());
+    // A pair is named after its first file.
+    assert_eq!(one.replace("\"name\":\"both\"", "\"name\":\"before\""), two);
+    refused(folder.path(), &["analyse", "both.xyz", "--frames", "0,2"], &["no frame 2", "2 frames"]);
+    refused(folder.path(), &["analyse", "both.xyz", "--frames", "0"], &["--frames A,B"]);
+    refused(folder.path(), &["analyse", "before.xyz", "after.xyz", "--frames", "0,0"], &["--frames A,B"]);
+}
+
+#[test]
+fn frames_are_inspected_one_by_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    trajectory(folder.path());
+    let one = |arguments: &[&str]| done(folder.path(), &[&["inspect", "--json"], arguments].concat(), b"");
+    let [before, after] = ["before.xyz", "after.xyz"].map(|name| one(&[name]));
+    assert_eq!(one(&["both.xyz", "--frame", "0"]), before);
+    assert_eq!(one(&["both.xyz"]), after);
+    let all: Vec<Value> = serde_json::from_str(&one(&["both.xyz", "--frame", "all"])).expect("JSON");
+    let expected = [before, after].map(|text| serde_json::from_str::<Value>(&text).expect("JSON"));
+    assert_eq!(all, expected);
+    let shown = done(folder.path(), &["inspect", "both.xyz", "--frame", "all"], b"");
+    assert!(shown.contains("both.xyz, frame 0") && shown.contains("both.xyz, frame 1"), "{shown}");
+}
