@@ -38,7 +38,7 @@ use crate::io::frame::Frame;
 use crate::io::plane::Plane;
 use crate::io::read_error::ReadError;
 use crate::io::read_warning::ReadWarning;
-use crate::io::source::{Disk, Source, largest_radius};
+use crate::io::source::{AXES, Disk, Source, largest_radius};
 use crate::packing::Domain;
 
 /// The forms of a position, in order of preference, and whether they are fractions of the box.
@@ -142,10 +142,10 @@ struct Bounds<const D: usize> {
 
 fn bounds<const D: usize>(source: &Source, flags: &str, title: usize, end: usize) -> Result<Bounds<D>, ReadError> {
     let words: Vec<&str> = flags.split_ascii_whitespace().collect();
-    let (tilted, flags) = match words[..] {
-        ["xy", "xz", "yz", ..] => (true, &words[3..]),
-        ["abc", ..] => return Err(source.tilted(title, "ITEM: BOX BOUNDS", flags.trim())),
-        _ => (false, &words[..]),
+    let (form, flags) = match words[..] {
+        ["xy", "xz", "yz", ..] => (Form::Tilts, &words[3..]),
+        ["abc", "origin", ..] => (Form::Vectors, &words[2..]),
+        _ => (Form::Bounds, &words[..]),
     };
     if !matches!(flags.len(), 0 | 3) {
         return Err(source.missing(title, "three boundary flags after ITEM: BOX BOUNDS", flags.join(" ")));
@@ -162,17 +162,7 @@ fn bounds<const D: usize>(source: &Source, flags: &str, title: usize, end: usize
         if line >= end {
             return Err(source.truncated(end, "sides of the box", 3, axis));
         }
-        let row = source.row(line);
-        row.expect_count(if tilted { 3 } else { 2 })?;
-        if tilted && row.number(2, ["xy", "xz", "yz"][axis])? != 0.0 {
-            return Err(source.tilted(line, ["xy", "xz", "yz"][axis], row.values[2]));
-        }
-        let field = ["xlo xhi", "ylo yhi", "zlo zhi"][axis];
-        sides[axis] = if axis >= D {
-            source.height(line, field, row.values[0], row.values[1])?
-        } else {
-            source.side(line, field, row.values[0], row.values[1])?
-        };
+        sides[axis] = side(source, &form, line, axis, axis >= D)?;
     }
     expect_end(source, "ITEM: BOX BOUNDS", title + 4, end)?;
     let corner = std::array::from_fn(|axis| sides[axis].0);
@@ -184,6 +174,54 @@ fn bounds<const D: usize>(source: &Source, flags: &str, title: usize, end: usize
         _ => (Domain::Periodic { corner, lengths }, None),
     };
     Ok(Bounds { domain, sides, warning })
+}
+
+/// How the lines of a box are written.
+enum Form {
+    /// Lower and upper end.
+    Bounds,
+    /// The ends and a tilt factor.
+    Tilts,
+    /// An edge vector and a component of the origin.
+    Vectors,
+}
+
+/// Lower end and length of one side. A height may be 0.
+fn side(source: &Source, form: &Form, line: usize, axis: usize, is_height: bool) -> Result<(f64, f64), ReadError> {
+    let row = source.row(line);
+    let field = ["xlo xhi", "ylo yhi", "zlo zhi"][axis];
+    match form {
+        Form::Bounds => row.expect_count(2)?,
+        Form::Tilts => {
+            row.expect_count(3)?;
+            let field = ["xy", "xz", "yz"][axis];
+            if row.number(2, field)? != 0.0 {
+                return Err(source.tilted(line, field, row.values[2]));
+            }
+        }
+        Form::Vectors => {
+            row.expect_count(4)?;
+            let vector = ["a", "b", "c"][axis];
+            for other in (0..3).filter(|&other| other != axis) {
+                let field = format!("{vector} {}", AXES[other]);
+                if row.number(other, &field)? != 0.0 {
+                    return Err(source.tilted(line, &field, row.values[other]));
+                }
+            }
+            let start = row.number(3, "origin")?;
+            if is_height && row.number(axis, vector)? == 0.0 {
+                return Ok((start, 0.0));
+            }
+            let length = row.positive(axis, vector)?;
+            source.check_corner(line, "origin", start, length)?;
+            return Ok((start, length));
+        }
+    }
+    if is_height {
+        source.height(line, field, row.values[0], row.values[1])
+    } else {
+        source.side(line, field, row.values[0], row.values[1])
+    }
 }
 
 /// Refuses lines after the last value of an item.

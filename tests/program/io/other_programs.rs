@@ -79,6 +79,12 @@ fn what_is_harmless_is_read() {
     // A box without height.
     assert_same(DUMP, "-0.5 0.5", "0 0");
     assert_same(DUMP, "-0.5 0.5", "0.0 0.0");
+    // A box by its edge vectors and its origin, as OVITO writes it.
+    let vectors =
+        DUMP.replace("BOUNDS", "BOUNDS abc origin").replace("0.0 9.0", "9 0 0 0").replace("0.0 8.0", "0 8 0 0");
+    for height in ["0 0 1 -0.5", "0 0 0 0"] {
+        assert_eq!(contents(vectors.replace("-0.5 0.5", height)).packing, packing());
+    }
     assert_change_refused::<3>(DUMP, "-0.5 0.5", "0 0", &["line 8", "zlo zhi is `0 0`"]);
 }
 

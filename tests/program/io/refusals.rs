@@ -159,7 +159,9 @@ fn boxes_that_are_missing_tilted_or_empty() {
     );
     assert_change_refused::<2>(DATA, "0.0 9.0 xlo xhi", "9 0 0 avec", &["line 5", "tilted", "9 0 0 avec"]);
     assert_change_refused::<2>(DUMP, "0.0 9.0", "0.0 -9.0", &["line 6", "xlo xhi is `0.0 -9.0`"]);
-    assert_change_refused::<2>(DUMP, "BOUNDS", "BOUNDS abc origin", &["line 5", "tilted"]);
+    let vectors = DUMP.replace("BOUNDS", "BOUNDS abc origin").replace("0.0 9.0", "9 0.5 0 0");
+    assert_refused::<2>(vectors, &["line 6", "tilted", "a y is `0.5`"]);
+    assert_change_refused::<2>(DUMP, "BOUNDS", "BOUNDS abc origin", &["line 6", "2 values, expected 4"]);
     let tilted = DUMP.replace("BOUNDS", "BOUNDS xy xz yz").replace("9.0", "9.0 0.1").replace("8.0", "8.0 0");
     assert_refused::<2>(tilted, &["line 6", "tilted", "xy is `0.1`"]);
 }
