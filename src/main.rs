@@ -34,6 +34,7 @@ use clap::{Args, Parser, Subcommand};
 use jamscope::inspection::inspect;
 use jamscope::io::{Frame, ReadWarning, read_contents};
 use jamscope::network::ContactNetwork;
+use jamscope::packing::Packing;
 use jamscope::read_packing;
 use jamscope::relax::RelaxerChoice;
 use jamscope::report;
@@ -165,7 +166,16 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     };
     let mut inputs = input::Inputs::default();
     if let Some(path) = &arguments.packing {
-        scene.sample = vec![sample_of_file(&inputs.file(path)?, &scene)];
+        let path = inputs.file(path)?;
+        scene.sample = vec![sample_of_file(&path, &scene)];
+        // A file that cannot be read is reported by the run.
+        if arguments.scene.is_none()
+            && let Ok(packing) = read_packing::<2>(&path)
+        {
+            let unit = unit_of(&packing);
+            scene.observables = scene.observables.in_units(unit);
+            scene.inflation.increase *= unit;
+        }
     }
     if let Some(seed) = arguments.seed {
         scene.sample.iter_mut().for_each(|sample| sample.seed = seed);
@@ -188,6 +198,11 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     }
     let scene_name = arguments.scene.as_ref().map_or("the built-in scene".into(), |path| path.display().to_string());
     Err(format!("{scene_name}: {failed} of {} samples failed, see above", report.samples.len()).into())
+}
+
+/// The unit of lengths that are not given: the diameter of a small disk of the packing, 1 in the units of the defaults.
+fn unit_of(packing: &Packing<2>) -> f64 {
+    2.0 * packing.radii().iter().copied().fold(f64::INFINITY, f64::min)
 }
 
 /// With the flag `--not-at-rest` a phase and fits are reported for any residual.

@@ -59,6 +59,8 @@ pub struct Analysis {
     /// Δp / p^((α−2)/(α−1)) \[(force / length)^(1/(α−1))\], absent for an unjammed packing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scaled_pressure_change: Option<f64>,
+    /// The observables requested, with their settings.
+    pub settings: Observables,
     /// The observables.
     #[serde(flatten)]
     pub response: Response,
@@ -127,6 +129,7 @@ impl Analysis {
             deflated: third,
             pressure_change: pressure.change,
             scaled_pressure_change: pressure.scaled,
+            settings: observables.clone(),
             response,
             pair,
         })

@@ -6,12 +6,13 @@ use std::process::ExitCode;
 use clap::Args;
 use jamscope::analysis::{Analysis, Pair, PairSettings};
 use jamscope::io::{Contents, Frame, read_contents};
+use jamscope::packing::Packing;
 use jamscope::report;
 use jamscope::scene::Observables;
 use jamscope::verdict::{Decision, VerdictSettings};
 
 use crate::contact_law::{self, LawName};
-use crate::{Failure, exit_code, input, override_limit, print, scene_file, warn};
+use crate::{Failure, exit_code, input, override_limit, print, scene_file, unit_of, warn};
 
 /// Arguments of `analyse`.
 #[derive(Args)]
@@ -27,10 +28,10 @@ pub struct AnalyseArguments {
     /// Label of the inflated disk; by default the disk whose radius changed.
     #[arg(long, value_name = "LABEL")]
     centre: Option<u64>,
-    /// Radius R beyond which disks are held; by default that of the file, or the distance of the nearest held disk, or half
-    /// the box.
-    #[arg(long, value_name = "R")]
-    outer_radius: Option<f64>,
+    /// Radius R beyond which disks are held, as a length or over the shortest side of the box (0.48L); by default that of the
+    /// file, or the distance of the nearest held disk, or half the box.
+    #[arg(long, value_name = "R", value_parser = outer_radius)]
+    outer_radius: Option<OuterRadius>,
     /// Contact law if the files give none: `hertzian`, `hookean` or `power:ALPHA`; by default Hertzian.
     #[arg(long, value_name = "LAW", value_parser = contact_law::parse)]
     law: Option<LawName>,
@@ -46,6 +47,36 @@ pub struct AnalyseArguments {
     /// Folder for the results.
     #[arg(long, value_name = "DIR", default_value = "jamscope-analysis")]
     out: PathBuf,
+}
+
+/// R on the command line.
+#[derive(Debug, Clone, Copy)]
+enum OuterRadius {
+    /// A length.
+    Length(f64),
+    /// Over the shortest side of the box.
+    OverSide(f64),
+}
+
+impl OuterRadius {
+    fn in_box(self, packing: &Packing<2>) -> Result<f64, Failure> {
+        match (self, packing.domain().lengths()) {
+            (OuterRadius::Length(length), _) => Ok(length),
+            (OuterRadius::OverSide(share), Some([x, y])) => Ok(share * x.min(y)),
+            (OuterRadius::OverSide(share), None) => {
+                Err(format!("--outer-radius {share}L: the packing is in the open plane; give a length").into())
+            }
+        }
+    }
+}
+
+/// A length, or a number and L.
+fn outer_radius(text: &str) -> Result<OuterRadius, String> {
+    let number = |text: &str| text.parse().map_err(|_| format!("`{text}` is not a number"));
+    match text.strip_suffix('L') {
+        Some(share) => number(share).map(OuterRadius::OverSide),
+        None => number(text).map(OuterRadius::Length),
+    }
 }
 
 /// A state: a file and its frame.
@@ -112,9 +143,9 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
     let (observables, mut verdict) = match &arguments.scene {
         Some(path) => {
             let scene = scene_file::read_scene(path)?;
-            (scene.observables, scene.verdict)
+            (Some(scene.observables), scene.verdict)
         }
-        None => (Observables::default(), VerdictSettings::default()),
+        None => (None, VerdictSettings::default()),
     };
     override_limit(&mut verdict, arguments.not_at_rest);
     let mut inputs = input::Inputs::default();
@@ -124,7 +155,7 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
     let mut analyses = Vec::new();
     let mut failures = Vec::new();
     for files in &all {
-        match analyse(files, arguments, &observables, &verdict) {
+        match analyse(files, arguments, observables.as_ref(), &verdict) {
             Ok(analysis) => analyses.push(analysis),
             Err(error) => {
                 failures.push(format!("{} and {}: {error}", files.before.path.display(), files.after.path.display()))
@@ -148,7 +179,7 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
 fn analyse(
     files: &Files,
     arguments: &AnalyseArguments,
-    observables: &Observables,
+    observables: Option<&Observables>,
     verdict: &VerdictSettings,
 ) -> Result<Analysis, Failure> {
     let (before, after) = (files.before.read()?, files.after.read()?);
@@ -164,14 +195,16 @@ fn analyse(
         _ => first,
     };
     let outer_radius = match arguments.outer_radius {
-        Some(radius) => Some(radius),
+        Some(radius) => Some(radius.in_box(&before.packing)?),
         None => outer_radius_of(&before, &files.before.path)?,
     };
+    // The lengths of a scene are in the units of the file; those of the defaults are for small disks of diameter 1.
+    let observables = observables.cloned().unwrap_or_else(|| Observables::default().in_units(unit_of(&before.packing)));
     let settings = PairSettings { centre_label: arguments.centre, outer_radius };
     let deflated = deflated.as_ref().map(|contents| &contents.packing);
     let pair = Pair::new(before.packing, &after.packing, deflated, &settings)?;
     law.check()?;
-    Ok(Analysis::of(&files.name, pair, &law, observables, verdict)?)
+    Ok(Analysis::of(&files.name, pair, &law, &observables, verdict)?)
 }
 
 fn says_law(contents: &Contents<2>) -> bool {

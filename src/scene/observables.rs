@@ -96,6 +96,33 @@ impl Default for Observables {
 }
 
 impl Observables {
+    /// The same observables with all lengths multiplied by `unit`: widths and smallest radii of rings, thresholds of
+    /// displacements. The defaults are for packings whose small disks have diameter 1.
+    pub fn in_units(mut self, unit: f64) -> Self {
+        if let Some(profile) = &mut self.radial_profile {
+            profile.ring_width *= unit;
+        }
+        if let Some(penetration) = &mut self.penetration_length {
+            penetration.thresholds.iter_mut().for_each(|threshold| *threshold *= unit);
+        }
+        if let Some(multipoles) = &mut self.multipoles {
+            multipoles.ring_width *= unit;
+        }
+        #[cfg(feature = "fit")]
+        if let Some(modes) = &mut self.elastic_modes {
+            modes.from *= unit;
+        }
+        if let Some(isostatic) = &mut self.isostatic_length {
+            isostatic.ring_width *= unit;
+            isostatic.from *= unit;
+        }
+        #[cfg(feature = "linear")]
+        if let Some(plastic) = &mut self.plastic_part {
+            plastic.ring_width *= unit;
+        }
+        self
+    }
+
     /// No observables.
     pub fn none() -> Self {
         Observables {

@@ -219,3 +219,58 @@ fn frames_are_inspected_one_by_one() {
     let shown = done(folder.path(), &["inspect", "both.xyz", "--frame", "all"], b"");
     assert!(shown.contains("both.xyz, frame 0") && shown.contains("both.xyz, frame 1"), "{shown}");
 }
+
+#[test]
+fn the_lengths_of_the_defaults_follow_the_packing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let paths = trajectory(folder.path());
+    // The same states with all lengths four times as large: each bit of a length stays, but for its exponent.
+    for (path, name) in paths.iter().zip(["before4.xyz", "after4.xyz"]) {
+        let packing = read_packing::<2>(path).expect("readable");
+        let grown = |vectors: &[[f64; 2]]| vectors.iter().map(|it| it.map(|value| 4.0 * value)).collect::<Vec<_>>();
+        let radii = packing.radii().iter().map(|radius| 4.0 * radius).collect();
+        let scaled = Packing::new(*packing.domain(), grown(packing.positions()), radii)
+            .and_then(|it| it.with_corrections(grown(packing.corrections())))
+            .and_then(|it| it.with_held(packing.held().to_vec()))
+            .and_then(|it| it.with_labels(packing.labels().to_vec()))
+            .expect("valid");
+        write_packing(folder.path().join(name), &scaled, &[], &[]).expect("written");
+    }
+    done(folder.path(), &["analyse", "before.xyz", "after.xyz", "--out", "one"], b"");
+    done(folder.path(), &["analyse", "before4.xyz", "after4.xyz", "--out", "four"], b"");
+    let rows = |out: &str, name: &str| {
+        let text = std::fs::read_to_string(folder.path().join(out).join(name)).expect("a file");
+        let rows = text.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit()));
+        rows.map(|row| row.split(',').map(|word| word.parse().unwrap_or(f64::NAN)).collect()).collect::<Vec<Vec<f64>>>()
+    };
+    let (one, four) = (rows("one", "before.radial_profile.csv"), rows("four", "before4.radial_profile.csv"));
+    assert!(one.len() > 5 && one.len() == four.len(), "{} and {} rings", one.len(), four.len());
+    // Radius and mean displacement of the rings.
+    assert!(one.iter().zip(&four).all(|(one, four)| 4.0 * one[0] == four[0]));
+}
+
+#[test]
+fn the_outer_radius_may_be_given_over_the_side_of_the_box() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let target = Target::Pressure(1000.0);
+    let prepared = prepare(&Preparation { disk_count: 300, target, ..Preparation::default() }).expect("prepared");
+    let inflation = Inflation { boundary: jamscope::inflation::Boundary::Periodic, ..Inflation::default() };
+    let inflated = inflate(&inflation, prepared.packing.get()).expect("inflated");
+    for (name, state) in [("before.xyz", &inflated.before), ("after.xyz", &inflated.after)] {
+        write_packing(folder.path().join(name), state.packing.get(), &[], &[]).expect("written");
+    }
+    let side = prepared.packing.get().domain().lengths().expect("a box")[0];
+    let length = format!("{:?}", 0.25 * side);
+    let table = |radius: &str| {
+        let arguments =
+            ["analyse", "before.xyz", "after.xyz", "--not-at-rest", "--outer-radius", radius, "--out", "out"];
+        done(folder.path(), &arguments, b"")
+    };
+    assert_eq!(table("0.25L"), table(&length));
+    trajectory(folder.path());
+    refused(
+        folder.path(),
+        &["analyse", "both.xyz", "--frames", "0,1", "--outer-radius", "0.4L"],
+        &["0.4L", "open plane"],
+    );
+}
