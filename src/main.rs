@@ -32,7 +32,8 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
 use jamscope::inspection::inspect;
-use jamscope::io::{Frame, ReadWarning, read_contents};
+use jamscope::io::{Frame, ReadWarning, properties_of_frame, read_contents};
+use jamscope::law::LawChoice;
 use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use jamscope::read_packing;
@@ -168,6 +169,7 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     if let Some(path) = &arguments.packing {
         let path = inputs.file(path)?;
         scene.sample = vec![sample_of_file(&path, &scene)];
+        scene.law = law_of_run(&path, arguments.scene.is_some().then_some(&scene.law))?;
         // A file that cannot be read is reported by the run.
         if arguments.scene.is_none()
             && let Ok(packing) = read_packing::<2>(&path)
@@ -198,6 +200,23 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     }
     let scene_name = arguments.scene.as_ref().map_or("the built-in scene".into(), |path| path.display().to_string());
     Err(format!("{scene_name}: {failed} of {} samples failed, see above", report.samples.len()).into())
+}
+
+/// The law of `--packing`: that of the file, if it gives one; it must then be that of the scene, if there is a scene.
+fn law_of_run(path: &std::path::Path, of_scene: Option<&LawChoice>) -> Result<LawChoice, Failure> {
+    // A file that cannot be read is reported by the run.
+    let properties = properties_of_frame(path, Frame::Last).unwrap_or_default();
+    let says = |key: &str| properties.iter().any(|(other, _)| other.eq_ignore_ascii_case(key));
+    if !says("law") && !says("stiffness") && !says("exponent") {
+        return Ok(of_scene.copied().unwrap_or_default());
+    }
+    let law = contact_law::law_of(path, Frame::Last, None, None)?;
+    match of_scene {
+        Some(scene) if *scene != law => {
+            Err(format!("{}: the file gives the law {law:?}, but the scene {scene:?}", path.display()).into())
+        }
+        _ => Ok(law),
+    }
 }
 
 /// The unit of lengths that are not given: the diameter of a small disk of the packing, 1 in the units of the defaults.
@@ -254,6 +273,12 @@ fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
     override_limit(&mut settings, arguments.not_at_rest);
     let dimension = usize::from(arguments.dimension);
     let frames = arguments.frame.of(&path)?;
+    if let Some(out) = &arguments.write {
+        if frames.len() > 1 {
+            return Err("--write FILE takes one frame".into());
+        }
+        input::check_output(out, &path)?;
+    }
     let (mut documents, mut refused) = (Vec::new(), Vec::new());
     for &frame in &frames {
         let law = contact_law::law_of(&path, frame, arguments.law, arguments.stiffness)?;
@@ -275,7 +300,7 @@ fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
         }
     }
     if let Some(out) = &arguments.write {
-        let [frame] = frames[..] else { return Err("--write FILE takes one frame".into()) };
+        let frame = frames.last().copied().unwrap_or_default();
         match dimension {
             3 => write_inspected::<3>(&path, frame, arguments, out)?,
             _ => write_inspected::<2>(&path, frame, arguments, out)?,

@@ -112,7 +112,7 @@ fn states(arguments: &AnalyseArguments, inputs: &mut input::Inputs) -> Result<Ve
     let given = &arguments.states;
     if let Some(frames) = &arguments.frames {
         let ([path], [before, after, rest @ ..]) = (&given[..], &frames[..]) else {
-            return Err("--frames A,B or A,B,C takes the states from one file".into());
+            return Err("--frames A,B or A,B,C takes two or three states from one file".into());
         };
         if rest.len() > 1 {
             return Err(format!("--frames names {} frames: two or three are states", frames.len()).into());
@@ -127,6 +127,11 @@ fn states(arguments: &AnalyseArguments, inputs: &mut input::Inputs) -> Result<Ve
         }]);
     }
     match &given[..] {
+        [file] if file.is_file() || file == Path::new("-") => Err(format!(
+            "{}: one file; give the file after too, or with --frames A,B two frames of this one",
+            file.display()
+        )
+        .into()),
         [folder] => pairs_in(folder),
         [before, after, deflated @ ..] => Ok(vec![Files {
             name: name_of(before),

@@ -74,6 +74,14 @@ pub enum LawOfFileError {
         /// Its value.
         value: f64,
     },
+    /// The file gives an exponent without a law.
+    #[error("{path}: exponent is `{exponent}`, but the law is missing; give it with --law power:{exponent}")]
+    ExponentWithoutLaw {
+        /// The file.
+        path: String,
+        /// The exponent.
+        exponent: String,
+    },
     /// The file gives the power law but not its exponent.
     #[error("{path}: law is `{law}`, but its exponent is missing; give it with --law power:ALPHA")]
     NoExponent {
@@ -128,7 +136,12 @@ pub fn law_of(
         _ => Ok(()),
     };
     let in_file = match value("law") {
-        None => None,
+        None => match (value("exponent"), asked) {
+            (Some(exponent), None) => {
+                return Err(LawOfFileError::ExponentWithoutLaw { path: name, exponent: exponent.clone() }.into());
+            }
+            _ => None,
+        },
         Some(law) => {
             let word = law.to_ascii_lowercase();
             match (word.get(..4), asked) {

@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use jamscope::io::{Frame, frame_count};
+use jamscope::io::{Frame, frame_count, try_name};
 use tempfile::TempDir;
 
 use crate::Failure;
@@ -13,6 +13,7 @@ use crate::Failure;
 #[derive(Default)]
 pub struct Inputs {
     copies: Vec<TempDir>,
+    has_standard: bool,
 }
 
 impl Inputs {
@@ -21,6 +22,9 @@ impl Inputs {
         let is_standard = path == Path::new("-");
         if !is_standard && !is_pipe(path) {
             return Ok(path.to_path_buf());
+        }
+        if is_standard && std::mem::replace(&mut self.has_standard, true) {
+            return Err("`-`, the standard input, is given twice".into());
         }
         let folder = tempfile::tempdir()?;
         let name = if is_standard { "standard-input" } else { "pipe" };
@@ -76,4 +80,24 @@ pub fn frames(text: &str) -> Result<Frames, String> {
         "all" => Ok(Frames::All),
         one => frame(one).map(Frames::One).map_err(|_| "not `last`, `all` or the number of a frame, from 0".into()),
     }
+}
+
+/// Checks, before any work, whether a file can be written: in a folder that exists, and in place of no input.
+pub fn check_output(out: &Path, input: &Path) -> Result<(), Failure> {
+    let named = |reason: &dyn std::fmt::Display| format!("{}: {reason}", out.display());
+    let folder = match out.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let name = out.file_name().ok_or_else(|| named(&"names no file"))?;
+    if out.is_dir() {
+        return Err(named(&"is a folder").into());
+    }
+    try_name(folder, name).map_err(|error| named(&error))?;
+    if let (Ok(out), Ok(input)) = (out.canonicalize(), input.canonicalize())
+        && out == input
+    {
+        return Err(named(&"is the input; give another file with --out or --write").into());
+    }
+    Ok(())
 }

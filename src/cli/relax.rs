@@ -30,8 +30,9 @@ struct FileArguments {
     /// `gradient_flow`, `newton` or `staged`.
     #[arg(long, value_name = "NAME", default_value = "fire")]
     relaxer: String,
-    /// Limit of the largest net force on the backbone over the mean contact force; by default that of the relaxer, 1e-8.
-    #[arg(long, value_name = "X")]
+    /// Limit of the largest net force on the backbone over the mean contact force, at most 1e-3; by default that of the
+    /// relaxer, 1e-8.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
     limit: Option<f64>,
     /// Contact law if the file gives none: `hertzian`, `hookean` or `power:ALPHA`; by default Hertzian.
     #[arg(long, value_name = "LAW", value_parser = contact_law::parse)]
@@ -45,7 +46,8 @@ struct FileArguments {
     /// Number of threads; by default one per core. Changes no result.
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    /// File for the result, extended XYZ; by default NAME.relaxed.xyz or NAME.compressed.xyz in the current folder.
+    /// File for the result, extended XYZ; by default NAME.relaxed.xyz or NAME.compressed.xyz in the current folder, if there is
+    /// no such file.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
@@ -63,15 +65,24 @@ pub struct CompressArguments {
     #[command(flatten)]
     file: FileArguments,
     /// Pressure to reach.
-    #[arg(long, value_name = "P", conflicts_with = "packing_fraction", required_unless_present = "packing_fraction")]
+    #[arg(
+        long,
+        value_name = "P",
+        conflicts_with = "packing_fraction",
+        required_unless_present = "packing_fraction",
+        allow_negative_numbers = true
+    )]
     pressure: Option<f64>,
     /// Packing fraction to reach.
-    #[arg(long, value_name = "PHI")]
+    #[arg(long, value_name = "PHI", allow_negative_numbers = true)]
     packing_fraction: Option<f64>,
     /// Largest relative deviation of the pressure.
     #[arg(long, value_name = "X", default_value_t = 0.01)]
     tolerance: f64,
 }
+
+/// Largest residual of a state at rest, as in the [verdict](jamscope::verdict) \[1\].
+const AT_REST: f64 = 1e-3;
 
 /// What is done with a packing.
 enum Task {
@@ -95,24 +106,51 @@ pub fn compress_file(arguments: &CompressArguments) -> Result<ExitCode, Failure>
 
 fn run(arguments: &FileArguments, task: &Task) -> Result<ExitCode, Failure> {
     threads::set_threads(arguments.threads)?;
+    let name = &arguments.relaxer;
+    if name.is_empty() || !name.chars().all(|c| c.is_ascii_lowercase() || c == '_') {
+        return Err(format!("--relaxer is `{name}`, not the name of a relaxer in a scene, such as fire").into());
+    }
     let relaxer = match arguments.limit {
-        Some(limit) if limit.is_finite() && limit >= 0.0 => relaxer_with_limit(&arguments.relaxer, limit),
-        Some(limit) => return Err(format!("--limit is {limit}: must be a number, 0 or more").into()),
-        None => relaxer_by_name(&arguments.relaxer),
+        Some(limit) if limit > 0.0 && limit <= AT_REST => relaxer_with_limit(name, limit),
+        Some(limit) => return Err(format!("--limit is {limit}: must be above 0 and at most {AT_REST}").into()),
+        None => relaxer_by_name(name),
     };
-    let relaxer = relaxer.map_err(|error| format!("--relaxer {}: {}", arguments.relaxer, error.message))?;
+    let relaxer = relaxer.map_err(|error| format!("--relaxer {name}: {}", error.message))?;
     let mut inputs = input::Inputs::default();
     let path = inputs.file(&arguments.packing)?;
+    let out = match (&arguments.out, named(&arguments.packing, task)) {
+        (Some(out), _) => out.clone(),
+        (None, default) if default.exists() => {
+            return Err(format!("{}: exists; name the file for the result with --out", default.display()).into());
+        }
+        (None, default) => default,
+    };
+    input::check_output(&out, &path)?;
     let law = contact_law::law_of(&path, arguments.frame, arguments.law, arguments.stiffness)?;
     law.check()?;
     match arguments.dimension {
-        3 => run_in::<3>(&path, arguments, (&law, &relaxer), task),
-        _ => run_in::<2>(&path, arguments, (&law, &relaxer), task),
+        3 => run_in::<3>((&path, &out), arguments, (&law, &relaxer), task),
+        _ => run_in::<2>((&path, &out), arguments, (&law, &relaxer), task),
     }
 }
 
+/// Refuses packings that the commands would change in a way that their file does not mean.
+fn check<const D: usize>(packing: &Packing<D>) -> Result<(), &'static str> {
+    if packing.sites().is_some() {
+        return Err(
+            "the disks have sites, and their on-site forces are known only to a scene; leave out the columns site and site_correction to go on without them",
+        );
+    }
+    if packing.domain().lengths().is_none() && !packing.held().contains(&true) {
+        return Err(
+            "the packing lies in the open plane and no disk is held, so it would fly apart; mark the disks of the rim in a column held:I:1",
+        );
+    }
+    Ok(())
+}
+
 fn run_in<const D: usize>(
-    path: &Path,
+    (path, out): (&Path, &Path),
     arguments: &FileArguments,
     (law, relaxer): (&LawChoice, &RelaxerChoice),
     task: &Task,
@@ -120,15 +158,16 @@ fn run_in<const D: usize>(
     let Contents { packing, properties, warnings } = read_contents::<D>(path, arguments.frame)?;
     warn(&arguments.packing, &warnings);
     let name = arguments.packing.display();
+    check(&packing).map_err(|reason| format!("{name}: {reason}"))?;
     let bars = Bars::new(std::iter::once(name.to_string().as_str()));
     let mut trace = BarTrace { bars: &bars, limit: relaxer.limit().value() };
     let first = Numbers::of(&packing, &ContactNetwork::new(&packing, law)?);
-    let (ending, state, end) = match task {
+    let (state, end) = match task {
         Task::Relax => {
             let outcome = relaxer.relax(packing, law, &mut trace).map_err(|error| format!("{name}: {error}"))?;
             let cost = outcome.cost;
             let end = End { stop: outcome.stop, residual: outcome.residual.relative(), cost, relaxation_count: 1 };
-            ("relaxed", outcome.state, end)
+            (outcome.state, end)
         }
         Task::Compress(target, tolerance) => {
             let prepared = compress(packing, (*target, *tolerance), law, relaxer, &mut trace)
@@ -139,15 +178,17 @@ fn run_in<const D: usize>(
                 cost: prepared.cost,
                 relaxation_count: prepared.relaxation_count,
             };
-            ("compressed", prepared.packing.into_inner(), end)
+            (prepared.packing.into_inner(), end)
         }
     };
     bars.done(0, None);
-    let out = arguments.out.clone().unwrap_or_else(|| named(&arguments.packing, ending));
+    if end.stop == Stop::NonFinite {
+        return Err(format!("{name}: a force became infinite or not a number; nothing is written").into());
+    }
     let network = ContactNetwork::new(&state, law)?;
-    write_state(&out, &state, (&network, law), &properties)?;
-    print(&table(&first, &Numbers::of(&state, &network), &end, &out))?;
-    let is_at_rest = matches!(end.stop, Stop::Converged(_));
+    write_state(out, &state, (&network, law), &properties)?;
+    print(&table(&first, &Numbers::of(&state, &network), &end, out))?;
+    let is_at_rest = matches!(end.stop, Stop::Converged(_)) || end.residual <= AT_REST;
     Ok(exit_code::of_relaxation((!is_at_rest).then(|| format!("{name} ({:?})", end.stop))))
 }
 
@@ -184,18 +225,22 @@ impl Numbers {
 
 /// The table on the terminal: before and after.
 fn table(first: &Numbers, last: &Numbers, end: &End, out: &Path) -> String {
-    let mut text = format!("{:<34}{:>24}{:>24}\n", "", "before", "after");
+    let mut text = format!("{:<34} {:>24} {:>24}\n", "", "before", "after");
+    let number = |value: f64| {
+        let is_short = value == 0.0 || (1e-4..1e9).contains(&value.abs());
+        if is_short { value.to_string() } else { format!("{value:e}") }
+    };
     let mut row = |name: &str, of: &dyn Fn(&Numbers) -> Option<String>| {
         if let (Some(first), Some(last)) = (of(first), of(last)) {
-            text.push_str(&format!("{name:<34}{first:>24}{last:>24}\n"));
+            text.push_str(&format!("{name:<34} {first:>24} {last:>24}\n"));
         }
     };
-    row("packing fraction [1]", &|it| it.packing_fraction.map(|value| value.to_string()));
-    row("pressure [force / length^(D-1)]", &|it| it.pressure.map(|value| value.to_string()));
-    row("energy [energy]", &|it| Some(it.energy.to_string()));
+    row("packing fraction [1]", &|it| it.packing_fraction.map(number));
+    row("pressure [force / length^(D-1)]", &|it| it.pressure.map(number));
+    row("energy [energy]", &|it| Some(number(it.energy)));
     row("contacts", &|it| Some(it.contact_count.to_string()));
     row("rattlers", &|it| Some(it.rattler_count.to_string()));
-    row("coordination Z [1]", &|it| Some(it.coordination.to_string()));
+    row("coordination Z [1]", &|it| Some(number(it.coordination)));
     let End { stop, residual, cost, relaxation_count } = end;
     text.push_str(&format!(
         "\n{stop:?}: residual {residual:.1e} after {} relaxations, {} force evaluations, {} factorisations, {:.2} s\n{}\n",
@@ -208,11 +253,14 @@ fn table(first: &Numbers, last: &Numbers, end: &End, out: &Path) -> String {
     text
 }
 
-/// NAME.ENDING.xyz in the current folder.
-fn named(path: &Path, ending: &str) -> PathBuf {
-    let name = path.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
-    let stem = name.split('.').next().unwrap_or_default();
-    let stem = if stem.is_empty() || stem == "-" { "packing" } else { stem };
+/// The default name of the result, in the current folder.
+fn named(path: &Path, task: &Task) -> PathBuf {
+    let ending = match task {
+        Task::Relax => "relaxed",
+        Task::Compress(..) => "compressed",
+    };
+    let stem = path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
+    let stem = if stem.is_empty() || stem == "-" { "packing" } else { &stem };
     PathBuf::from(format!("{stem}.{ending}.xyz"))
 }
 

@@ -87,7 +87,9 @@ where
     F: FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
 {
     let path = path.as_ref();
-    if path.metadata().is_ok_and(|there| !there.is_file()) {
+    // A link such as /dev/stdout leads to a file now and then, but is not one.
+    let is_device = path.starts_with("/dev") || path.starts_with("/proc");
+    if is_device || path.metadata().is_ok_and(|there| !there.is_file()) {
         return Err(WriteError::NotAFile { path: path.into() });
     }
     replace(path, write).map_err(|source| WriteError::Io { path: path.into(), source })

@@ -24,6 +24,10 @@ fn zstd_frames(mut bytes: &[u8], text: &mut Vec<u8>) -> std::io::Result<usize> {
     while !bytes.is_empty() {
         let mut frame = ruzstd::decoding::StreamingDecoder::new(&mut bytes).map_err(std::io::Error::other)?;
         frame.read_to_end(text)?;
+        let (written, found) = (frame.decoder.get_checksum_from_data(), frame.decoder.get_calculated_checksum());
+        if written.is_some() && written != found {
+            return Err(std::io::Error::other("its checksum differs from the content"));
+        }
     }
     Ok(text.len())
 }

@@ -13,7 +13,7 @@
 //! | `radius:R:1`, or `diameter:R:1` | radius or diameter \[length\]; the radius has precedence | yes |
 //! | `id:I:1` | label; only held disks may repeat it, as images in a rim do | no |
 //! | `label:I:1` | label that any disk may repeat | no |
-//! | `held:I:1` or `held:L:1` | 1 or T: held in place | no |
+//! | `held:I:1` or `held:L:1` | 1 or T: held in place; or ASE's `move_mask:L:1`, F: held | no |
 //! | `correction:R:D` | low part of the centre, below the spacing of numbers there \[length\], [`corrections`](crate::packing::Packing::corrections) | no |
 //! | `site:R:D` | site of the disk \[length\], [`sites`](crate::packing::Packing::sites) | no |
 //! | `site_correction:R:D` | low part of the site \[length\]; requires `site` | no |

@@ -251,7 +251,7 @@ impl Columns {
     fn new(source: &Source, names: &str, title: usize) -> Result<Self, ReadError> {
         let names: Vec<&str> = names.split_ascii_whitespace().collect();
         for (column, name) in names.iter().enumerate() {
-            if names[..column].contains(name) {
+            if names[..column].iter().any(|earlier| earlier.eq_ignore_ascii_case(name)) {
                 return Err(source.repeated(title, "column", name, title));
             }
         }

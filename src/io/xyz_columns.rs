@@ -40,6 +40,8 @@ pub(super) struct Columns<const D: usize> {
     /// Column and name.
     label: Option<(usize, &'static str)>,
     held: Option<usize>,
+    /// The opposite of `held`, as ASE writes it.
+    mobile: Option<usize>,
     correction: Option<usize>,
     site: Option<usize>,
     site_correction: Option<usize>,
@@ -76,7 +78,7 @@ impl<'a, 'b> Layout<'a, 'b> {
         Ok(layout)
     }
 
-    /// The column with one of these names: the first name that occurs.
+    /// The column with one of these names; two are refused.
     fn find(
         &self,
         names: &[&str],
@@ -84,8 +86,12 @@ impl<'a, 'b> Layout<'a, 'b> {
         widths: &[usize],
         expected: &'static str,
     ) -> Result<Option<Column<'a>>, ReadError> {
-        let of_name = |name: &&str| self.columns.iter().find(|column| plain(column.name) == **name);
-        let Some(&column) = names.iter().find_map(of_name) else { return Ok(None) };
+        let mut found = self.columns.iter().filter(|column| names.contains(&plain(column.name).as_str()));
+        let Some(&column) = found.next() else { return Ok(None) };
+        if let Some(second) = found.next() {
+            let both = format!("{} and {}", column.name, second.name);
+            return Err(self.source.bad(self.line, "columns", &both, "one of them: their names mean the same"));
+        }
         let Column { name, kind, width, .. } = column;
         if kinds.contains(kind) && widths.contains(&width) {
             return Ok(Some(column));
@@ -159,6 +165,7 @@ impl<const D: usize> Columns<D> {
             radius,
             label: layout.label()?,
             held: start("held", "IL", 1, "held:I:1 or held:L:1")?,
+            mobile: start("movemask", "IL", 1, "move_mask:L:1")?,
             correction: start("correction", "R", D, "correction:R with D values")?,
             site,
             site_correction,
@@ -203,9 +210,14 @@ impl<const D: usize> Columns<D> {
     }
 
     pub fn held(&self, source: &Source, row: &Row, line: usize) -> Result<bool, ReadError> {
-        let Some(column) = self.held else { return Ok(false) };
+        let (column, name, is_mobile) = match (self.held, self.mobile) {
+            (Some(column), _) => (column, "held", false),
+            (None, Some(column)) => (column, "move_mask", true),
+            (None, None) => return Ok(false),
+        };
         let value = row.values[column];
-        flag(value).ok_or_else(|| source.bad(line, "held", value, "1 or T, 0 or F"))
+        let flag = flag(value).ok_or_else(|| source.bad(line, name, value, "1 or T, 0 or F"))?;
+        Ok(flag != is_mobile)
     }
 
     /// The low part of the centre of a disk; 0 without such a column.

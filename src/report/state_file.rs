@@ -8,24 +8,39 @@ use crate::network::ContactNetwork;
 use crate::packing::Packing;
 use crate::report::files::numbers_of;
 
-/// Keys of the comment line that depend on the state or on the law; they are written anew.
-const OWN: [&str; 9] = [
+/// Keys of the comment line that depend on the state or on the law; they are written anew or left out.
+const OWN: [&str; 16] = [
     "law",
     "stiffness",
     "exponent",
     "pressure",
+    "stress",
     "packing_fraction",
     "energy",
+    "free_energy",
     "relative_residual",
+    "rounding_floor",
     "rattlers",
+    "bucklers",
+    "excess_contacts",
+    "negative_eigenvalues",
+    "state",
     "jamscope_version",
 ];
 
 /// Keys of the format itself.
 const OF_FORMAT: [&str; 5] = ["Lattice", "Origin", "pbc", "Properties", "dimension"];
 
+/// Whether a key-value pair of the input is written: not one of the format or of the state, and one that extended XYZ
+/// can hold.
+fn is_kept(key: &str, value: &str) -> bool {
+    let is_name = !key.is_empty() && key.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"_-.".contains(&byte));
+    let is_other = !OWN.iter().chain(&OF_FORMAT).any(|other| other.eq_ignore_ascii_case(key));
+    is_name && is_other && !value.chars().any(char::is_control)
+}
+
 /// Writes a packing with the results of each disk: its contact network under a law. `properties` are kept, but for those of the format, of
-/// the law and of the state.
+/// the law and of the state, and those that are no names with values: free text, control characters.
 ///
 /// | column | meaning |
 /// |---|---|
@@ -64,8 +79,9 @@ pub fn write_state<const D: usize>(
         own.push(("pressure", format!("{:?}", network.pressure(volume))));
         own.push(("packing_fraction", format!("{packing_fraction:?}")));
     }
-    let is_kept = |key: &str| !OWN.iter().chain(&OF_FORMAT).any(|other| other.eq_ignore_ascii_case(key));
-    let kept = properties.iter().filter(|(key, _)| is_kept(key)).map(|(key, value)| (key.as_str(), value.as_str()));
+    own.push(("rattlers", network.rattlers().count().to_string()));
+    let kept = properties.iter().filter(|(key, value)| is_kept(key, value));
+    let kept = kept.map(|(key, value)| (key.as_str(), value.as_str()));
     let all: Vec<(&str, &str)> = own.iter().map(|(key, value)| (*key, value.as_str())).chain(kept).collect();
     write_packing(path, packing, &columns, &all)
 }

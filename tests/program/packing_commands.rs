@@ -77,7 +77,9 @@ fn a_relaxed_file_is_at_rest_and_holds_the_results_of_each_disk() {
     for relaxer in ["fire", "quasi_newton", "conjugate_gradients"] {
         let printed = done(folder.path(), &["relax", "moved.xyz", "--relaxer", relaxer, "--limit", "1e-9"], b"");
         assert!(printed.contains("moved.relaxed.xyz") && printed.contains("Converged"), "{printed}");
-        let path = folder.path().join("moved.relaxed.xyz");
+        refused(folder.path(), &["relax", "moved.xyz"], &["moved.relaxed.xyz: exists", "--out"]);
+        let path = folder.path().join(format!("{relaxer}.xyz"));
+        std::fs::rename(folder.path().join("moved.relaxed.xyz"), &path).expect("renamed");
         let contents = read_contents::<2>(&path, Frame::Last).expect("readable");
         let value = |key: &str| {
             let found = contents.properties.iter().find(|(other, _)| other == key).map(|(_, value)| value.clone());
@@ -109,15 +111,46 @@ fn a_relaxed_file_is_at_rest_and_holds_the_results_of_each_disk() {
 }
 
 #[test]
-fn a_relaxation_that_is_not_at_rest_is_written_and_said() {
+fn a_limit_below_rounding_ends_at_the_rounding_floor() {
     let folder = tempfile::tempdir().expect("a folder");
-    // No residual is 0: FIRE ends at the rounding floor.
     let path = fixture("packings/hertz_N1000_p100.xyz");
-    let output = jamscope(folder.path(), &["relax", &path, "--limit", "0", "--out", "floor.xyz"], b"");
-    assert_eq!(output.status.code(), Some(3));
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(message.contains("not at rest") && message.contains("RoundingFloor"), "{message}");
-    assert_eq!(read_packing::<2>(folder.path().join("floor.xyz")).expect("readable").len(), 1000);
+    let printed = done(folder.path(), &["relax", &path, "--limit", "1e-17", "--out", "floor.xyz"], b"");
+    assert!(printed.contains("RoundingFloor"), "{printed}");
+    assert!(done(folder.path(), &["inspect", "floor.xyz"], b"").starts_with("disks "));
+}
+
+#[test]
+fn keys_of_a_state_do_not_outlive_it_and_free_text_is_no_key() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = std::fs::read_to_string(fixture("packings/hertz_N1000_p100.xyz")).expect("a fixture");
+    let keys = "bucklers=4 state=prepared rounding_floor=1e-9 author=me made by hand (version 1.2), größe=3 law=";
+    std::fs::write(folder.path().join("a.xyz"), text.replacen("law=", keys, 1)).expect("written");
+    done(folder.path(), &["compress", "a.xyz", "--packing-fraction", "0.7"], b"");
+    let path = folder.path().join("a.compressed.xyz");
+    let properties = read_contents::<2>(&path, Frame::Last).expect("readable").properties;
+    let names: Vec<&str> = properties.iter().map(|(key, _)| key.as_str()).collect();
+    for stale in ["bucklers", "state", "rounding_floor", "(version", "größe"] {
+        assert!(!names.contains(&stale), "{names:?}");
+    }
+    for kept in ["author", "law", "rattlers"] {
+        assert!(names.contains(&kept), "{names:?}");
+    }
+}
+
+#[test]
+fn a_run_takes_the_law_of_its_packing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let packing = prepare(&Preparation { disk_count: 200, ..Preparation::default() }).expect("prepared");
+    // The same packing under a law that is 200 times as soft: pressures too.
+    let properties = [("law", "hertzian"), ("stiffness", "1000.0")];
+    write_packing(folder.path().join("soft.xyz"), packing.packing.get(), &[], &properties).expect("written");
+    done(folder.path(), &["run", "--packing", "soft.xyz", "--out", "report"], b"");
+    let text = std::fs::read_to_string(folder.path().join("report/report.json")).expect("a report");
+    let report: Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(report["scene"]["law"]["hertzian"]["stiffness"], 1000.0);
+    std::fs::write(folder.path().join("scene.toml"), "[law.hookean]\nstiffness = 2.0\n").expect("written");
+    let arguments = ["run", "scene.toml", "--packing", "soft.xyz"];
+    refused(folder.path(), &arguments, &["soft.xyz", "the file gives the law", "the scene"]);
 }
 
 #[test]
@@ -143,14 +176,29 @@ fn what_cannot_be_done_with_a_packing_is_refused_with_its_reason() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = fixture("packings/hertz_N1000_p100.xyz");
     refused(folder.path(), &["relax", &path, "--relaxer", "magic"], &["--relaxer magic", "fire", "damped"]);
-    refused(folder.path(), &["relax", &path, "--limit=-1"], &["--limit is -1"]);
+    for limit in ["-1", "0", "0.1", "nan"] {
+        refused(folder.path(), &["relax", &path, "--limit", limit], &["--limit is", "above 0 and at most 0.001"]);
+    }
+    refused(folder.path(), &["relax", &path, "--relaxer", "fire = {} #"], &["--relaxer is `fire = {} #`"]);
+    refused(folder.path(), &["relax", &path, "--out", "no/folder.xyz"], &["no/folder.xyz"]);
+    refused(folder.path(), &["relax", &path, "--out", &path], &["is the input"]);
+    refused(folder.path(), &["inspect", &path, "--write", &path], &["is the input"]);
+    refused(folder.path(), &["analyse", &path], &["one file", "--frames"]);
+    refused(folder.path(), &["analyse", "-", "-"], &["given twice"]);
     refused(folder.path(), &["relax", &path, "--frame", "3"], &["no frame 3", "1 frames"]);
-    refused(folder.path(), &["compress", &path, "--pressure=-2"], &["hertz_N1000_p100.xyz", "pressure is -2"]);
+    refused(folder.path(), &["compress", &path, "--pressure", "-2"], &["hertz_N1000_p100.xyz", "pressure is -2"]);
     refused(folder.path(), &["compress", &path, "--packing-fraction", "5"], &["packing_fraction is 5"]);
     let open = "1\npbc=\"F F F\" Properties=species:S:1:pos:R:2:radius:R:1\nX 0 0 0.5\n";
     std::fs::write(folder.path().join("open.xyz"), open).expect("written");
     refused(folder.path(), &["compress", "open.xyz", "--pressure", "1"], &["open.xyz", "open plane"]);
-    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1, "nothing is written");
+    refused(folder.path(), &["relax", "open.xyz"], &["open.xyz", "no disk is held"]);
+    let site = open.replace("radius:R:1", "radius:R:1:site:R:2").replace("0 0 0.5", "0 0 0.5 0 0");
+    std::fs::write(folder.path().join("site.xyz"), site).expect("written");
+    refused(folder.path(), &["relax", "site.xyz"], &["site.xyz", "sites"]);
+    let exponent = open.replace("pbc", "exponent=2.2 pbc");
+    std::fs::write(folder.path().join("exponent.xyz"), exponent).expect("written");
+    refused(folder.path(), &["relax", "exponent.xyz"], &["exponent is `2.2`", "--law power:2.2"]);
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 3, "nothing is written");
 }
 
 #[test]

@@ -46,6 +46,19 @@ fn columns_under_the_names_of_other_programs() {
 }
 
 #[test]
+fn what_ase_holds_is_held() {
+    let mask = XYZ.replace("id:I:1", "id:I:1:move_mask:L:1").replace("0.5 1", "0.5 1 T").replace("0.7 2", "0.7 2 F");
+    assert_eq!(contents(mask).packing.held(), [false, true]);
+}
+
+#[test]
+fn two_columns_of_one_meaning_are_refused() {
+    let two = XYZ.replace("radius:R:1", "radius:R:1:Radii:R:1").replace(" 0.5", " 0.5 9").replace(" 0.7", " 0.7 9");
+    assert_refused::<2>(two, &["line 2", "columns is `radius and Radii`"]);
+    assert_change_refused::<2>(DUMP, "z radius", "X radius", &["line 9", "column `X`"]);
+}
+
+#[test]
 fn a_label_is_neither_guessed_nor_dropped() {
     let two = XYZ.replace("id:I:1", "id:I:1:Identifier:I:1").replace("0.5 1", "0.5 1 7").replace("0.7 2", "0.7 2 8");
     assert_refused::<2>(two, &["line 2", "columns id and Identifier could both be the label"]);
@@ -122,6 +135,11 @@ fn compressed_files_are_read_and_damaged_ones_refused() {
         assert_eq!(contents(&second).packing, packing());
         assert_ne!(contents(&first).packing, packing());
         assert_refused::<2>(&compressed[..compressed.len() - 6], &["damaged or cut"]);
+        // A bit of the checksum, the last eight bytes of gzip and the last four of zstd.
+        let mut wrong = compressed.clone();
+        let place = wrong.len() - if compressed == &gzip { 8 } else { 1 };
+        wrong[place] ^= 4;
+        assert_refused::<2>(wrong, &["damaged or cut"]);
     }
     assert_refused::<2>([0x1f, 0x8b], &["damaged or cut"]);
     assert_refused::<2>([0x28, 0xb5, 0x2f, 0xfd, 1], &["damaged or cut"]);
