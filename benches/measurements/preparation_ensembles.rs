@@ -1,11 +1,11 @@
 //! Whether packings prepared by different relaxers are one ensemble: distributions at a pressure, compared with those of FIRE in double precision.
 //!
 //! ```text
-//! cargo run --release --features measurements --example preparation_ensembles -- [--disks N] [--pressure P] [--seeds N]
+//! cargo run --release --features measurements --example preparation_ensembles -- [--disks N] [--pressure P] [--seeds [FIRST,]COUNT] [--relaxers N]
 //! ```
 //!
-//! Prepares packings from seeds 1, 2, ... by FIRE, FIRE in mixed precision, the staged relaxer (FIRE, then Newton) and L-BFGS, two at a time on two
-//! cores. The first table has mean and standard error of the packing fraction φ, of the coordination Z of the backbone and of the rattlers' share,
+//! Prepares packings from seeds 1, 2, ... by FIRE, FIRE in mixed precision, the staged relaxer (FIRE, then Newton) and L-BFGS (or the first N of
+//! these), one on each core. The first table has mean and standard error of the packing fraction φ, of the coordination Z of the backbone and of the rattlers' share,
 //! and force evaluations, factorisations and seconds a packing. The second one compares each with FIRE in double precision: mean difference over the
 //! seeds with its standard error; two-sample Kolmogorov–Smirnov distance D and its p-value.
 //!
@@ -31,14 +31,19 @@ const QUANTITIES: [&str; 3] = ["φ", "Z", "rattlers"];
 type Sample = ([f64; 3], Cost);
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let (mut disks, mut pressure, mut seeds) = (1387usize, 10.0, 200u64);
+    let (mut disks, mut pressure, mut seeds, mut kinds) = (1387usize, 10.0, 1..=200u64, 4);
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         let value = arguments.next().ok_or_else(|| format!("{argument} needs a value"))?;
         match argument.as_str() {
             "--disks" => disks = value.parse()?,
             "--pressure" => pressure = value.parse()?,
-            "--seeds" => seeds = value.parse()?,
+            "--seeds" => {
+                let (first, count) = value.split_once(',').unwrap_or(("1", &value));
+                let (first, count): (u64, u64) = (first.parse()?, count.parse()?);
+                seeds = first..=first + count - 1;
+            }
+            "--relaxers" => kinds = value.parse()?,
             _ => return Err(format!("unknown argument {argument}").into()),
         }
     }
@@ -48,13 +53,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("staged", RelaxerChoice::Staged(Staged::default())),
         ("L-BFGS", RelaxerChoice::QuasiNewton(QuasiNewton::default())),
     ];
-    println!("{disks} disks, p = {pressure}, seeds 1 to {seeds}\n");
+    println!("{disks} disks, p = {pressure}, seeds {} to {}\n", seeds.start(), seeds.end());
     println!("| relaxer | packings | φ | Z | rattlers | evaluations | factorisations | seconds |");
     println!("|---|---|---|---|---|---|---|---|");
     let mut ensembles = Vec::new();
-    for (name, relaxer) in relaxers {
+    for (name, relaxer) in relaxers.into_iter().take(kinds) {
         let made: Vec<Result<Sample, PreparationError>> =
-            (1..=seeds).into_par_iter().map(|seed| sample(disks, pressure, seed, &relaxer)).collect();
+            seeds.clone().into_par_iter().map(|seed| sample(disks, pressure, seed, &relaxer)).collect();
         for failure in made.iter().filter_map(|sample| sample.as_ref().err()) {
             eprintln!("{name}: {failure}");
         }

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! `random`: 5548 bidisperse disks (or N) at random points (seed 1 unless given) of a periodic box, packing fraction 0.852, which relaxes to
-//! p ≈ 40 (linear springs of stiffness 10⁴: p ≈ 80). A packing (extended XYZ, periodic): the smallest disk nearest to the middle of the box grows by 0.1 and is held, all
+//! p ≈ 40 with either law. A packing (extended XYZ, periodic): the smallest disk nearest to the middle of the box grows by 0.1 and is held, all
 //! others move. With `--write` nothing is relaxed: the start goes to a file, the sides of the box in its first line after a #,
 //! then a line a disk (x, y, radius, 1 if held). The limit is 10⁻⁸ of the mean contact force unless given.
 
