@@ -71,10 +71,11 @@ fn timed(packing: Packing<2>, law: &dyn PairLaw, (steps, precision): (usize, Pre
     let steps = outcome.cost.step_count;
     println!(
         "{{\"code\": \"{}\", \"case\": \"inflated\", \"law\": \"{}\", \"disks\": {disks}, \"steps\": {steps}, \"cpu_seconds\": {cpu_seconds:.6}, \
-         \"ns_per_particle_step\": {:.2}, \"force_evaluations\": {}, \"neighbour_lists\": {}, \"largest_force\": {:e}}}",
+         \"ns_per_particle_step\": {:.2}, \"wall_ns_per_particle_step\": {:.2}, \"force_evaluations\": {}, \"neighbour_lists\": {}, \"largest_force\": {:e}}}",
         if precision == Precision::Mixed { "jamscope, mixed precision" } else { "jamscope" },
         if law.exponent() == 2.0 { "hooke" } else { "hertz" },
         cpu_seconds * 1e9 / (steps * disks) as f64,
+        outcome.cost.seconds * 1e9 / (steps * disks) as f64,
         outcome.cost.force_evaluation_count,
         outcome.cost.build_count,
         ContactNetwork::new(&outcome.state, law)?.largest_net_force(),

@@ -1,6 +1,8 @@
 """JSON lines of `fire_speed` and its peers as a table of medians, ranges and ratios.
 
-    benches/peers/lammps/compare.sh | python3 benches/peers/table.py
+    benches/peers/lammps/compare.sh | python3 benches/peers/table.py [--wall]
+
+--wall: of the times on the wall (`wall_ns_per_particle_step`), as for several threads.
 """
 
 import json
@@ -9,11 +11,12 @@ import sys
 
 
 def main():
+    key = "wall_ns_per_particle_step" if "--wall" in sys.argv[1:] else "ns_per_particle_step"
     times = {}
     for line in sys.stdin:
         run = json.loads(line)
         case = (run.get("law", "hertz"), run["disks"], run["steps"])
-        times.setdefault(case, {}).setdefault(run["code"], []).append(run["ns_per_particle_step"])
+        times.setdefault(case, {}).setdefault(run["code"], []).append(run[key])
     print("| law | disks | steps | code | median, ns a particle step | lowest to highest | over jamscope, mixed | over jamscope, double |")
     print("|---|---|---|---|---|---|---|---|")
     for (law, disks, steps), codes in times.items():

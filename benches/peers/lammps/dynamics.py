@@ -21,7 +21,7 @@ import time
 
 import numpy as np
 
-from peer import STIFFNESS, VERSION, placed, positions
+from peer import STIFFNESS, VERSION, by_label, placed
 from residual import Residual
 
 DAMPING = 500.0
@@ -45,7 +45,7 @@ def set_up(disks):
         f"""
         neigh_modify every 1 delay 0 check yes exclude group held held
         pair_style granular
-        pair_coeff * * hertz {STIFFNESS} {DAMPING} tangential linear_nohistory 0 0 damping velocity
+        pair_coeff * * hertz {STIFFNESS['hertz']} {DAMPING} tangential linear_nohistory 0 0 damping velocity
         timestep {TIME_STEP}
         thermo 1000000000
         fix move moving nve
@@ -76,7 +76,7 @@ def main():
         lmp.command(f"run {arguments.check_every} {again}")
         seconds += time.process_time() - begin
         steps += arguments.check_every
-        value = residual.of(positions(lmp, len(disks)))
+        value = residual.of(by_label(lmp, len(disks)))
         for limit in limits:
             if value <= limit:
                 first_steps.setdefault(f"{limit:.0e}", steps)

@@ -1,15 +1,17 @@
-"""CPU time per particle step of LAMMPS's FIRE on Hertzian disks: one JSON line a run.
+"""CPU time per particle step of LAMMPS's FIRE on soft disks: one JSON line a run.
 
     . FOLDER/activate-lammps                       (see setup.sh)
     python benches/peers/lammps/fire_speed.py [PACKING] [--steps N] [--replicate K] [--case inflated|jittered] [--law hertz|hooke] [--repeat N]
+        [--style lean|granular] [--skin S] [--threads T] [--pair STYLE]
 
 The case `inflated` (default): one small disk, the one nearest to the middle of the box, grows by 0.1 and is held; all others
 are mobile in the periodic box. The case `jittered`: every coordinate moved by a uniform random number in +-0.01, none held.
 The force limit is 0, so all the steps asked for are made. --replicate K tiles the packing K x K before that.
 
-Mass 1, stiffness 2e5, no damping, neighbour skin 0.1, FIRE with velocity Verlet.
-CPU seconds are those of the process around `minimize` (one thread), neighbour lists and set-up of the run included.
-`largest_force` is that at the end: a run that diverged is seen by it.
+Mass 1, no damping, FIRE with velocity Verlet; styles, stiffnesses and skins as in peer.py. --pair: another style for Hertzian contacts,
+as `table spline 1000` or `lepton`. With --threads T above 1 the style is its variant /omp.
+CPU seconds are those of the process around `minimize`, neighbour lists and set-up of the run included; wall seconds too.
+`largest_force` (component) and `energy` are those at the end: a run that diverged is seen by them.
 """
 
 import argparse
@@ -20,16 +22,11 @@ import time
 
 import numpy as np
 
-from peer import HERTZIAN, VERSION, minimiser
+from peer import STIFFNESS, code, minimiser
 
 GROWTH = 0.1  # radius added to the inflated disk [length]
 JITTER = 0.01  # half width of the random displacement [length]
 SEED = 1
-STYLES = {
-    "hertz": HERTZIAN,
-    # About as stiff as the Hertzian contacts at p = 100; without tangential forces it needs no history.
-    "hooke": "gran/hooke 1e4 0.0 0.0 0.0 0.0 0",
-}
 # First time step; FIRE raises it up to tenfold (LAMMPS's tmax). 0.0003 converges at p = 100. From 0.0007 on it does not: the
 # disks then never settle, lists are rebuilt often and a step costs half as much again, which would flatter the other side.
 TIME_STEP = 0.0003
@@ -67,10 +64,10 @@ def middle_small_disk(sides, disks):
     )
 
 
-def run(sides, disks, case, law, steps, time_step):
-    """CPU seconds, steps made and largest force after them."""
+def run(sides, disks, arguments):
+    """CPU and wall seconds, steps made, largest force and energy after them."""
     disks, held = list(disks), None
-    if case == "inflated":
+    if arguments.case == "inflated":
         held = middle_small_disk(sides, disks)
         x, y, radius = disks[held]
         disks[held] = (x, y, radius + GROWTH)
@@ -78,14 +75,16 @@ def run(sides, disks, case, law, steps, time_step):
         draw = random.Random(SEED)
         disks = [(x + draw.uniform(-JITTER, JITTER), y + draw.uniform(-JITTER, JITTER), r) for x, y, r in disks]
     rows = np.array([(x, y, radius, index == held) for index, (x, y, radius) in enumerate(disks)])
-    lmp = minimiser(sides, rows, STYLES[law], time_step)
-    begin = time.process_time()
-    lmp.command(f"minimize 0.0 0.0 {steps} {10 * steps}")
-    seconds = time.process_time() - begin
+    lmp = minimiser(
+        sides, rows, arguments.law, arguments.time_step, arguments.style, arguments.skin, arguments.threads, arguments.pair
+    )
+    begin, wall = time.process_time(), time.perf_counter()
+    lmp.command(f"minimize 0.0 0.0 {arguments.steps} {10 * arguments.steps}")
+    seconds, wall = time.process_time() - begin, time.perf_counter() - wall
     made = int(lmp.extract_global("ntimestep"))
-    force = lmp.get_thermo("fmax")
+    force, energy = lmp.get_thermo("fmax"), lmp.get_thermo("pe")
     lmp.close()
-    return seconds, made, force
+    return seconds, wall, made, force, energy
 
 
 def main():
@@ -94,23 +93,31 @@ def main():
     parser.add_argument("--steps", type=int, default=2000)
     parser.add_argument("--replicate", type=int, default=1)
     parser.add_argument("--case", choices=("inflated", "jittered"), default="inflated")
-    parser.add_argument("--law", choices=tuple(STYLES), default="hertz")
+    parser.add_argument("--law", choices=tuple(STIFFNESS), default="hertz")
     parser.add_argument("--repeat", type=int, default=1)
     parser.add_argument("--time-step", type=float, default=TIME_STEP)
+    parser.add_argument("--style", choices=("lean", "granular"), default="lean")
+    parser.add_argument("--skin", type=float)
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--pair")
     arguments = parser.parse_args()
     sides, disks = tiled(*read_packing(arguments.packing), arguments.replicate)
     for _ in range(arguments.repeat):
-        seconds, steps, force = run(sides, disks, arguments.case, arguments.law, arguments.steps, arguments.time_step)
+        seconds, wall, steps, force, energy = run(sides, disks, arguments)
         line = {
-            "code": VERSION,
+            "code": code(arguments.style, arguments.law, arguments.threads),
             "case": arguments.case,
             "law": arguments.law,
             "disks": len(disks),
             "steps": steps,
             "cpu_seconds": round(seconds, 4),
             "ns_per_particle_step": round(1e9 * seconds / (steps * len(disks)), 2),
+            "wall_ns_per_particle_step": round(1e9 * wall / (steps * len(disks)), 2),
             "largest_force": force,
+            "energy": energy,
         }
+        if arguments.pair:
+            line["pair"] = arguments.pair
         print(json.dumps(line), flush=True)
 
 

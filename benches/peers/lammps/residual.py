@@ -1,8 +1,8 @@
-"""jamscope's residual of Hertzian disks, from their positions."""
+"""jamscope's residual of soft disks, from their positions."""
 
 import numpy as np
 
-from peer import STIFFNESS
+from peer import force
 
 # Pairs the residual looks at: as far apart as this beyond contact at the start, anew after half of it [length].
 MARGIN = 0.3
@@ -11,8 +11,8 @@ MARGIN = 0.3
 class Residual:
     """Largest net elastic force on the mobile backbone over the backbone's mean contact force; `sides`: of a periodic box."""
 
-    def __init__(self, radius, held, sides=None):
-        self.radius, self.held, self.sides = radius, held, sides
+    def __init__(self, radius, held, sides=None, law="hertz"):
+        self.radius, self.held, self.sides, self.law = radius, held, sides, law
         self.listed = None
 
     def nearest(self, apart):
@@ -51,20 +51,21 @@ class Residual:
         keep = (gap < MARGIN) & ~(self.held[i] & self.held[j])
         self.first, self.second, self.listed = i[keep], j[keep], position.copy()
 
-    def of(self, position):
+    def of(self, position, net=None):
+        """`net`: forces on the disks where they are not those of the law itself, as of a table."""
         if self.listed is None or np.abs(position - self.listed).max() > 0.3 * MARGIN:
             self.pairs_near(position)
         i, j = self.first, self.second
         apart = self.nearest(position[i] - position[j])
         distance = np.hypot(*apart.T)
-        overlap = self.radius[i] + self.radius[j] - distance
-        touch = overlap > 0
-        i, j, apart, distance, overlap = i[touch], j[touch], apart[touch], distance[touch], overlap[touch]
-        reduced = self.radius[i] * self.radius[j] / (self.radius[i] + self.radius[j])
-        size = STIFFNESS * np.sqrt(overlap * reduced) * overlap
-        force = (size / distance)[:, None] * apart
+        touch = distance < self.radius[i] + self.radius[j]
+        i, j, apart, distance = i[touch], j[touch], apart[touch], distance[touch]
+        size = force(self.law, self.radius[i], self.radius[j], distance)
         count = len(position)
-        net = np.stack([np.bincount(i, force[:, d], count) - np.bincount(j, force[:, d], count) for d in range(2)])
+        if net is None:
+            pair = (size / distance)[:, None] * apart
+            net = np.stack([np.bincount(i, pair[:, d], count) - np.bincount(j, pair[:, d], count) for d in range(2)], axis=1)
+        self.mean_force, self.virial = 0.0, float((size * distance).sum())
         backbone = np.ones(count, bool)
         while True:
             both = backbone[i] & backbone[j]
@@ -74,5 +75,7 @@ class Residual:
                 break
             backbone &= ~loose
         mobile = backbone & ~self.held
-        self.mean_force, self.virial = float(size[both].mean()), float((size * distance).sum())
-        return float(np.hypot(*net[:, mobile]).max() / self.mean_force)
+        if not mobile.any():
+            return float("inf")
+        self.mean_force = float(size[both].mean())
+        return float(np.hypot(*net[mobile].T).max() / self.mean_force)
