@@ -281,8 +281,12 @@ fn a_deflation_reads_the_sign_of_the_pressure_change_the_other_way_round() {
 fn a_run_on_a_packing_that_is_not_at_rest_has_no_phase() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (scene, out) = (folder.path().join("scene.toml"), folder.path().join("out"));
-    // A Hookean packing in a Hertzian scene.
-    let packing = fixture("packings/hooke_N1000_p800.xyz");
+    // A Hookean packing that does not say so, in a Hertzian scene.
+    let packing = folder.path().join("hooke_N1000_p800.xyz");
+    let known = std::fs::read_to_string(fixture("packings/hooke_N1000_p800.xyz")).expect("a fixture");
+    let unknown = known.replacen(" law=hooke stiffness=200000.0", "", 1);
+    assert_ne!(unknown, known, "law and stiffness are left out");
+    std::fs::write(&packing, unknown).expect("a temporary file");
     std::fs::write(&scene, "disk_count = 1000\n[law.hertzian]\nstiffness = 2e5\n").expect("a temporary file");
     let run = |flag: &[&str]| {
         let fixed = ["run", text(&scene), "--packing", text(&packing), "--out", text(&out)];
