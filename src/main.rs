@@ -43,6 +43,8 @@ use jamscope::run::{SampleOutcome, run};
 use jamscope::scene::{ProtocolChoice, Sample, Scene, Source};
 use jamscope::verdict::{AboveLimit, Decision, VerdictSettings};
 
+use contact_law::LawName;
+
 /// The mechanics of jammed packings: prepare, inflate, relax, and compare the response with exact solutions.
 ///
 /// Without a command, jamscope runs the built-in scene, which shows the three phases.
@@ -108,7 +110,7 @@ struct InspectArguments {
     frame: input::Frames,
     /// Contact law if the file gives none: `hertzian`, `hookean` or `power:ALPHA`; by default Hertzian.
     #[arg(long, value_name = "LAW", value_parser = contact_law::parse)]
-    law: Option<contact_law::LawName>,
+    law: Option<LawName>,
     /// Stiffness k' (Hertzian, Hookean) or energy scale (power law) if the file gives none; by default 2e5, and 1 for the
     /// power law.
     #[arg(long, value_name = "K")]
@@ -202,21 +204,19 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     Err(format!("{scene_name}: {failed} of {} samples failed, see above", report.samples.len()).into())
 }
 
-/// The law of `--packing`: that of the file, if it gives one; it must then be that of the scene, if there is a scene.
+/// The law of `--packing`: that of the file, which must be that of the scene, if there is one and the file gives a law.
 fn law_of_run(path: &std::path::Path, of_scene: Option<&LawChoice>) -> Result<LawChoice, Failure> {
     // A file that cannot be read is reported by the run.
-    let properties = properties_of_frame(path, Frame::Last).unwrap_or_default();
-    let says = |key: &str| properties.iter().any(|(other, _)| other.eq_ignore_ascii_case(key));
-    if !says("law") && !says("stiffness") && !says("exponent") {
+    if properties_of_frame(path, Frame::Last).is_err() {
         return Ok(of_scene.copied().unwrap_or_default());
     }
-    let law = contact_law::law_of(path, Frame::Last, None, None)?;
-    match of_scene {
-        Some(scene) if *scene != law => {
-            Err(format!("{}: the file gives the law {law:?}, but the scene {scene:?}", path.display()).into())
-        }
-        _ => Ok(law),
-    }
+    let parts = of_scene.map(|law| match law {
+        LawChoice::Hertzian(law) => (LawName::Hertzian, law.stiffness),
+        LawChoice::Hookean(law) => (LawName::Hookean, law.stiffness),
+        LawChoice::PowerLaw(law) => (LawName::Power(law.exponent), law.energy_scale),
+    });
+    let (name, stiffness) = parts.unzip();
+    contact_law::law_of(path, Frame::Last, name, stiffness)
 }
 
 /// The unit of lengths that are not given: the diameter of a small disk of the packing, 1 in the units of the defaults.

@@ -19,6 +19,7 @@ use jamscope::network::ContactNetwork;
 use jamscope::packing::Mixture;
 use jamscope::preparation::{Preparation, PreparationError, Target, prepare_with};
 use jamscope::relax::{Cost, Fire, Precision, QuasiNewton, RelaxerChoice, Staged};
+use jamscope::vector::larger;
 use rayon::prelude::*;
 
 /// Relative tolerance on the pressure: the default of a preparation.
@@ -91,6 +92,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             let differences: Vec<f64> = both.map(|(one, two)| one.0[quantity] - two.0[quantity]).collect();
             let (difference, error) = mean(&differences);
             let (one, two) = (column(samples, quantity), column(reference, quantity));
+            if one.len().min(two.len()) < 2 {
+                println!("| {name} | {label} | cannot tell: {} and {} packings | | |", one.len(), two.len());
+                continue;
+            }
             let distance = largest_distance(&one, &two);
             let p_value = p_value(distance, (one.len(), two.len()));
             println!("| {name} | {label} | {difference:+.1e} ± {error:.1e} | {distance:.3} | {p_value:.2} |");
@@ -125,7 +130,7 @@ fn mean(values: &[f64]) -> (f64, f64) {
 fn largest_distance(one: &[f64], two: &[f64]) -> f64 {
     let share =
         |sample: &[f64], value: f64| sample.iter().filter(|&&x| x <= value).count() as f64 / sample.len() as f64;
-    one.iter().chain(two).map(|&value| (share(one, value) - share(two, value)).abs()).fold(0.0, f64::max)
+    one.iter().chain(two).map(|&value| (share(one, value) - share(two, value)).abs()).fold(0.0, larger)
 }
 
 /// Probability of a distance D or more of samples of one distribution. Equal values make it too large.

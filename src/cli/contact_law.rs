@@ -90,8 +90,8 @@ pub enum LawOfFileError {
         /// The law in the file.
         law: String,
     },
-    /// File and command line contradict each other.
-    #[error("{path}: the file gives {what} {file}, but the command line gives {command_line}")]
+    /// The file contradicts the command line or the scene.
+    #[error("{path}: the file gives {what} {file}, but {asked} is asked for")]
     Contradiction {
         /// The file.
         path: String,
@@ -99,8 +99,8 @@ pub enum LawOfFileError {
         what: &'static str,
         /// Its value in the file.
         file: String,
-        /// Its value on the command line.
-        command_line: String,
+        /// Its value on the command line or in the scene.
+        asked: String,
     },
 }
 
@@ -197,11 +197,11 @@ fn agreed<T: Copy + PartialEq + std::fmt::Display>(
     asked: Option<T>,
 ) -> Result<Option<T>, LawOfFileError> {
     match (in_file, asked) {
-        (Some(file), Some(command_line)) if file != command_line => Err(LawOfFileError::Contradiction {
+        (Some(file), Some(asked)) if file != asked => Err(LawOfFileError::Contradiction {
             path: path.into(),
             what,
             file: file.to_string(),
-            command_line: command_line.to_string(),
+            asked: asked.to_string(),
         }),
         _ => Ok(in_file.or(asked)),
     }

@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use jamscope::io::{Frame, frame_count, try_name};
+use jamscope::io::{Frame, check_place, frame_count, try_name};
 use tempfile::TempDir;
 
 use crate::Failure;
@@ -90,9 +90,7 @@ pub fn check_output(out: &Path, input: &Path) -> Result<(), Failure> {
         _ => Path::new("."),
     };
     let name = out.file_name().ok_or_else(|| named(&"names no file"))?;
-    if out.is_dir() {
-        return Err(named(&"is a folder").into());
-    }
+    check_place(out)?;
     try_name(folder, name).map_err(|error| named(&error))?;
     if let (Ok(out), Ok(input)) = (out.canonicalize(), input.canonicalize())
         && out == input

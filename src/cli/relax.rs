@@ -9,10 +9,11 @@ use jamscope::law::LawChoice;
 use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use jamscope::preparation::{Target, compress};
-use jamscope::relax::{Check, Relaxer, RelaxerChoice, Stop, Trace};
+use jamscope::relax::{Relaxer, RelaxerChoice, Stop};
 use jamscope::report::write_state;
-use jamscope::run::Progress;
+use jamscope::run::{Progress, Watch};
 use jamscope::scene::{relaxer_by_name, relaxer_with_limit};
+use jamscope::verdict::VerdictSettings;
 
 use crate::contact_law::{self, LawName};
 use crate::progress::Bars;
@@ -81,8 +82,20 @@ pub struct CompressArguments {
     tolerance: f64,
 }
 
-/// Largest residual of a state at rest, as in the [verdict](jamscope::verdict) \[1\].
-const AT_REST: f64 = 1e-3;
+/// Largest residual of a state at rest \[1\].
+fn residual_limit() -> f64 {
+    VerdictSettings::default().residual_limit
+}
+
+/// Whether a relaxation ended at rest: by the criteria of the relaxer, of force and energy, or at the rounding floor with
+/// a residual that counts as rest.
+fn is_at_rest(stop: Stop, residual: f64) -> bool {
+    match stop {
+        Stop::Converged(_) => true,
+        Stop::RoundingFloor => residual <= residual_limit(),
+        _ => false,
+    }
+}
 
 /// What is done with a packing.
 enum Task {
@@ -111,8 +124,10 @@ fn run(arguments: &FileArguments, task: &Task) -> Result<ExitCode, Failure> {
         return Err(format!("--relaxer is `{name}`, not the name of a relaxer in a scene, such as fire").into());
     }
     let relaxer = match arguments.limit {
-        Some(limit) if limit > 0.0 && limit <= AT_REST => relaxer_with_limit(name, limit),
-        Some(limit) => return Err(format!("--limit is {limit}: must be above 0 and at most {AT_REST}").into()),
+        Some(limit) if limit > 0.0 && limit <= residual_limit() => relaxer_with_limit(name, limit),
+        Some(limit) => {
+            return Err(format!("--limit is {limit}: must be above 0 and at most {}", residual_limit()).into());
+        }
         None => relaxer_by_name(name),
     };
     let relaxer = relaxer.map_err(|error| format!("--relaxer {name}: {}", error.message))?;
@@ -160,7 +175,7 @@ fn run_in<const D: usize>(
     let name = arguments.packing.display();
     check(&packing).map_err(|reason| format!("{name}: {reason}"))?;
     let bars = Bars::new(std::iter::once(name.to_string().as_str()));
-    let mut trace = BarTrace { bars: &bars, limit: relaxer.limit().value() };
+    let mut trace = Watch { progress: &bars, sample: 0, stage: "relaxation", limit: relaxer.limit().value() };
     let first = Numbers::of(&packing, &ContactNetwork::new(&packing, law)?);
     let (state, end) = match task {
         Task::Relax => {
@@ -188,8 +203,8 @@ fn run_in<const D: usize>(
     let network = ContactNetwork::new(&state, law)?;
     write_state(out, &state, (&network, law), &properties)?;
     print(&table(&first, &Numbers::of(&state, &network), &end, out))?;
-    let is_at_rest = matches!(end.stop, Stop::Converged(_)) || end.residual <= AT_REST;
-    Ok(exit_code::of_relaxation((!is_at_rest).then(|| format!("{name} ({:?})", end.stop))))
+    let moves = !is_at_rest(end.stop, end.residual);
+    Ok(exit_code::of_relaxation(moves.then(|| format!("{name} ({:?})", end.stop))))
 }
 
 /// How the last relaxation ended, and what all of them cost.
@@ -264,19 +279,19 @@ fn named(path: &Path, task: &Task) -> PathBuf {
     PathBuf::from(format!("{stem}.{ending}.xyz"))
 }
 
-/// Shows the residual on a terminal.
-struct BarTrace<'a> {
-    bars: &'a Bars,
-    limit: f64,
-}
+#[cfg(test)]
+mod tests {
+    use jamscope::relax::Criterion;
 
-impl Trace for BarTrace<'_> {
-    fn checked(&mut self, check: &Check) {
-        if check.step_count == 0 {
-            self.bars.stage(0, "relaxation", self.limit);
-        }
-        if !check.restart {
-            self.bars.residual(0, check.residual);
+    use super::*;
+
+    #[test]
+    fn a_small_residual_alone_is_no_rest() {
+        assert!(is_at_rest(Stop::Converged(Criterion::RelativeForce), 1e-9));
+        assert!(is_at_rest(Stop::RoundingFloor, 1e-14) && !is_at_rest(Stop::RoundingFloor, 1e-2));
+        // With more energy than at the start, without a minimum, or in an unstable motion nothing is at rest.
+        for stop in [Stop::EnergyGained, Stop::NoMinimum, Stop::Unstable, Stop::StepLimit, Stop::Underflow] {
+            assert!(!is_at_rest(stop, 0.0), "{stop:?}");
         }
     }
 }

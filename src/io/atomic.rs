@@ -19,7 +19,7 @@ pub enum WriteError {
         source: io::Error,
     },
     /// A folder or device has that name; a file must not replace it.
-    #[error("{path}: exists, but is not a file")]
+    #[error("{path}: exists, but is not a file, or is a device")]
     NotAFile {
         /// The path.
         path: PathBuf,
@@ -87,12 +87,21 @@ where
     F: FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
 {
     let path = path.as_ref();
-    // A link such as /dev/stdout leads to a file now and then, but is not one.
+    check_place(path)?;
+    replace(path, write).map_err(|source| WriteError::Io { path: path.into(), source })
+}
+
+/// Refuses a path that [`write_atomically`] would refuse: a folder, or a device.
+///
+/// # Errors
+/// [`WriteError::NotAFile`].
+pub fn check_place(path: &Path) -> Result<(), WriteError> {
+    // A link such as /dev/stdout leads to a file now and then, but must not be replaced.
     let is_device = path.starts_with("/dev") || path.starts_with("/proc");
     if is_device || path.metadata().is_ok_and(|there| !there.is_file()) {
         return Err(WriteError::NotAFile { path: path.into() });
     }
-    replace(path, write).map_err(|source| WriteError::Io { path: path.into(), source })
+    Ok(())
 }
 
 fn replace<F>(path: &Path, write: F) -> io::Result<()>

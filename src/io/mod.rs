@@ -34,7 +34,7 @@ mod xyz_columns;
 
 use std::path::Path;
 
-pub use atomic::{WriteError, write_atomically};
+pub use atomic::{WriteError, check_place, write_atomically};
 pub use contents::Contents;
 pub use frame::Frame;
 pub use read_error::ReadError;

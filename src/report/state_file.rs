@@ -8,7 +8,7 @@ use crate::network::ContactNetwork;
 use crate::packing::Packing;
 use crate::report::files::numbers_of;
 
-/// Keys of the comment line that depend on the state or on the law; they are written anew or left out.
+/// Keys of the comment line that describe the state or the law. They are not copied from the input.
 const OWN: [&str; 16] = [
     "law",
     "stiffness",

@@ -24,13 +24,12 @@ use crate::processor::Processor;
 use crate::protocol::{Compared, Protocol, ProtocolSensitivity, ProtocolSettings, ProtocolSummary, chosen};
 use crate::relax::{Criterion, Outcome, Relaxer, RelaxerChoice, Stop, Trace};
 use crate::response::{Calibration, Conditions, PhaseFrequency, Response, Subject};
-use crate::run::progress::Watch;
 use crate::scene::reduced_pressure::reduction;
 use crate::scene::{Sample, Scene, SceneError, Source};
 use crate::verdict::{Place, RestVerdict};
 
 pub use error::RunError;
-pub use progress::Progress;
+pub use progress::{Progress, Watch};
 #[cfg(feature = "linear")]
 pub use report_data::PlasticSummary;
 pub use report_data::{

@@ -25,11 +25,15 @@ pub trait Progress: Sync {
 
 impl Progress for () {}
 
-/// Reports the residual of one sample.
-pub(super) struct Watch<'a> {
+/// Reports the residual of one sample, as the trace of its relaxations.
+pub struct Watch<'a> {
+    /// Where it is reported.
     pub progress: &'a dyn Progress,
+    /// Number of the sample.
     pub sample: usize,
+    /// Name of the stage.
     pub stage: &'static str,
+    /// Limit of the relaxer \[1, or force\].
     pub limit: f64,
 }
 

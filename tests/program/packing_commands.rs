@@ -9,6 +9,7 @@ use jamscope::law::Hertzian;
 use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
 use jamscope::preparation::Target;
+use jamscope::vector::larger;
 use jamscope::{Inflation, Preparation, inflate, prepare};
 use serde_json::Value;
 
@@ -105,7 +106,7 @@ fn a_relaxed_file_is_at_rest_and_holds_the_results_of_each_disk() {
             // Two thousand terms, each with a rounding error of 10⁻¹⁶ of the pressure.
             assert!((sum - expected).abs() < 1e-12 * pressure, "{component}: {sum} and {expected}");
         }
-        let largest = column(&path, "net_force").iter().map(|force| force[0].hypot(force[1])).fold(0.0, f64::max);
+        let largest = column(&path, "net_force").iter().map(|force| force[0].hypot(force[1])).fold(0.0, larger);
         assert!((largest / network.largest_net_force() - 1.0).abs() < 1e-15);
     }
 }
@@ -150,7 +151,7 @@ fn a_run_takes_the_law_of_its_packing() {
     assert_eq!(report["scene"]["law"]["hertzian"]["stiffness"], 1000.0);
     std::fs::write(folder.path().join("scene.toml"), "[law.hookean]\nstiffness = 2.0\n").expect("written");
     let arguments = ["run", "scene.toml", "--packing", "soft.xyz"];
-    refused(folder.path(), &arguments, &["soft.xyz", "the file gives the law", "the scene"]);
+    refused(folder.path(), &arguments, &["soft.xyz", "the file gives law hertzian, but hookean is asked for"]);
 }
 
 #[test]
@@ -181,6 +182,7 @@ fn what_cannot_be_done_with_a_packing_is_refused_with_its_reason() {
     }
     refused(folder.path(), &["relax", &path, "--relaxer", "fire = {} #"], &["--relaxer is `fire = {} #`"]);
     refused(folder.path(), &["relax", &path, "--out", "no/folder.xyz"], &["no/folder.xyz"]);
+    refused(folder.path(), &["relax", &path, "--out", "/dev/no_such_device"], &["/dev/no_such_device", "a device"]);
     refused(folder.path(), &["relax", &path, "--out", &path], &["is the input"]);
     refused(folder.path(), &["inspect", &path, "--write", &path], &["is the input"]);
     refused(folder.path(), &["analyse", &path], &["one file", "--frames"]);
