@@ -234,12 +234,14 @@ impl VirialIdentity {
         if contacts.is_empty() || energy < f64::MIN_POSITIVE / f64::EPSILON || strain < 4.0 * f64::EPSILON {
             return None;
         }
-        let (wide, longer) = packing.stretched(strain);
-        let (narrow, shorter) = packing.stretched(-strain);
+        let uniform = |strain| std::array::from_fn(|a| std::array::from_fn(|b| if a == b { strain } else { 0.0 }));
+        let (wide, more_strain) = packing.deformed(&uniform(strain));
+        let (narrow, less_strain) = packing.deformed(&uniform(-strain));
         let more = compensated_energy(&ContactNetwork::new(&wide, law).ok()?);
         let less = compensated_energy(&ContactNetwork::new(&narrow, law).ok()?);
-        // Sides are rounded numbers: each axis has its own strain, and the forces are compared at these strains.
-        let expected: f64 = (0..D).map(|axis| virial[axis][axis] * (longer[axis] - shorter[axis])).sum();
+        // Edges are rounded numbers: each component has its own strain, and the forces are compared at these strains.
+        let work = |a: usize, b: usize| virial[a][b] * (more_strain[a][b] - less_strain[a][b]);
+        let expected: f64 = (0..D).flat_map(|a| (0..D).map(move |b| (a, b))).map(|(a, b)| work(a, b)).sum();
         let relative_difference = (extended_sum(less, -more.0).0 - more.1 - expected) / expected;
         Some(VirialIdentity {
             from_forces,

@@ -245,7 +245,7 @@ impl Lattice {
         });
         let (positions, corrections): (Vec<_>, Vec<_>) = sites.map(|(along, row)| self.site(along, row)).unzip();
         let ([width, _], [_, height]) = (self.site(2 * columns, 0).0, self.site(0, rows).0);
-        let domain = Domain::Periodic { corner: [0.0; 2], lengths: [width, height] };
+        let domain = Domain::rectangular([0.0; 2], [width, height]);
         let radii = vec![self.radius; positions.len()];
         Ok(Packing::new(domain, positions, radii)?.with_corrections(corrections)?)
     }

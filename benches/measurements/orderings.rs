@@ -52,9 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// `copies` × `copies` boxes of a periodic packing as one.
 fn tiled(packing: &Packing<2>, copies: usize) -> Result<Packing<2>, Box<dyn Error>> {
-    let Domain::Periodic { corner, lengths } = *packing.domain() else {
-        return Err("the packing is not periodic".into());
-    };
+    let lengths = packing.domain().lengths().ok_or("the packing is not periodic")?;
     let (mut positions, mut radii) = (Vec::new(), Vec::new());
     for copy in 0..copies * copies {
         let shift = [(copy / copies) as f64 * lengths[0], (copy % copies) as f64 * lengths[1]];
@@ -62,7 +60,7 @@ fn tiled(packing: &Packing<2>, copies: usize) -> Result<Packing<2>, Box<dyn Erro
         radii.extend_from_slice(packing.radii());
     }
     let lengths = lengths.map(|side| side * copies as f64);
-    Ok(Packing::new(Domain::Periodic { corner, lengths }, positions, radii)?)
+    Ok(Packing::new(Domain::rectangular([0.0; 2], lengths), positions, radii)?)
 }
 
 fn compare<const D: usize>(packing: &Packing<D>, folder: Option<&Path>) -> Result<(), Box<dyn Error>> {

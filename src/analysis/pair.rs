@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::inflation::Boundary;
 use crate::packing::{Packing, PackingError};
-use crate::vector::{norm, two_sum};
+use crate::vector::norm;
 
 /// Settings that the states do not contain.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -176,8 +176,10 @@ fn matched(first: &Packing<2>, second: &Packing<2>, state: &'static str) -> Resu
     }
     let order = order(first, second, state)?;
     let radii = order.iter().map(|&place| second.radii()[place]).collect();
+    // In the image nearest to the position in the first state.
+    let image = |disk: usize, place| second.domain().nearest_image(second.centre(place), first.positions()[disk]);
     let (positions, corrections): (Vec<_>, Vec<_>) =
-        order.iter().enumerate().map(|(disk, &place)| unwrapped(first, disk, second, place)).unzip();
+        order.iter().enumerate().map(|(disk, &place)| image(disk, place)).unzip();
     let packing = Packing::new(*second.domain(), positions, radii)?;
     Ok(packing.with_corrections(corrections)?.with_labels(first.labels().to_vec())?)
 }
@@ -196,19 +198,6 @@ fn order(first: &Packing<2>, second: &Packing<2>, state: &'static str) -> Result
     // Each index is taken once: the labels of the second are unique, and their number is that of the first.
     let mut place = |label: &u64| places.remove(label).ok_or(AnalysisError::LabelMissing { state, label: *label });
     first.labels().iter().map(&mut place).collect()
-}
-
-/// Position and correction of a disk in the second state, in the image nearest to its position in the first.
-fn unwrapped(first: &Packing<2>, disk: usize, second: &Packing<2>, place: usize) -> ([f64; 2], [f64; 2]) {
-    let ((before, _), (mut position, mut correction)) = (first.centre(disk), second.centre(place));
-    for axis in 0..2 {
-        let shift = second.domain().shift(position[axis] - before[axis], axis);
-        if shift != 0.0 {
-            let (high, low) = two_sum(position[axis], shift);
-            (position[axis], correction[axis]) = two_sum(high, low + correction[axis]);
-        }
-    }
-    (position, correction)
 }
 
 /// The one disk with a label.

@@ -131,7 +131,7 @@ impl<const D: usize> Layout<D> {
 /// distances keep their accuracy.
 fn origin_and_domain<const D: usize>(packing: &Packing<D>) -> (Vector<D>, Domain<D>) {
     match packing.domain() {
-        Domain::Periodic { corner, lengths } => (*corner, Domain::Periodic { corner: [0.0; D], lengths: *lengths }),
+        Domain::Periodic { corner, edges } => (*corner, Domain::Periodic { corner: [0.0; D], edges: *edges }),
         Domain::Open => {
             let origin = std::array::from_fn(|d| {
                 let column = || packing.positions().iter().map(|position| position[d]);

@@ -8,7 +8,7 @@
 use crate::inflation::error::InflationError;
 use crate::network::ContactNetwork;
 use crate::packing::{Domain, Packing, ball_volume};
-use crate::vector::{Vector, dot, norm, two_sum};
+use crate::vector::{Vector, extended_sum, norm};
 
 /// A circular (D = 2) or spherical (D = 3) piece of a packing with a held rim.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,8 +32,8 @@ impl<const D: usize> Circle<D> {
     /// The packing must be periodic. `outer_radius` must be at most half a side, so that each mobile disk has one
     /// image.
     pub fn cut(packing: &Packing<D>, centre: usize, outer_radius: f64) -> Result<Self, InflationError> {
-        let lengths = packing.domain().lengths().ok_or(InflationError::NotPeriodic)?;
-        let half = 0.5 * lengths.iter().copied().fold(f64::INFINITY, f64::min);
+        let edges = packing.domain().edges().ok_or(InflationError::NotPeriodic)?;
+        let half = 0.5 * (0..D).map(|d| edges[d][d]).fold(f64::INFINITY, f64::min);
         if !(outer_radius > 0.0 && outer_radius <= half) {
             return Err(InflationError::OuterRadiusOutOfRange { outer_radius, half_side: half });
         }
@@ -41,16 +41,15 @@ impl<const D: usize> Circle<D> {
         let reach = outer_radius + RIM_WIDTH * largest;
         let mut mobile = Vec::new();
         let mut rim = Vec::new();
+        let mut images = Vec::new();
         for disk in (0..packing.len()).filter(|&disk| disk != centre) {
             let (high, low) = packing.domain().separation_extended(packing.centre(disk), packing.centre(centre));
-            for shift in images::<D>() {
-                let mut position = ([0.0; D], [0.0; D]);
-                for d in 0..D {
-                    let (value, rest) = two_sum(high[d], shift[d] * lengths[d]);
-                    (position.0[d], position.1[d]) = two_sum(value, rest + low[d]);
-                }
-                let distance = norm(position.0);
-                if shift == [0.0; D] && distance < outer_radius {
+            images.clear();
+            let image = Image { centre: std::array::from_fn(|d| (high[d], low[d])), is_nearest: true };
+            add_images(D, image, &edges, reach, &mut images);
+            for &image in &images {
+                let (position, distance) = (image.position(), norm(image.position().0));
+                if image.is_nearest && distance < outer_radius {
                     mobile.push((disk, position));
                 } else if distance >= outer_radius && distance < reach {
                     rim.push((disk, position));
@@ -58,10 +57,11 @@ impl<const D: usize> Circle<D> {
             }
         }
         // The images of the centre lie outside R if R is below half a side; they may belong to the rim.
-        for shift in images::<D>().filter(|&shift| shift != [0.0; D]) {
-            let position: Vector<D> = std::array::from_fn(|d| shift[d] * lengths[d]);
-            if dot(position, position) < reach * reach {
-                rim.push((centre, (position, [0.0; D])));
+        images.clear();
+        add_images(D, Image { centre: [(0.0, 0.0); D], is_nearest: true }, &edges, reach, &mut images);
+        for image in images.iter().filter(|image| !image.is_nearest) {
+            if norm(image.position().0) < reach {
+                rim.push((centre, image.position()));
             }
         }
         let middle = mobile.len();
@@ -98,7 +98,40 @@ impl<const D: usize> Circle<D> {
     }
 }
 
-/// The shifts −1, 0, 1 of every axis, in boxes.
-fn images<const D: usize>() -> impl Iterator<Item = Vector<D>> {
-    (0..3usize.pow(D as u32)).map(|code| std::array::from_fn(|d| ((code / 3usize.pow(d as u32)) % 3) as f64 - 1.0))
+/// An image of a disk relative to the centre.
+#[derive(Clone, Copy)]
+struct Image<const D: usize> {
+    /// Its centre, an unevaluated sum per axis.
+    centre: [(f64, f64); D],
+    is_nearest: bool,
+}
+
+impl<const D: usize> Image<D> {
+    /// Position and correction.
+    fn position(&self) -> (Vector<D>, Vector<D>) {
+        (self.centre.map(|it| it.0), self.centre.map(|it| it.1))
+    }
+}
+
+/// Adds the images of a disk with no coordinate beyond `reach`, shifted along the edges before `axis`.
+fn add_images<const D: usize>(
+    axis: usize,
+    image: Image<D>,
+    edges: &[Vector<D>; D],
+    reach: f64,
+    images: &mut Vec<Image<D>>,
+) {
+    let Some(axis) = axis.checked_sub(1) else {
+        images.push(image);
+        return;
+    };
+    let (at, edge) = (image.centre[axis].0, edges[axis]);
+    let (first, last) = (((-reach - at) / edge[axis]).ceil(), ((reach - at) / edge[axis]).floor());
+    for boxes in first as i64..=last as i64 {
+        let mut shifted = Image { is_nearest: image.is_nearest && boxes == 0, ..image };
+        for along in 0..=axis {
+            shifted.centre[along] = extended_sum(shifted.centre[along], boxes as f64 * edge[along]);
+        }
+        add_images(axis, shifted, edges, reach, images);
+    }
 }

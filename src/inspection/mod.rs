@@ -18,7 +18,7 @@ use crate::memory::{Limit, TooLarge};
 use crate::observe::ForceDistribution;
 use crate::observe::force_distribution::PERCENTILES;
 use crate::observe::state::State;
-use crate::packing::{Domain, Packing, PackingError};
+use crate::packing::{Packing, PackingError};
 use crate::vector::larger;
 use crate::verdict::{RestVerdict, VerdictSettings};
 
@@ -38,9 +38,12 @@ pub struct Inspection {
     pub disk_count: usize,
     /// Number of held disks.
     pub held_count: usize,
-    /// Sides of the box; absent in the open plane \[length\].
+    /// Sides of the box, those of a tilted one along the axes; absent in the open plane \[length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub box_sides: Option<Vec<f64>>,
+    /// Edges of a tilted box, from its corner; absent for a rectangular one \[length\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub box_edges: Option<Vec<Vec<f64>>>,
     /// Packing fraction; absent in the open plane \[1\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub packing_fraction: Option<f64>,
@@ -189,10 +192,12 @@ impl Inspection {
             dimension: D,
             disk_count: packing.len(),
             held_count: packing.held().iter().filter(|&&held| held).count(),
-            box_sides: match packing.domain() {
-                Domain::Periodic { lengths, .. } => Some(lengths.to_vec()),
-                Domain::Open => None,
-            },
+            box_sides: packing.domain().lengths().map(|lengths| lengths.to_vec()),
+            box_edges: packing
+                .domain()
+                .edges()
+                .filter(|_| packing.domain().is_tilted())
+                .map(|edges| edges.iter().map(|edge| edge.to_vec()).collect()),
             packing_fraction: packing.packing_fraction(),
             energy: network.energy(),
             pressure: volume.map(|volume| network.pressure(volume)),

@@ -37,7 +37,9 @@ use crate::io::contents::Contents;
 use crate::io::frame::Frame;
 use crate::io::plane::Plane;
 use crate::io::read_error::ReadError;
+use crate::io::read_warning::ReadWarning;
 use crate::io::source::{AXES, Source, largest_radius};
+use crate::io::triclinic::{Triclinic, Turn, turn, turned};
 use crate::io::xyz_columns::{Columns, flag};
 use crate::packing::Domain;
 
@@ -57,7 +59,7 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Con
         }
     }
     let columns = Columns::<D>::new(source, line, &comment)?;
-    let domain = domain(source, line, &comment)?;
+    let (domain, axes) = domain(source, line, &comment)?;
     let mut disks = Vec::with_capacity(count);
     let mut extras = Vec::with_capacity(count);
     let mut sites = Vec::with_capacity(if columns.has_sites() { count } else { 0 });
@@ -67,14 +69,17 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Con
         row.expect_count(columns.total)?;
         let disk = columns.disk(&row, row_line)?;
         columns.take_third(&row, row_line, &mut plane)?;
-        extras.push((columns.held(source, &row, row_line)?, columns.correction(source, &row, &disk)?));
+        let correction = columns.correction(source, &row, &disk)?;
+        extras.push((columns.held(source, &row, row_line)?, turned(&axes, correction)));
         disks.push(disk);
-        sites.extend(columns.site(source, &row, row_line)?);
+        let site = columns.site(source, &row, row_line)?;
+        sites.extend(site.map(|(site, rest)| (turned(&axes, site), turned(&axes, rest))));
     }
     plane.check(source, "pos z", largest_radius(&disks), 0.0)?;
     if columns.has_ids() {
         source.check_ids(&disks, |disk| extras[disk].0)?;
     }
+    turn(&axes, &mut disks);
     let mut packing = source
         .packing(domain, &disks, columns.has_labels())?
         .with_held(extras.iter().map(|&(held, _)| held).collect())
@@ -94,7 +99,8 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Con
             .with_sites(sites)
             .map_err(|error| ReadError::Packing { path: source.path.into(), source: error })?;
     }
-    Ok(Contents { properties: comment.into_pairs(), ..Contents::from(packing) })
+    let warnings = axes.map(|_| ReadWarning::Turned { line: line + 1 }).into_iter().collect();
+    Ok(Contents { packing, properties: comment.into_pairs(), warnings })
 }
 
 /// Number of frames.
@@ -142,7 +148,11 @@ fn frames(source: &Source) -> Result<Vec<(usize, usize)>, ReadError> {
     Ok(frames)
 }
 
-fn domain<const D: usize>(source: &Source, line: usize, comment: &CommentLine) -> Result<Domain<D>, ReadError> {
+fn domain<const D: usize>(
+    source: &Source,
+    line: usize,
+    comment: &CommentLine,
+) -> Result<(Domain<D>, Turn<D>), ReadError> {
     let lattice = comment.value("Lattice");
     if let Some(value) = comment.value("pbc") {
         let flags: Option<Vec<bool>> = list(value).into_iter().map(flag).collect();
@@ -150,7 +160,7 @@ fn domain<const D: usize>(source: &Source, line: usize, comment: &CommentLine) -
             return Err(source.bad(line, "pbc", value, "three of T and F"));
         };
         if flags[..D].iter().all(|periodic| !periodic) {
-            return Ok(Domain::Open);
+            return Ok((Domain::Open, None));
         }
         if let Some(axis) = flags[..D].iter().position(|periodic| !periodic) {
             return Err(source.not_periodic(line, "pbc", value, axis));
@@ -167,13 +177,6 @@ fn domain<const D: usize>(source: &Source, line: usize, comment: &CommentLine) -
     } else {
         components::<9>(source, line, "Lattice", lattice, "nine numbers, or four in two dimensions")?
     };
-    for (index, &component) in cell.iter().enumerate() {
-        let (vector, axis) = (index / 3, index % 3);
-        if vector != axis && component != 0.0 {
-            let field = format!("Lattice vector {} along {}", vector + 1, AXES[axis]);
-            return Err(source.tilted(line, &field, &component.to_string()));
-        }
-    }
     let corner = match comment.value("Origin") {
         Some(value) if D == 2 && list(value).len() == 2 => {
             let [x, y] = components::<2>(source, line, "Origin", value, "two numbers")?;
@@ -182,12 +185,14 @@ fn domain<const D: usize>(source: &Source, line: usize, comment: &CommentLine) -
         Some(value) => components::<3>(source, line, "Origin", value, "three numbers")?,
         None => [0.0; 3],
     };
-    let mut lengths = [0.0; D];
+    let edges = std::array::from_fn(|d| std::array::from_fn(|axis| cell[3 * d + axis]));
+    let triclinic = Triclinic { corner, edges };
+    let (domain, turn) = triclinic.domain(source, line, "Lattice")?;
+    let lengths = domain.lengths().unwrap_or([f64::INFINITY; D]);
     for axis in 0..D {
-        lengths[axis] = source.positive(line, "Lattice", &cell[4 * axis].to_string())?;
         source.check_corner(line, &format!("Origin {}", AXES[axis]), corner[axis], lengths[axis])?;
     }
-    Ok(Domain::Periodic { corner: std::array::from_fn(|axis| corner[axis]), lengths })
+    Ok((domain, turn))
 }
 
 fn components<const N: usize>(

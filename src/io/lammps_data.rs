@@ -1,4 +1,4 @@
-//! Reads LAMMPS data files of `atom_style sphere` (from `write_data` or from jamscope) to a [`Packing`].
+//! Reads LAMMPS data files of `atom_style sphere` (from `write_data` or from jamscope) to a [`Packing`](crate::packing::Packing).
 //!
 //! ```text
 //! free text
@@ -17,24 +17,25 @@
 //!
 //! Columns of `Atoms`: id, type, diameter \[length\], density, x, y, z \[length\] and optionally three image flags,
 //! which are ignored. The style after `#` must be `sphere`; without it the file is refused, since other styles have rows of the
-//! same length. For D = 2 z must be the same for all disks. A data file does not
+//! same length. A tilted box has a header line `xy xz yz`, or its edges in the lines `avec`, `bvec`, `cvec` and its corner in
+//! `abc origin`. For D = 2 z must be the same for all disks. A data file does not
 //! contain the periodicity: all directions are periodic, the default of LAMMPS. Other sections are skipped. Duplicate
 //! header lines and sections are refused, where LAMMPS would use the last. Disks are in ascending order of their ids.
 //!
 //! # Source
 //! LAMMPS manual, commands `read_data` and `write_data`.
 
+use crate::io::contents::Contents;
 use crate::io::frame::Frame;
 use crate::io::plane::Plane;
 use crate::io::read_error::ReadError;
-use crate::io::source::{Disk, Source, largest_radius};
-use crate::packing::{Domain, Packing};
+use crate::io::read_warning::ReadWarning;
+use crate::io::source::{Disk, SIDES, Source, largest_radius};
+use crate::io::triclinic::{Triclinic, Turn, turn};
+use crate::packing::Domain;
 
 /// Number of columns of `Atoms` in style sphere, without and with image flags.
 const COLUMN_COUNTS: [usize; 2] = [7, 10];
-
-/// Names of the sides of the box.
-const SIDES: [&str; 3] = ["xlo xhi", "ylo yhi", "zlo zhi"];
 
 /// Whether a line of a data file starts a section: these begin with a letter, all other lines with a number.
 pub(super) fn opens_section(line: &str) -> bool {
@@ -42,7 +43,7 @@ pub(super) fn opens_section(line: &str) -> bool {
 }
 
 /// Reads the only frame.
-pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Packing<D>, ReadError> {
+pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Contents<D>, ReadError> {
     source.frame(frame, 1)?;
     // The first line is free text and may resemble anything.
     let sections: Vec<usize> = (1..source.lines.len()).filter(|&line| opens_section(source.lines[line])).collect();
@@ -111,7 +112,9 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Pac
     plane.check(source, "z", largest_radius(&disks), 0.0)?;
     source.order_by_id(&disks)?;
     disks.sort_by_key(|disk| disk.label);
-    source.packing(header.domain, &disks, true)
+    turn(&header.turn, &mut disks);
+    let warnings = header.turn.map(|_| ReadWarning::Turned { line: header.line + 1 }).into_iter().collect();
+    Ok(Contents { warnings, ..Contents::from(source.packing(header.domain, &disks, true)?) })
 }
 
 /// The lines before the first section.
@@ -119,6 +122,9 @@ struct Header<const D: usize> {
     count: usize,
     type_count: Option<u64>,
     domain: Domain<D>,
+    turn: Turn<D>,
+    /// Line of the box.
+    line: usize,
 }
 
 impl<const D: usize> Header<D> {
@@ -126,6 +132,8 @@ impl<const D: usize> Header<D> {
         let mut count = None;
         let mut type_count = None;
         let mut sides: [Option<(f64, f64)>; 3] = [None; 3];
+        let mut edges: [Option<(usize, [f64; 3])>; 3] = [None; 3];
+        let (mut tilts, mut origin, mut tilt_line) = ([0.0; 3], [0.0; 3], 0);
         let mut known: Vec<(String, usize)> = Vec::new();
         for line in 1..end {
             let row = source.row_without_comment(line);
@@ -145,35 +153,41 @@ impl<const D: usize> Header<D> {
                     };
                 }
                 [_, "atom", "types"] => type_count = Some(row.whole(0, "atom types")?),
-                [.., "avec" | "bvec" | "cvec"] | [.., "abc", "origin"] => {
-                    return Err(source.tilted(line, "general triclinic box", source.lines[line].trim()));
-                }
                 [low, high, first, second] => {
                     let name = format!("{first} {second}");
                     if let Some(axis) = SIDES.iter().position(|&side| side == name) {
                         sides[axis] = Some(source.side(line, &name, low, high)?);
                     }
                 }
-                [xy, xz, yz, "xy", "xz", "yz"] => {
-                    for (name, value) in [("xy", xy), ("xz", xz), ("yz", yz)] {
-                        if source.number(line, name, value)? != 0.0 {
-                            return Err(source.tilted(line, name, value));
-                        }
-                    }
-                }
+                [.., "xy", "xz", "yz"] => (tilts, tilt_line) = (row.three("xy xz yz")?, line),
+                [.., "avec"] => edges[0] = Some((line, row.three("avec")?)),
+                [.., "bvec"] => edges[1] = Some((line, row.three("bvec")?)),
+                [.., "cvec"] => edges[2] = Some((line, row.three("cvec")?)),
+                [.., "abc", "origin"] => origin = row.three("abc origin")?,
                 _ => {}
             }
         }
         let last = end.saturating_sub(1);
         let Some(count) = count else { return Err(source.missing(last, "header line `N atoms`", "none")) };
-        let (mut corner, mut lengths) = ([0.0; D], [0.0; D]);
-        for axis in 0..D {
-            let Some(side) = sides[axis] else {
-                return Err(source.missing(last, SIDES[axis], "a header without it"));
-            };
-            (corner[axis], lengths[axis]) = side;
-        }
-        Ok(Header { count, type_count, domain: Domain::Periodic { corner, lengths } })
+        let (line, triclinic) = match edges {
+            [Some((line, a)), Some((_, b)), Some((_, c))] => (line, Triclinic { corner: origin, edges: [a, b, c] }),
+            _ => {
+                let (mut corner, mut lengths) = ([0.0; 3], [0.0; 3]);
+                for axis in 0..3 {
+                    (corner[axis], lengths[axis]) = match sides[axis] {
+                        Some(side) => side,
+                        None if axis < D => return Err(source.missing(last, SIDES[axis], "a header without it")),
+                        None => (0.0, 0.0),
+                    };
+                }
+                let mut triclinic = Triclinic::rectangular(corner, lengths);
+                let [xy, xz, yz] = tilts;
+                (triclinic.edges[1][0], triclinic.edges[2][0], triclinic.edges[2][1]) = (xy, xz, yz);
+                (tilt_line, triclinic)
+            }
+        };
+        let (domain, turn) = triclinic.domain(source, line, "the box")?;
+        Ok(Header { count, type_count, domain, turn, line })
     }
 }
 

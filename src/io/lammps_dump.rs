@@ -21,11 +21,14 @@
 //! |---|---|
 //! | `x y z` | the value |
 //! | `xu yu zu` | the value; unwrapped, so possibly outside the box, which nearest images take into account |
-//! | `xs ys zs`, `xsu ysu zsu` | lower end of the box + value × side |
+//! | `xs ys zs`, `xsu ysu zsu` | corner of the box + Σ value × edge |
 //!
 //! For D = 2 z is not required, and must be the same for all disks if given; the box may have no height. Other columns
 //! are ignored, and case in the names of columns. LAMMPS writes six digits by default (see `dump_modify format float
 //! %.17g`). Disks are in ascending order of their ids. Duplicate items in a frame are refused.
+//!
+//! A tilted box has the line `ITEM: BOX BOUNDS xy xz yz`, with the ends of the rectangle around the box, or `abc origin`,
+//! with its edges.
 //!
 //! A box that is periodic in no direction of the packing is the open plane: a dump does not contain its walls. A box
 //! that is periodic in some of them is refused. Without boundary flags, as in old dumps, the box is periodic.
@@ -38,8 +41,10 @@ use crate::io::frame::Frame;
 use crate::io::plane::Plane;
 use crate::io::read_error::ReadError;
 use crate::io::read_warning::ReadWarning;
-use crate::io::source::{AXES, Disk, Source, largest_radius};
+use crate::io::source::{AXES, Disk, SIDES, Source, largest_radius};
+use crate::io::triclinic::{Triclinic, Turn, turn};
 use crate::packing::Domain;
+use crate::vector::norm;
 
 /// The forms of a position, in order of preference, and whether they are fractions of the box.
 const KINDS: [([&str; 3], bool); 4] =
@@ -73,14 +78,14 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Con
         }
         line = next;
     }
-    let Some(disks) = parts.disks else {
+    let Some(mut disks) = parts.disks else {
         return Err(source.missing(end - 1, "ITEM: ATOMS", "a frame that ends before it"));
     };
-    let Some(Bounds { domain, warning, .. }) = parts.bounds else {
+    let Some(Bounds { domain, turn: axes, warnings, .. }) = parts.bounds else {
         return Err(source.missing(end - 1, "ITEM: BOX BOUNDS", "a frame without it"));
     };
-    let packing = source.packing(domain, &disks, true)?;
-    Ok(Contents { warnings: warning.into_iter().collect(), ..Contents::from(packing) })
+    turn(&axes, &mut disks);
+    Ok(Contents { warnings, ..Contents::from(source.packing(domain, &disks, true)?) })
 }
 
 /// The line index of the first item of every frame.
@@ -122,11 +127,11 @@ impl<const D: usize> Parts<D> {
             let Some(count) = self.count else {
                 return Err(source.missing(title, "ITEM: NUMBER OF ATOMS", "ITEM: ATOMS before it"));
             };
-            let Some(Bounds { sides, .. }) = &self.bounds else {
+            let Some(Bounds { triclinic, .. }) = &self.bounds else {
                 return Err(source.missing(title, "ITEM: BOX BOUNDS", "ITEM: ATOMS before it"));
             };
             let columns = Columns::new(source, columns, title)?;
-            self.disks = Some(columns.disks(source, sides, first, end, count)?);
+            self.disks = Some(columns.disks(source, triclinic, first, end, count)?);
         }
         Ok(())
     }
@@ -135,9 +140,9 @@ impl<const D: usize> Parts<D> {
 /// The box of a frame.
 struct Bounds<const D: usize> {
     domain: Domain<D>,
-    /// Lower end and length of all three sides.
-    sides: [(f64, f64); 3],
-    warning: Option<ReadWarning>,
+    turn: Turn<D>,
+    triclinic: Triclinic,
+    warnings: Vec<ReadWarning>,
 }
 
 fn bounds<const D: usize>(source: &Source, flags: &str, title: usize, end: usize) -> Result<Bounds<D>, ReadError> {
@@ -156,72 +161,93 @@ fn bounds<const D: usize>(source: &Source, flags: &str, title: usize, end: usize
         let axis = flags.iter().position(is_open).unwrap_or(0);
         return Err(source.not_periodic(title, "ITEM: BOX BOUNDS", flags[axis], axis));
     }
-    let mut sides = [(0.0, 0.0); 3];
-    for axis in 0..3 {
-        let line = title + 1 + axis;
-        if line >= end {
-            return Err(source.truncated(end, "sides of the box", 3, axis));
-        }
-        sides[axis] = side(source, &form, line, axis, axis >= D)?;
+    if end < title + 4 {
+        return Err(source.truncated(end, "sides of the box", 3, end.saturating_sub(title + 1)));
     }
-    expect_end(source, "ITEM: BOX BOUNDS", title + 4, end)?;
-    let corner = std::array::from_fn(|axis| sides[axis].0);
-    let lengths = std::array::from_fn(|axis| sides[axis].1);
-    let line = title + 1;
-    let (domain, warning) = match flags {
-        [] => (Domain::Periodic { corner, lengths }, Some(ReadWarning::NoBoundaryFlags { line })),
-        _ if open_count > 0 => (Domain::Open, Some(ReadWarning::Walls { line, flags: flags.join(" ") })),
-        _ => (Domain::Periodic { corner, lengths }, None),
+    let triclinic = match form {
+        Form::Bounds => sides::<D>(source, title + 1)?,
+        Form::Tilts => tilted_sides::<D>(source, title + 1)?,
+        Form::Vectors => vectors::<D>(source, title + 1)?,
     };
-    Ok(Bounds { domain, sides, warning })
+    expect_end(source, "ITEM: BOX BOUNDS", title + 4, end)?;
+    let line = title + 1;
+    if open_count > 0 {
+        let warning = ReadWarning::Walls { line, flags: flags.join(" ") };
+        return Ok(Bounds { domain: Domain::Open, turn: None, triclinic, warnings: vec![warning] });
+    }
+    let (domain, turn) = triclinic.domain(source, title + 1, "ITEM: BOX BOUNDS")?;
+    let mut warnings = Vec::new();
+    if flags.is_empty() {
+        warnings.push(ReadWarning::NoBoundaryFlags { line });
+    }
+    if turn.is_some() {
+        warnings.push(ReadWarning::Turned { line });
+    }
+    Ok(Bounds { domain, turn, triclinic, warnings })
 }
 
 /// How the lines of a box are written.
 enum Form {
     /// Lower and upper end.
     Bounds,
-    /// The ends and a tilt factor.
+    /// The ends of a rectangle around the box, and a tilt.
     Tilts,
-    /// An edge vector and a component of the origin.
+    /// An edge and a component of the corner.
     Vectors,
 }
 
-/// Lower end and length of one side. A height may be 0.
-fn side(source: &Source, form: &Form, line: usize, axis: usize, is_height: bool) -> Result<(f64, f64), ReadError> {
-    let row = source.row(line);
-    let field = ["xlo xhi", "ylo yhi", "zlo zhi"][axis];
-    match form {
-        Form::Bounds => row.expect_count(2)?,
-        Form::Tilts => {
-            row.expect_count(3)?;
-            let field = ["xy", "xz", "yz"][axis];
-            if row.number(2, field)? != 0.0 {
-                return Err(source.tilted(line, field, row.values[2]));
-            }
+/// A rectangular box. A height may be 0.
+fn sides<const D: usize>(source: &Source, first: usize) -> Result<Triclinic, ReadError> {
+    let (mut corner, mut lengths) = ([0.0; 3], [0.0; 3]);
+    for axis in 0..3 {
+        let row = source.row(first + axis);
+        row.expect_count(2)?;
+        let is_height = axis >= D;
+        let read = if is_height { Source::height } else { Source::side };
+        (corner[axis], lengths[axis]) = read(source, first + axis, SIDES[axis], row.values[0], row.values[1])?;
+    }
+    Ok(Triclinic::rectangular(corner, lengths))
+}
+
+/// A box with tilts xy, xz, yz: the ends are those of the rectangle around it.
+fn tilted_sides<const D: usize>(source: &Source, first: usize) -> Result<Triclinic, ReadError> {
+    let mut ends = [(0.0, 0.0); 3];
+    let mut tilts = [0.0; 3];
+    for axis in 0..3 {
+        let row = source.row(first + axis);
+        row.expect_count(3)?;
+        ends[axis] = (row.number(0, SIDES[axis])?, row.number(1, SIDES[axis])?);
+        tilts[axis] = row.number(2, ["xy", "xz", "yz"][axis])?;
+    }
+    let [xy, xz, yz] = tilts;
+    let beyond = [vec![xy, xz, xy + xz], vec![yz], Vec::new()];
+    let (mut corner, mut lengths) = ([0.0; 3], [0.0; 3]);
+    for axis in 0..3 {
+        let low = ends[axis].0 - beyond[axis].iter().fold(0.0, |least: f64, &tilt| least.min(tilt));
+        let high = ends[axis].1 - beyond[axis].iter().fold(0.0, |most: f64, &tilt| most.max(tilt));
+        let read = if axis >= D { Source::height } else { Source::side };
+        (corner[axis], lengths[axis]) = read(source, first + axis, SIDES[axis], &low.to_string(), &high.to_string())?;
+    }
+    let mut triclinic = Triclinic::rectangular(corner, lengths);
+    (triclinic.edges[1][0], triclinic.edges[2][0], triclinic.edges[2][1]) = (xy, xz, yz);
+    Ok(triclinic)
+}
+
+/// A box of three edges and a corner.
+fn vectors<const D: usize>(source: &Source, first: usize) -> Result<Triclinic, ReadError> {
+    let mut triclinic = Triclinic::default();
+    for d in 0..3 {
+        let row = source.row(first + d);
+        row.expect_count(4)?;
+        for axis in 0..3 {
+            triclinic.edges[d][axis] = row.number(axis, &format!("{} {}", ["a", "b", "c"][d], AXES[axis]))?;
         }
-        Form::Vectors => {
-            row.expect_count(4)?;
-            let vector = ["a", "b", "c"][axis];
-            for other in (0..3).filter(|&other| other != axis) {
-                let field = format!("{vector} {}", AXES[other]);
-                if row.number(other, &field)? != 0.0 {
-                    return Err(source.tilted(line, &field, row.values[other]));
-                }
-            }
-            let start = row.number(3, "origin")?;
-            if is_height && row.number(axis, vector)? == 0.0 {
-                return Ok((start, 0.0));
-            }
-            let length = row.positive(axis, vector)?;
-            source.check_corner(line, "origin", start, length)?;
-            return Ok((start, length));
+        triclinic.corner[d] = row.number(3, "origin")?;
+        if d < D {
+            source.check_corner(first + d, "origin", triclinic.corner[d], norm(triclinic.edges[d]))?;
         }
     }
-    if is_height {
-        source.height(line, field, row.values[0], row.values[1])
-    } else {
-        source.side(line, field, row.values[0], row.values[1])
-    }
+    Ok(triclinic)
 }
 
 /// Refuses lines after the last value of an item.
@@ -274,7 +300,7 @@ impl Columns {
     fn disks<const D: usize>(
         &self,
         source: &Source,
-        sides: &[(f64, f64); 3],
+        triclinic: &Triclinic,
         first: usize,
         end: usize,
         count: usize,
@@ -294,11 +320,13 @@ impl Columns {
             for axis in 0..3 {
                 let name = self.position.names[axis];
                 all[axis] = match self.position.columns[axis] {
-                    Some(column) if self.position.scaled => sides[axis].0 + row.number(column, name)? * sides[axis].1,
                     Some(column) => row.number(column, name)?,
                     None if axis < D => return Err(source.missing(first - 1, "column z", source.lines[first - 1])),
                     None => 0.0,
                 };
+            }
+            if self.position.scaled {
+                all = triclinic.point(all);
             }
             if D == 2 {
                 plane.take(all[2], line, &all[2].to_string());
@@ -311,7 +339,7 @@ impl Columns {
         if disks.len() < count {
             return Err(source.truncated(end, "disks of ITEM: ATOMS", count, disks.len()));
         }
-        let spacing = if self.position.scaled { SCALED_SPACING * sides[2].1 } else { 0.0 };
+        let spacing = if self.position.scaled { SCALED_SPACING * triclinic.edges[2][2] } else { 0.0 };
         plane.check(source, self.position.names[2], largest_radius(&disks), spacing)?;
         source.order_by_id(&disks)?;
         disks.sort_by_key(|disk| disk.label);

@@ -27,6 +27,7 @@ mod plane;
 mod read_error;
 mod read_warning;
 mod source;
+mod triclinic;
 mod unfinished;
 mod write_lammps_data;
 mod write_packing;
@@ -102,7 +103,7 @@ pub fn read_contents<const D: usize>(path: impl AsRef<Path>, frame: Frame) -> Re
     with_source(path.as_ref(), |source, format| {
         let mut contents = match format {
             Format::ExtendedXyz => extended_xyz::parse(source, frame),
-            Format::LammpsData => lammps_data::parse(source, frame).map(Contents::from),
+            Format::LammpsData => lammps_data::parse(source, frame),
             Format::LammpsDump => lammps_dump::parse(source, frame),
         }?;
         if source.is_open() {

@@ -160,11 +160,12 @@ pub enum ReadError {
         /// The length of which the limit is a million times.
         unit: &'static str,
     },
-    /// The box is not a rectangle along the axes.
+    /// The box of a plane is tilted against the plane.
     #[error(
-        "{path}, line {line}: the box is tilted ({field} is `{value}`, not 0); only rectangular boxes are supported"
+        "{path}, line {line}: {field} is `{value}`, not 0: the box is tilted out of the plane{}",
+        other_dimension(2)
     )]
-    Tilted {
+    OutOfPlane {
         /// The file.
         path: PathBuf,
         /// Line, from 1.

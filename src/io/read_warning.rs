@@ -16,6 +16,14 @@ pub enum ReadWarning {
         /// Line of the item.
         line: usize,
     },
+    /// The edges of the box do not lie along the axes as those of a packing do.
+    #[error(
+        "line {line}: the first edge of the box does not lie along x; the packing is turned so that it does, and all coordinates and directions are those after the turn"
+    )]
+    Turned {
+        /// Line of the box.
+        line: usize,
+    },
     /// A LAMMPS box has walls or free sides.
     #[error(
         "line {line}: ITEM: BOX BOUNDS is `{flags}`: the packing lies in the open plane, and walls are not in the file; disks at a wall are not balanced, so give an outer radius R within the walls"

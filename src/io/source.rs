@@ -7,6 +7,9 @@ use crate::io::read_error::ReadError;
 use crate::packing::{Domain, LARGEST_RADIUS, Packing, SMALLEST_RADIUS};
 use crate::vector::Vector;
 
+/// Names of the sides of a LAMMPS box.
+pub(super) const SIDES: [&str; 3] = ["xlo xhi", "ylo yhi", "zlo zhi"];
+
 /// Names of the axes.
 pub(super) const AXES: [char; 3] = ['x', 'y', 'z'];
 
@@ -110,8 +113,8 @@ impl<'a> Source<'a> {
         ReadError::Truncated { path: self.path.into(), line, what, expected, found }
     }
 
-    pub fn tilted(&self, line: usize, field: &str, value: &str) -> ReadError {
-        ReadError::Tilted { path: self.path.into(), line: line + 1, field: field.to_owned(), value: excerpt(value) }
+    pub fn out_of_plane(&self, line: usize, field: &str, value: &str) -> ReadError {
+        ReadError::OutOfPlane { path: self.path.into(), line: line + 1, field: field.to_owned(), value: excerpt(value) }
     }
 
     pub fn not_periodic(&self, line: usize, field: &'static str, value: &str, axis: usize) -> ReadError {
@@ -265,6 +268,16 @@ impl Row<'_> {
 
     pub fn number(&self, column: usize, field: &str) -> Result<f64, ReadError> {
         self.source.number(self.line, field, self.values[column])
+    }
+
+    /// The first three values, before their keyword.
+    pub fn three(&self, field: &str) -> Result<[f64; 3], ReadError> {
+        let mut numbers = [0.0; 3];
+        for (column, number) in numbers.iter_mut().enumerate() {
+            let value = self.values.get(column).copied().unwrap_or("");
+            *number = self.source.number(self.line, field, value)?;
+        }
+        Ok(numbers)
     }
 
     pub fn positive(&self, column: usize, field: &str) -> Result<f64, ReadError> {

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use crate::io::atomic::{WriteError, write_atomically};
 use crate::packing::{Domain, Packing};
+use crate::vector::Vector;
 
 /// Volume of a ball of radius 1 \[1\]: `atom_style sphere` uses the density of balls, also in two dimensions.
 const UNIT_BALL: f64 = 4.0 / 3.0 * std::f64::consts::PI;
@@ -41,14 +42,14 @@ pub fn write_lammps_data<const D: usize>(path: impl AsRef<Path>, packing: &Packi
     const { assert!(D == 2 || D == 3, "packings have two or three dimensions") };
     let path = path.as_ref();
     let refused = |what: &'static str| Err(WriteError::NoPlaceFor { path: path.into(), what });
-    let Domain::Periodic { corner, lengths } = packing.domain() else { return refused("the open plane") };
+    let Domain::Periodic { corner, edges } = packing.domain() else { return refused("the open plane") };
     if packing.held().contains(&true) {
         return refused("held disks");
     }
     if packing.sites().is_some() {
         return refused("sites");
     }
-    let ends = |axis: usize| if axis < D { (corner[axis], corner[axis] + lengths[axis]) } else { (-0.5, 0.5) };
+    let ends = |axis: usize| if axis < D { (corner[axis], corner[axis] + edges[axis][axis]) } else { (-0.5, 0.5) };
     if (0..D).any(|axis| !ends(axis).1.is_finite() || ends(axis).1 <= ends(axis).0) {
         return refused("a box whose end is not a number, or its corner");
     }
@@ -56,7 +57,7 @@ pub fn write_lammps_data<const D: usize>(path: impl AsRef<Path>, packing: &Packi
     if packing.radii().iter().any(|&radius| !density(radius).is_normal()) {
         return refused("a radius whose cube is no number");
     }
-    write_atomically(path, |writer| write(writer, packing, [ends(0), ends(1), ends(2)]))
+    write_atomically(path, |writer| write(writer, packing, [ends(0), ends(1), ends(2)], tilts(edges)))
 }
 
 /// Density of a ball of mass 1.
@@ -64,7 +65,27 @@ fn density(radius: f64) -> f64 {
     1.0 / (UNIT_BALL * radius * radius * radius)
 }
 
-fn write<const D: usize>(writer: &mut impl Write, packing: &Packing<D>, ends: [(f64, f64); 3]) -> io::Result<()> {
+/// The tilts xy, xz, yz of the same lattice that are at most half of a side: LAMMPS refuses or is slow with larger ones.
+/// None for a rectangular box.
+fn tilts<const D: usize>(edges: &[Vector<D>; D]) -> Option<[f64; 3]> {
+    let mut edges = *edges;
+    for d in 1..D {
+        for axis in (0..d).rev() {
+            let boxes = (edges[d][axis] / edges[axis][axis]).round();
+            (0..=axis).for_each(|along| edges[d][along] -= boxes * edges[axis][along]);
+        }
+    }
+    let tilt = |d: usize, axis: usize| if d < D { edges[d][axis] } else { 0.0 };
+    let tilts = [tilt(1, 0), tilt(2, 0), tilt(2, 1)];
+    tilts.iter().any(|&tilt| tilt != 0.0).then_some(tilts)
+}
+
+fn write<const D: usize>(
+    writer: &mut impl Write,
+    packing: &Packing<D>,
+    ends: [(f64, f64); 3],
+    tilts: Option<[f64; 3]>,
+) -> io::Result<()> {
     let mut sizes = packing.radii().to_vec();
     sizes.sort_by(f64::total_cmp);
     sizes.dedup();
@@ -74,6 +95,9 @@ fn write<const D: usize>(writer: &mut impl Write, packing: &Packing<D>, ends: [(
     writeln!(writer, "\n{} atoms\n{} atom types\n", packing.len(), sizes.len())?;
     for ((low, high), axis) in ends.into_iter().zip(["x", "y", "z"]) {
         writeln!(writer, "{low:?} {high:?} {axis}lo {axis}hi")?;
+    }
+    if let Some([xy, xz, yz]) = tilts {
+        writeln!(writer, "{xy:?} {xz:?} {yz:?} xy xz yz")?;
     }
     writeln!(writer, "\nAtoms # sphere\n")?;
     for (disk, (position, &radius)) in packing.positions().iter().zip(packing.radii()).enumerate() {

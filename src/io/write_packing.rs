@@ -161,14 +161,16 @@ fn numbers(line: &mut String, values: &[f64]) {
 
 /// Lattice, origin and periodicity.
 fn boundary<const D: usize>(domain: &Domain<D>) -> String {
-    let Domain::Periodic { corner, lengths } = domain else { return r#"pbc="F F F""#.into() };
-    let side = |axis: usize| if axis < D { lengths[axis] } else { 1.0 };
+    let Domain::Periodic { corner, edges } = domain else { return r#"pbc="F F F""#.into() };
+    let edge = |d: usize, axis: usize| match (d < D, axis < D) {
+        (true, true) => edges[d][axis],
+        _ => f64::from(u8::from(d == axis)),
+    };
+    let lattice: Vec<String> = (0..9).map(|index| format!("{:?}", edge(index / 3, index % 3))).collect();
     let start = |axis: usize| if axis < D { corner[axis] } else { 0.0 };
     format!(
-        r#"Lattice="{:?} 0.0 0.0 0.0 {:?} 0.0 0.0 0.0 {:?}" Origin="{:?} {:?} {:?}" pbc="T T {}""#,
-        side(0),
-        side(1),
-        side(2),
+        r#"Lattice="{}" Origin="{:?} {:?} {:?}" pbc="T T {}""#,
+        lattice.join(" "),
         start(0),
         start(1),
         start(2),

@@ -30,7 +30,7 @@ impl CellGrid {
     /// Sorts the points into cells. The previous content is overwritten; its memory is reused.
     pub fn fill<const D: usize>(&mut self, domain: &Domain<D>, points: &[Vector<D>], range: f64) {
         let (corner, lengths) = match domain {
-            Domain::Periodic { corner, lengths } => (*corner, *lengths),
+            Domain::Periodic { corner, edges } => (*corner, std::array::from_fn(|d| edges[d][d])),
             Domain::Open => bounding_box(points),
         };
         // The cell count is bounded by the disk count, so one distant disk in an open plane does not exhaust the
@@ -82,43 +82,53 @@ impl CellGrid {
     }
 
     /// The cell and its neighbours as runs along the first axis. Each cell occurs once for each shift that can matter.
-    pub fn neighbourhood<const D: usize>(&self, cell: usize, lengths: Option<Vector<D>>, runs: &mut Vec<Run<D>>) {
-        // The cell before, the cell itself and the cell after along each axis: start index and shift.
-        let mut sides = [[None; 3]; D];
-        let (mut rest, mut stride) = (cell, 1);
-        for d in 0..D {
-            let count = self.counts[d];
-            let index = rest % count;
-            rest /= count;
-            let wrapped = |to: usize, shift: f64| lengths.map(|lengths| (stride * to, shift * lengths[d]));
-            sides[d] = [
-                if index > 0 { Some((stride * (index - 1), 0.0)) } else { wrapped(count - 1, -1.0) },
-                Some((stride * index, 0.0)),
-                if index + 1 < count { Some((stride * (index + 1), 0.0)) } else { wrapped(0, 1.0) },
-            ];
-            stride *= count;
-        }
+    ///
+    /// In a tilted box the images above and below the brick are displaced along the other axes. The cells next to a
+    /// cell are then up to four along such an axis.
+    pub fn neighbourhood<const D: usize>(&self, cell: usize, edges: Option<[Vector<D>; D]>, runs: &mut Vec<Run<D>>) {
+        let mut rest = cell;
+        let index = std::array::from_fn(|d| {
+            let index = rest % self.counts[d];
+            rest /= self.counts[d];
+            index
+        });
         runs.clear();
-        for code in 0..3usize.pow(D as u32) {
-            let mut digits = code;
-            let (mut neighbour, mut shift, mut inside) = (0, [0.0; D], true);
-            for d in 0..D {
-                match sides[d][digits % 3] {
-                    Some((start, offset)) => {
-                        neighbour += start;
-                        shift[d] = offset;
-                    }
-                    None => inside = false,
-                }
-                digits /= 3;
-            }
-            if !inside {
-                continue;
-            }
+        self.add_neighbours(D, index, edges.as_ref(), (0, [0.0; D]), runs);
+    }
+
+    /// Adds the neighbours of the cell at `index`. Their index along the axes from `axis` on is in `number`; the image
+    /// chosen there has this shift.
+    fn add_neighbours<const D: usize>(
+        &self,
+        axis: usize,
+        index: [usize; D],
+        edges: Option<&[Vector<D>; D]>,
+        (number, shift): (usize, Vector<D>),
+        runs: &mut Vec<Run<D>>,
+    ) {
+        let Some(axis) = axis.checked_sub(1) else {
             match runs.last_mut() {
-                Some(run) if run.cells.end == neighbour && run.shift == shift => run.cells.end += 1,
-                _ => runs.push(Run { cells: neighbour..neighbour + 1, shift }),
+                Some(run) if run.cells.end == number && run.shift == shift => run.cells.end += 1,
+                _ => runs.push(Run { cells: number..number + 1, shift }),
             }
+            return;
+        };
+        let count = self.counts[axis];
+        let middle = index[axis] as f64 - shift[axis] * self.scale[axis];
+        for place in (middle - 1.0).floor() as i64..=(middle + 1.0).ceil() as i64 {
+            // Most cells are not at a side, which avoids the division.
+            let is_inside = (0..count as i64).contains(&place);
+            let (boxes, within) =
+                if is_inside { (0, place) } else { (place.div_euclid(count as i64), place.rem_euclid(count as i64)) };
+            let mut shift = shift;
+            match edges {
+                Some(edges) if !is_inside => {
+                    (0..=axis).for_each(|along| shift[along] += boxes as f64 * edges[axis][along]);
+                }
+                None if !is_inside => continue,
+                _ => {}
+            }
+            self.add_neighbours(axis, index, edges, (number * count + within as usize, shift), runs);
         }
     }
 }

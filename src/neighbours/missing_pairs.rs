@@ -45,16 +45,17 @@ pub(crate) fn insert_missing_pairs<const D: usize>(
     workspace: &mut ListWorkspace<D>,
     pairs: &mut PairList<D>,
 ) -> bool {
-    let lengths = disks.domain.lengths();
+    let edges = disks.domain.edges();
     let before = |disk: u32| sum(disks.anchors[disk as usize], listed[disk as usize]);
     let now = |disk: u32| if fast.contains(disk) { disks.centre(disk as usize) } else { before(disk) };
     let apart = |a, b| {
         let mut apart: Vector<D> = difference(a, b);
-        if let Some(lengths) = lengths {
-            for d in 0..D {
+        if let Some(edges) = edges {
+            for d in (0..D).rev() {
                 // Most pairs need no periodic image.
-                if 2.0 * apart[d].abs() > lengths[d] {
-                    apart[d] -= (apart[d] / lengths[d]).round_ties_even() * lengths[d];
+                if 2.0 * apart[d].abs() > edges[d][d] {
+                    let boxes = (apart[d] / edges[d][d]).round_ties_even();
+                    (0..=d).for_each(|axis| apart[axis] -= boxes * edges[d][axis]);
                 }
             }
         }
@@ -78,7 +79,7 @@ pub(crate) fn insert_missing_pairs<const D: usize>(
             }
         };
         // Other disks are in their cells of the last build; updated disks are also in the cells of their updates.
-        grid.neighbourhood(grid.cell_at(disks.domain.wrapped(here)), lengths, &mut runs);
+        grid.neighbourhood(grid.cell_at(disks.domain.wrapped(here)), edges, &mut runs);
         for Run { cells, .. } in &runs {
             let (start, end) = (grid.starts[cells.start] as usize, grid.starts[cells.end] as usize);
             grid.members[start..end].iter().for_each(|&other| offer(other));

@@ -78,8 +78,8 @@ pub fn build_pairs<const D: usize>(
     pairs: &mut PairList<D>,
 ) -> Result<(), PackingError> {
     let largest = disks.radii.iter().copied().fold(0.0, f64::max);
-    let lengths = disks.domain.lengths();
-    if let Some(lengths) = lengths {
+    let edges = disks.domain.edges();
+    if let Some(lengths) = disks.domain.lengths() {
         // Two images of a disk are one side apart. Both can be in range only if the side is shorter than this.
         if let Some(axis) = lengths.iter().position(|&length| length < 4.0 * largest) {
             return Err(PackingError::BoxTooSmall { axis, length: lengths[axis], range: 2.0 * largest });
@@ -102,7 +102,7 @@ pub fn build_pairs<const D: usize>(
         }
     });
     let (grid, points, sorted) = (&*grid, &*points, &*sorted);
-    let nearby = Nearby { disks, skin, lengths, grid, points, sorted };
+    let nearby = Nearby { disks, skin, edges, grid, points, sorted };
     let (counts, reserves_blocks) = ((points.len(), disks.mobile_count), PairList::<D>::reserves_blocks(points.len()));
     pairs.fill(counts, reserves_blocks, || TileSearch {
         nearby,
@@ -117,7 +117,7 @@ pub fn build_pairs<const D: usize>(
 struct Nearby<'a, const D: usize> {
     disks: &'a Disks<'a, D>,
     skin: f64,
-    lengths: Option<Vector<D>>,
+    edges: Option<[Vector<D>; D]>,
     grid: &'a CellGrid,
     points: &'a [Vector<D>],
     sorted: &'a [(Vector<D>, f64)],
@@ -147,10 +147,10 @@ impl<'a, const D: usize, C> Anchored<'a, D, C> {
 
 impl<const D: usize, C: Fn(f64, f64) -> f64> Search<D> for TileSearch<'_, D, C> {
     fn find(&mut self, first: usize, seconds: &mut Vec<u32>) {
-        let Nearby { disks, skin, lengths, grid, points, sorted, .. } = self.nearby;
+        let Nearby { disks, skin, edges, grid, points, sorted, .. } = self.nearby;
         let cell = grid.cell_of[first] as usize;
         if cell != self.cell {
-            grid.neighbourhood(cell, lengths, &mut self.runs);
+            grid.neighbourhood(cell, edges, &mut self.runs);
             self.cell = cell;
         }
         let (point, radius) = (points[first], disks.radii[first]);
@@ -198,13 +198,13 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> Source<D> for Anchored<'_, D, C> {
 
     fn measure(&mut self, first: &[u32], second: &[u32], pair_block: &mut PairBlock<D>) {
         let Anchored { disks, coefficient, ends } = self;
-        let lengths = disks.domain.lengths();
+        let edges = disks.domain.edges();
         for (place, (&first, &second)) in first.iter().zip(second).enumerate() {
             let (first, second) = (first as usize, second as usize);
             ends.anchors[place] = (disks.anchors[first], disks.anchors[second]);
             ends.radii[place] = (disks.radii[first], disks.radii[second]);
         }
-        processor::dispatch(Measure { ends, lengths, coefficient, pair_block });
+        processor::dispatch(Measure { ends, edges, coefficient, pair_block });
     }
 }
 
@@ -219,8 +219,8 @@ struct Ends<const D: usize> {
 /// operations per pair.
 struct Measure<'a, const D: usize, C> {
     ends: &'a Ends<D>,
-    /// Sides of the periodic box.
-    lengths: Option<Vector<D>>,
+    /// Edges of the periodic box.
+    edges: Option<[Vector<D>; D]>,
     coefficient: &'a C,
     pair_block: &'a mut PairBlock<D>,
 }
@@ -230,7 +230,7 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> pulp::WithSimd for Measure<'_, D, C
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _simd: S) {
-        let Measure { ends: Ends { anchors, radii }, lengths, coefficient, pair_block } = self;
+        let Measure { ends: Ends { anchors, radii }, edges, coefficient, pair_block } = self;
         let PairBlock { separation, distance, overlap, coefficient: coefficients } = pair_block;
         for k in 0..BLOCK {
             coefficients[k] = coefficient(radii[k].0, radii[k].1);
@@ -241,14 +241,17 @@ impl<const D: usize, C: Fn(f64, f64) -> f64> pulp::WithSimd for Measure<'_, D, C
                 (separation[d][k], rest[d][k]) = two_sum(anchors[k].0[d], -anchors[k].1[d]);
             }
         }
-        if let Some(lengths) = lengths {
-            // Displacements within half a box keep the image. The caller moves the anchors at every rebuild, so
-            // displacements are small here.
-            for k in 0..BLOCK {
-                for d in 0..D {
-                    // The image is unambiguous: pairs are closer than half a side.
-                    let shift = -(separation[d][k] / lengths[d]).round_ties_even() * lengths[d];
-                    (separation[d][k], rest[d][k]) = extended_sum((separation[d][k], rest[d][k]), shift);
+        // Displacements within half a box keep the image. The caller moves the anchors at every rebuild, so
+        // displacements are small here.
+        if let Some(edges) = edges {
+            for d in (0..D).rev() {
+                // The image is unambiguous: pairs are closer than half a side.
+                let boxes: [f64; BLOCK] = std::array::from_fn(|k| -(separation[d][k] / edges[d][d]).round_ties_even());
+                for axis in (0..=d).filter(|&axis| edges[d][axis] != 0.0) {
+                    for k in 0..BLOCK {
+                        let apart = (separation[axis][k], rest[axis][k]);
+                        (separation[axis][k], rest[axis][k]) = extended_sum(apart, boxes[k] * edges[d][axis]);
+                    }
                 }
             }
         }

@@ -76,6 +76,18 @@ pub enum PackingError {
         /// The lower end given.
         corner: f64,
     },
+    /// An edge of the box has a component along an axis after its own, or one that is no number.
+    #[error(
+        "box edge {edge}: component {value} along axis {axis}; an edge may have finite components up to its own axis only"
+    )]
+    EdgeNotTriangular {
+        /// The edge, from 0.
+        edge: usize,
+        /// Axis of the component, from 0.
+        axis: usize,
+        /// The component given.
+        value: f64,
+    },
     /// The box is so small that a disk would touch two images of one neighbour.
     #[error(
         "box axis {axis}: side {length} is below twice the longest contact range {range}, so a pair has more than one image in contact"

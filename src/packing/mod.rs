@@ -14,7 +14,7 @@ pub use domain::Domain;
 pub use error::{LARGEST_RADIUS, PackingError, SMALLEST_RADIUS};
 pub use mixture::{Component, Mixture};
 
-use crate::vector::{Vector, extended_sum, two_sum};
+use crate::vector::{Vector, dot, extended_sum, two_sum};
 
 /// Disks (D = 2) or balls (D = 3) in a domain.
 #[derive(Debug, Clone, PartialEq)]
@@ -236,10 +236,9 @@ impl<const D: usize> Packing<D> {
     /// kept, sites dropped.
     pub(crate) fn rescaled(mut self, factor: f64) -> Self {
         self.sites = None;
-        if let Domain::Periodic { corner, lengths } = &mut self.domain {
-            for d in 0..D {
-                corner[d] *= factor;
-                lengths[d] *= factor;
+        if let Domain::Periodic { corner, edges } = &mut self.domain {
+            for value in edges.iter_mut().flatten().chain(corner) {
+                *value *= factor;
             }
         }
         for (position, correction) in self.positions.iter_mut().zip(&mut self.corrections) {
@@ -250,23 +249,31 @@ impl<const D: usize> Packing<D> {
         self
     }
 
-    /// The same disks with box and centres stretched by `strain` in all directions; radii are kept, sites dropped. Also
-    /// returns the strain of each axis, which differs from `strain` by the rounding of the sides.
-    pub(crate) fn stretched(&self, strain: f64) -> (Self, Vector<D>) {
-        let mut stretched = self.clone().without_sites();
-        let (mut strains, mut corner) = ([strain; D], [0.0; D]);
-        if let Domain::Periodic { corner: start, lengths } = &mut stretched.domain {
+    /// The same disks with box and centres deformed by r → (1 + G) r; radii are kept, sites dropped. G_ab must be 0 for
+    /// a > b, so that edges remain triangular. Also returns the gradient of the displacement, which differs from G by
+    /// the rounding of the edges.
+    pub(crate) fn deformed(&self, gradient: &[Vector<D>; D]) -> (Self, [Vector<D>; D]) {
+        let mut deformed = self.clone().without_sites();
+        let (mut exact, mut corner) = (*gradient, [0.0; D]);
+        if let Domain::Periodic { corner: start, edges } = &mut deformed.domain {
             corner = *start;
+            // Edges are triangular, so the gradient follows column by column.
             for d in 0..D {
-                let length = lengths[d] * (1.0 + strain);
-                (strains[d], lengths[d]) = ((length - lengths[d]) / lengths[d], length);
+                let edge = edges[d];
+                for axis in 0..D {
+                    let moved = edge[axis] + dot(gradient[axis], edge);
+                    edges[d][axis] = moved;
+                    let known: f64 = (0..d).map(|along| exact[axis][along] * edge[along]).sum();
+                    exact[axis][d] = ((moved - edge[axis]) - known) / edge[d];
+                }
             }
         }
         for disk in 0..self.len() {
             let (high, low) = self.centre(disk);
-            stretched.displace(disk, std::array::from_fn(|d| strains[d] * ((high[d] - corner[d]) + low[d])));
+            let from: Vector<D> = std::array::from_fn(|d| (high[d] - corner[d]) + low[d]);
+            deformed.displace(disk, std::array::from_fn(|d| dot(exact[d], from)));
         }
-        (stretched, strains)
+        (deformed, exact)
     }
 
     /// Volume of all disks over the volume of the box \[1\]; `None` in the open plane.

@@ -97,8 +97,8 @@ impl Digits {
 /// The decimal of a coordinate, or of its fraction of the box if that is shorter and reproduces the coordinate exactly.
 fn decimal<const D: usize>(domain: &Domain<D>, value: f64, axis: usize) -> Decimal {
     let plain = shortest(value);
-    let Domain::Periodic { corner, lengths } = domain else { return plain };
-    let (start, side) = (corner[axis], lengths[axis]);
+    let Domain::Periodic { corner, edges } = domain else { return plain };
+    let (start, side) = (corner[axis], edges[axis][axis]);
     let scaled = (1..plain.digits.min(MOST + 1)).find_map(|digits| {
         let text = format!("{:.*e}", digits - 1, (value - start) / side);
         let share: f64 = text.parse().ok()?;
@@ -122,7 +122,7 @@ mod tests {
 
     fn packing(values: [f64; 6]) -> Packing<2> {
         let positions = values.chunks(2).map(|pair| [pair[0], pair[1]]).collect();
-        let domain = Domain::Periodic { corner: [-1.0, 0.1], lengths: [37.1, 41.3] };
+        let domain = Domain::rectangular([-1.0, 0.1], [37.1, 41.3]);
         Packing::new(domain, positions, vec![0.5; 3]).expect("valid")
     }
 

@@ -53,7 +53,7 @@ fn lattice_an_ulp_above_contact() -> Packing<2> {
     let column = |index: usize| (index % 8) as f64 + 0.5 * (index / 8 % 2) as f64;
     let positions = (0..64).map(|index| [column(index), height * (index / 8) as f64]).collect();
     let corrections = (0..64).map(|index| [-ulp * column(index), 0.0]).collect();
-    let domain = Domain::Periodic { corner: [0.0; 2], lengths: [8.0 * (1.0 - ulp), 8.0 * height] };
+    let domain = Domain::rectangular([0.0; 2], [8.0 * (1.0 - ulp), 8.0 * height]);
     Packing::new(domain, positions, vec![0.5; 64])
         .and_then(|packing| packing.with_corrections(corrections))
         .expect("valid")
@@ -140,7 +140,7 @@ fn a_packing_at_the_end_of_the_digits_comes_to_rest_as_the_one_at_the_origin() {
     let reference = relax(near.clone(), &law, &fire(1e-10));
     let energy = ContactNetwork::new(&reference.state, &law).expect("no coincidence").energy();
     for far in [f64::exp2(27.0), f64::exp2(50.0)] {
-        let domain = Domain::Periodic { corner: [far, -far], lengths: [side; 2] };
+        let domain = Domain::rectangular([far, -far], [side; 2]);
         let shifted = near.positions().iter().map(|position| {
             let corner = [far, -far];
             let sums: [(f64, f64); 2] = std::array::from_fn(|d| two_sum(corner[d], position[d]));

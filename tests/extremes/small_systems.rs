@@ -116,7 +116,7 @@ fn three_disks_on_a_ring_press_each_other_with_one_force() {
         for total in overlaps() {
             // The ring is a periodic line: 3.75 less the total overlap (two units in the last place for the smallest).
             let side = 3.75 - total;
-            let domain = Domain::Periodic { corner: [0.0; 2], lengths: [side, 8.0] };
+            let domain = Domain::rectangular([0.0; 2], [side, 8.0]);
             let packing =
                 Packing::new(domain, vec![[0.0, 1.0], [1.125, 1.0], [2.5, 1.0]], radii.to_vec()).expect("valid");
             for relaxer in relaxers(law, &pairs, total, 1e-12) {

@@ -48,13 +48,13 @@ fn periodic(increase: f64) -> Inflation {
 
 /// Every disk and every image of it, by brute force over five boxes each way.
 fn images_within(packing: &Packing<2>, centre: usize, reach: f64) -> Vec<(usize, Vector<2>)> {
-    let lengths = packing.domain().lengths().expect("periodic");
+    let [[width, _], [tilt, height]] = packing.domain().edges().expect("periodic");
     let mut images = Vec::new();
     for disk in 0..packing.len() {
         for x in -2..=2 {
             for y in -2..=2 {
                 let apart = difference(packing.positions()[disk], packing.positions()[centre]);
-                let image = sum(apart, [x as f64 * lengths[0], y as f64 * lengths[1]]);
+                let image = sum(apart, [f64::from(x) * width + f64::from(y) * tilt, f64::from(y) * height]);
                 if norm(image) < reach {
                     images.push((disk, image));
                 }
@@ -66,7 +66,14 @@ fn images_within(packing: &Packing<2>, centre: usize, reach: f64) -> Vec<(usize,
 
 #[test]
 fn the_circle_has_every_disk_inside_once_and_a_rim_without_holes() {
-    let packing = dense();
+    check_circles(dense());
+    // The same centres in a tilted box.
+    let Domain::Periodic { corner, edges: [a, b] } = *dense().domain() else { panic!("periodic") };
+    let domain = Domain::Periodic { corner, edges: [a, [0.7 * a[0], b[1]]] };
+    check_circles(&Packing::new(domain, dense().positions().to_vec(), dense().radii().to_vec()).expect("valid"));
+}
+
+fn check_circles(packing: &Packing<2>) {
     let side = packing.domain().lengths().expect("periodic")[0];
     for (centre, share) in [(0, 0.5), (7, 0.48), (160, 0.491), (299, 0.3)] {
         let outer_radius = share * side;
@@ -232,9 +239,9 @@ fn radial_and_transverse_parts_make_up_the_displacement() {
 #[test]
 fn a_packing_turned_by_a_quarter_answers_with_the_field_turned() {
     let packing = dense();
-    let Domain::Periodic { lengths, .. } = *packing.domain() else { panic!("prepared in a box") };
+    let lengths = packing.domain().lengths().expect("prepared in a box");
     let turn = |column: &[Vector<2>]| -> Vec<Vector<2>> { column.iter().map(|&[x, y]| [-y, x]).collect() };
-    let domain = Domain::Periodic { corner: [-lengths[1], 0.0], lengths };
+    let domain = Domain::rectangular([-lengths[1], 0.0], lengths);
     let turned = Packing::new(domain, turn(packing.positions()), packing.radii().to_vec())
         .and_then(|turned| turned.with_corrections(turn(packing.corrections())))
         .expect("valid");

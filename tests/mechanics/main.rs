@@ -35,3 +35,4 @@ mod protocol;
 mod relax;
 #[cfg(feature = "linear")]
 mod stability;
+mod tilted;

@@ -127,7 +127,7 @@ fn turned<const D: usize>(packing: &Packing<D>) -> Packing<D> {
     let (mut sides, mut corner) = (lengths, [0.0; D]);
     (sides[0], sides[1], corner[0]) = (lengths[1], lengths[0], -lengths[1]);
     Packing::new(
-        Domain::Periodic { corner, lengths: sides },
+        Domain::rectangular(corner, sides),
         packing.positions().iter().map(|&v| turn(v)).collect(),
         packing.radii().to_vec(),
     )
@@ -191,23 +191,23 @@ fn relaxing_only_softens_and_springs_at_rest_resist_every_strain() {
     check::<3>(BALLS[1], false);
 }
 
-/// The packing with one side of its box longer by a share `strain`, centres with it, relaxed; its stress and its contacts.
-fn stretched<const D: usize>(
+/// The packing deformed by r_a → r_a + h r_b, box and all, and relaxed; its stress and its contacts.
+fn deformed<const D: usize>(
     packing: &Packing<D>,
     law: &dyn PairLaw,
-    axis: usize,
-    strain: f64,
+    (a, b): (usize, usize),
+    h: f64,
 ) -> ([[f64; D]; D], Vec<(u32, u32)>) {
-    let mut lengths = packing.domain().lengths().expect("a box");
-    lengths[axis] *= 1.0 + strain;
+    let Domain::Periodic { corner, mut edges } = *packing.domain() else { panic!("a box") };
+    edges.iter_mut().for_each(|edge| edge[a] += h * edge[b]);
     let centres = (0..packing.len()).map(|disk| packing.centre(disk));
     let (positions, corrections): (Vec<Vector<D>>, Vec<Vector<D>>) = centres
         .map(|(high, mut low)| {
-            low[axis] += high[axis] * strain + low[axis] * strain;
+            low[a] += h * (high[b] - corner[b]) + h * low[b];
             (high, low)
         })
         .unzip();
-    let start = Packing::new(Domain::Periodic { corner: [0.0; D], lengths }, positions, packing.radii().to_vec())
+    let start = Packing::new(Domain::Periodic { corner, edges }, positions, packing.radii().to_vec())
         .and_then(|packing| packing.with_corrections(corrections))
         .expect("a packing");
     let fire = Fire { limit: ForceLimit::Relative(1e-13), step_limit: 200_000, ..Fire::default() };
@@ -217,24 +217,28 @@ fn stretched<const D: usize>(
     (network.stress(rest.get().domain().volume().expect("a box")), contacts)
 }
 
-/// Every slope of the stress under a stretch of the box, against relaxed packings stretched a little more and less.
+/// Every slope of the stress under a deformation of the box, against relaxed packings deformed a little more and less.
+///
+/// A shear r_a → r_a + h r_b is a strain and a turn W, which turns the stress: dσ/dh = B:ε + W σ − σ W.
 fn check_slopes<const D: usize>(packing: &Packing<D>, law: &dyn PairLaw, name: &str) {
-    let (_, contacts) = stretched(packing, law, 0, 0.0);
+    let (at_rest, contacts) = deformed(packing, law, (0, 0), 0.0);
     let slopes = moduli(packing, law).relaxed.stress_slopes();
     let scale = indices::<D>().fold(0.0, |most, place| larger(at(&slopes, place).abs(), most));
     let h = 1e-6;
-    for axis in 0..D {
-        let ((more, kept), (less, kept_too)) = (stretched(packing, law, axis, h), stretched(packing, law, axis, -h));
+    for (c, d) in (0..D).flat_map(|d| (0..=d).map(move |c| (c, d))) {
+        let turn = |p: usize, q: usize| 0.5 * (f64::from(p == c && q == d) - f64::from(p == d && q == c));
+        let ((more, kept), (less, kept_too)) = (deformed(packing, law, (c, d), h), deformed(packing, law, (c, d), -h));
         assert!(kept == contacts && kept_too == contacts, "{name}: a contact changed, choose another packing");
         for a in 0..D {
             for b in 0..D {
                 let difference = -(more[a][b] - less[a][b]) / (2.0 * h);
+                let turned: f64 = (0..D).map(|k| turn(a, k) * -at_rest[k][b] + at_rest[a][k] * turn(k, b)).sum();
+                let expected = slopes[a][b][c][d] + turned;
                 // Truncation: a strain over the overlap over σ (≥ 1e-3 for all but a few contacts) and soft modes, 1e-6 relative
                 // and squared; residual 1e-13 of forces and rounding 1e-15 over h: 1e-7 and 1e-9, soft modes times ten.
                 assert!(
-                    (difference - slopes[a][b][axis][axis]).abs() < 2e-6 * scale,
-                    "{name} {a}{b}{axis}: {difference} and {}",
-                    slopes[a][b][axis][axis]
+                    (difference - expected).abs() < 2e-6 * scale,
+                    "{name} {a}{b} under {c}{d}: {difference} and {expected}"
                 );
             }
         }

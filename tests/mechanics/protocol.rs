@@ -259,7 +259,7 @@ fn where_nothing_is_held_a_rattler_does_not_make_a_minimum() {
     let mut radii = vec![0.5; side * side];
     positions[0] = [0.25, 0.05];
     radii[0] = 0.3;
-    let domain = Domain::Periodic { corner: [0.0; 2], lengths: [spacing * side as f64, row * side as f64] };
+    let domain = Domain::rectangular([0.0; 2], [spacing * side as f64, row * side as f64]);
     let start = Packing::new(domain, positions, radii).expect("a packing");
     let protocols = [Protocol::new(RelaxerChoice::GradientFlow(GradientFlow::default())), implicit(0.2)];
     let compared = compare(&start, &protocols);

@@ -17,6 +17,6 @@ pub fn tiled(packing: &Packing<2>, count: usize) -> Result<Packing<2>, Box<dyn E
             }
         }
     }
-    let domain = Domain::Periodic { corner: [0.0; 2], lengths: lengths.map(|length| length * count as f64) };
+    let domain = Domain::rectangular([0.0; 2], lengths.map(|length| length * count as f64));
     Ok(Packing::new(domain, positions, radii)?)
 }

@@ -124,7 +124,7 @@ fn balls(shake: f64) -> Packing<3> {
         let along = [ball % 17, ball / 17 % 17, ball / 289];
         std::array::from_fn(|d| 0.98 * along[d] as f64 + shake * (ball as f64 * (d + 2) as f64).sin())
     };
-    let domain = Domain::Periodic { corner: [0.0; 3], lengths: [17.0 * 0.98; 3] };
+    let domain = Domain::rectangular([0.0; 3], [17.0 * 0.98; 3]);
     Packing::new(domain, (0..4913).map(place).collect(), vec![0.5; 4913]).expect("a packing")
 }
 

@@ -63,8 +63,8 @@ proptest! {
     #[test]
     fn forces_turn_with_a_square_box_by_a_quarter(seed: u64, side in 1.0..5.0f64) {
         let packing = disks(seed, 40, periodic([on_grid(side); 2]), 0.2);
-        let Domain::Periodic { corner: [x, y], lengths } = *packing.domain() else { panic!("made periodic") };
-        let domain = Domain::Periodic { corner: [-y - lengths[1], x], lengths };
+        let Domain::Periodic { corner: [x, y], edges: [[_, _], [_, height]] } = *packing.domain() else { panic!("made periodic") };
+        let domain = Domain::rectangular([-y - height, x], [height; 2]);
         let positions = packing.positions().iter().map(|&[x, y]| [-y, x]).collect();
         let turned = Packing::new(domain, positions, packing.radii().to_vec()).and_then(|p| p.with_held(packing.held().to_vec()));
         check_same("turned", &Hertzian::default(), &packing, &turned.expect("valid"), |disk, [x, y]| (disk, [-y, x]), 0.0);
@@ -140,8 +140,8 @@ fn relabelled<const D: usize>(packing: &Packing<D>, place: &[usize]) -> Packing<
 
 fn in_units<const D: usize>(packing: &Packing<D>, length: f64) -> Packing<D> {
     let domain = match *packing.domain() {
-        Domain::Periodic { corner, lengths } => {
-            Domain::Periodic { corner: corner.map(|x| x * length), lengths: lengths.map(|x| x * length) }
+        Domain::Periodic { corner, edges } => {
+            Domain::Periodic { corner: corner.map(|x| x * length), edges: edges.map(|edge| edge.map(|x| x * length)) }
         }
         Domain::Open => Domain::Open,
     };

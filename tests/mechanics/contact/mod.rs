@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 use std::f64::consts::SQRT_2;
 
-use crate::scenes::random_disks::{disks, on_grid, periodic};
+use crate::scenes::random_disks::{disks, on_grid, periodic, tilted};
 use crate::twins::all_pairs::{mechanics, pairs_within};
 use crate::twins::naive_backbone::contacts_within;
 use crate::twins::{all_pairs, naive_backbone};
@@ -35,11 +35,14 @@ fn cases(count: u32) -> ProptestConfig {
     }
 }
 
-/// Boxes from the smallest allowed (one to three cells a side) to elongated ones, and the open plane (`None`).
+/// Boxes from the smallest allowed (one to three cells a side) to elongated ones, rectangular and tilted, and the open
+/// plane.
 fn domains<const D: usize>() -> impl Strategy<Value = Domain<D>> {
     let side = prop_oneof![Just(1.0), 1.0..1.6f64, 1.0..6.0f64];
     prop_oneof![
-        4 => proptest::array::uniform::<_, D>(side).prop_map(|sides| periodic(sides.map(on_grid))),
+        4 => proptest::array::uniform::<_, D>(side.clone()).prop_map(|sides| periodic(sides.map(on_grid))),
+        4 => (proptest::array::uniform::<_, D>(side), [-1.5..1.5f64, -1.5..1.5f64, -1.5..1.5f64])
+            .prop_map(|(sides, tilts)| tilted(sides.map(on_grid), tilts)),
         1 => Just(Domain::Open),
     ]
 }

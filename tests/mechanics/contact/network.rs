@@ -52,7 +52,7 @@ fn a_triangular_lattice_has_six_contacts_and_its_pressure_and_energy_in_closed_f
             .collect();
         let lengths = [columns as f64 * apart, rows as f64 * height];
         let count = positions.len();
-        let domain = Domain::Periodic { corner: [0.0; 2], lengths };
+        let domain = Domain::rectangular([0.0; 2], lengths);
         let packing = Packing::new(domain, positions, vec![radius; count]).expect("valid");
         let network = ContactNetwork::new(&packing, law).expect("no coincidence");
         let overlap = 2.0 * radius - apart;

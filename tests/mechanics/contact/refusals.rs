@@ -37,7 +37,7 @@ fn coincident_centres_are_named() {
 #[test]
 fn a_box_in_which_a_pair_could_touch_twice_is_refused() {
     let packing = |side: f64| {
-        let domain = Domain::Periodic { corner: [0.0; 2], lengths: [20.0, side] };
+        let domain = Domain::rectangular([0.0; 2], [20.0, side]);
         Packing::new(domain, vec![[1.0, 1.0], [3.0, 1.0]], vec![0.5, 0.7]).expect("valid")
     };
     let error = Assembly::new(&packing(2.75), &Hertzian::default()).expect_err("too small");

@@ -10,7 +10,7 @@ use jamscope::vector::{Vector, difference, larger};
 
 use super::dense;
 use crate::scenes::laws::hertzian;
-use crate::scenes::random_disks::{disks, periodic};
+use crate::scenes::random_disks::{disks, periodic, tilted};
 
 /// A mobile disk, held ones around it where `held` says, overlapping it by 0.1 at a distance of 1.1.
 fn around<const D: usize>(held: &[Vector<D>]) -> Packing<D> {
@@ -99,8 +99,10 @@ fn the_hessian_is_minus_the_derivative_of_the_forces() {
     fn check(law: &dyn PairLaw) {
         for seed in [1, 2, 5] {
             check_against_forces(law, &disks(seed, 30, periodic([3.0, 4.0]), 0.2));
+            check_against_forces(law, &disks(seed, 30, tilted([3.0, 4.0], [0.7, 0.0, 0.0]), 0.2));
             check_against_forces(law, &disks(seed, 30, Domain::<2>::Open, 0.2));
             check_against_forces(law, &disks(seed, 30, periodic([2.0, 3.0, 2.5]), 0.2));
+            check_against_forces(law, &disks(seed, 30, tilted([2.0, 3.0, 2.5], [-0.4, 0.6, 1.2]), 0.2));
             check_against_forces(
                 &OnSite { law: law.shared(), coupling: 0.7 },
                 &disks(seed, 30, periodic([3.0, 4.0]), 0.2),

@@ -43,11 +43,12 @@ fn turned_and_renamed<const D: usize>(packing: &Packing<D>) -> Packing<D> {
         v
     };
     let domain = match *packing.domain() {
-        Domain::Periodic { corner, lengths } => {
+        Domain::Periodic { corner, .. } => {
+            let lengths = packing.domain().lengths().expect("periodic");
             let (mut sides, mut low) = (lengths, corner);
             (sides[0], sides[1]) = (lengths[1], lengths[0]);
             (low[0], low[1]) = (-corner[1] - lengths[1], corner[0]);
-            Domain::Periodic { corner: low, lengths: sides }
+            Domain::rectangular(low, sides)
         }
         Domain::Open => Domain::Open,
     };

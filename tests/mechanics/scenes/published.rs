@@ -46,7 +46,7 @@ fn one<const D: usize>(name: String, record: &Value, order: &[[usize; 4]]) -> Pu
         .map(|point| std::array::from_fn(|d| two_product(number(&point[d]), lengths[d])))
         .collect();
     let radii = list(&record["radii"]).iter().map(number).collect();
-    let domain = Domain::Periodic { corner: [0.0; D], lengths };
+    let domain = Domain::rectangular([0.0; D], lengths);
     let packing = Packing::new(domain, centres.iter().map(|centre| centre.map(|x| x.0)).collect(), radii)
         .and_then(|packing| packing.with_corrections(centres.iter().map(|centre| centre.map(|x| x.1)).collect()))
         .expect("a packing");

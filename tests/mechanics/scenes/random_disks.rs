@@ -11,7 +11,16 @@ pub const LARGEST_RADIUS: f64 = 1.0;
 /// A periodic box with these sides over the shortest one allowed (two contact ranges), at an odd corner.
 pub fn periodic<const D: usize>(sides: Vector<D>) -> Domain<D> {
     let corner = std::array::from_fn(|d| -3.25 + 1.5 * d as f64);
-    Domain::Periodic { corner, lengths: sides.map(|side| 4.0 * LARGEST_RADIUS * side) }
+    Domain::rectangular(corner, sides.map(|side| 4.0 * LARGEST_RADIUS * side))
+}
+
+/// The box of [`periodic`] with these tilts xy, xz, yz over the side along their own axis, on the grid of the disks.
+pub fn tilted<const D: usize>(sides: Vector<D>, tilts: [f64; 3]) -> Domain<D> {
+    let Domain::Periodic { corner, mut edges } = periodic(sides) else { unreachable!("periodic") };
+    for (tilt, (d, axis)) in tilts.into_iter().zip([(1, 0), (2, 0), (2, 1)]).filter(|(_, (d, _))| *d < D) {
+        edges[d][axis] = on_grid(tilt * edges[axis][axis]);
+    }
+    Domain::Periodic { corner, edges }
 }
 
 /// Disks with radii from 0.3 to 1; in a periodic box up to one box away from it, in the open plane within a cube of
@@ -21,8 +30,8 @@ pub fn periodic<const D: usize>(sides: Vector<D>) -> Domain<D> {
 pub fn disks<const D: usize>(seed: u64, count: usize, domain: Domain<D>, held_share: f64) -> Packing<D> {
     let mut generator = Pcg64::seed_from_u64(seed);
     let (low, extent) = match domain {
-        Domain::Periodic { corner, lengths } => {
-            (std::array::from_fn(|d| corner[d] - lengths[d]), lengths.map(|side| 3.0 * side))
+        Domain::Periodic { corner, edges } => {
+            (std::array::from_fn(|d| corner[d] - edges[d][d]), std::array::from_fn(|d| 3.0 * edges[d][d]))
         }
         Domain::Open => ([0.0; D], [(6.0 * count as f64).powf(1.0 / D as f64); D]),
     };

@@ -15,28 +15,32 @@ pub struct Pair<const D: usize> {
     pub overlap: f64,
 }
 
-/// Boxes looked at to either side: for disks anywhere within one box of the box.
-const IMAGES: i32 = 3;
+/// The images of a separation shifted along one edge, so that it is within two sides along the axis of that edge.
+fn images<const D: usize>(
+    apart: Vector<D>,
+    (d, edge): (usize, &Vector<D>),
+) -> impl Iterator<Item = Vector<D>> + use<'_, D> {
+    let nearest = -(apart[d] / edge[d]).round() as i32;
+    (nearest - 2..=nearest + 2)
+        .map(move |boxes| std::array::from_fn(|axis| apart[axis] + f64::from(boxes) * edge[axis]))
+}
 
 /// All pairs, held–held ones left out, with a gap below `gap`; first < second.
 pub fn pairs_within<const D: usize>(packing: &Packing<D>, gap: f64) -> Vec<Pair<D>> {
     let (positions, radii, held) = (packing.positions(), packing.radii(), packing.held());
-    let (lengths, images) = match packing.domain() {
-        Domain::Periodic { lengths, .. } => (*lengths, IMAGES),
-        Domain::Open => ([0.0; D], 0),
-    };
-    let width = 2 * images + 1;
     let mut pairs = Vec::new();
     for first in 0..packing.len() {
         for second in first + 1..packing.len() {
             if held[first] && held[second] {
                 continue;
             }
-            for code in 0..width.pow(D as u32) {
-                let separation: Vector<D> = std::array::from_fn(|d| {
-                    let boxes = (code / width.pow(d as u32)) % width - images;
-                    positions[first][d] - positions[second][d] + boxes as f64 * lengths[d]
-                });
+            let mut separations = vec![std::array::from_fn(|d| positions[first][d] - positions[second][d])];
+            if let Domain::Periodic { edges, .. } = packing.domain() {
+                for edge in edges.iter().enumerate().rev() {
+                    separations = separations.into_iter().flat_map(|apart| images(apart, edge)).collect();
+                }
+            }
+            for separation in separations {
                 let distance = norm(separation);
                 let overlap = radii[first] + radii[second] - distance;
                 if overlap > -gap {

@@ -74,5 +74,5 @@ fn lattice_positions() -> Vec<Vector<2>> {
 fn lattice(positions: Vec<Vector<2>>) -> Packing<2> {
     let lengths = [SPACING * COLUMNS as f64, SPACING * 0.75f64.sqrt() * ROWS as f64];
     let radii = (0..positions.len()).map(|disk| if disk < COLUMNS * ROWS { 0.5 } else { 0.05 }).collect();
-    Packing::new(Domain::Periodic { corner: [0.0; 2], lengths }, positions, radii).expect("sound disks")
+    Packing::new(Domain::rectangular([0.0; 2], lengths), positions, radii).expect("sound disks")
 }

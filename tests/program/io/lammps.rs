@@ -26,7 +26,7 @@ fn a_dump_is_read_as_it_stands_and_sorted_by_id() {
     assert_eq!(packing.radii(), [0.5, 0.7, 0.5, 0.7, 0.5, 0.7, 0.5]);
     assert_eq!(packing.positions()[3], [1.231967807073031, 0.6062626602305565]);
     // Sides are differences of the ends in the file: 4.8 − (−1.5) and 5.35 − 0.25.
-    let domain = Domain::Periodic { corner: [-1.5, 0.25], lengths: [4.8 + 1.5, 5.35 - 0.25] };
+    let domain = Domain::rectangular([-1.5, 0.25], [4.8 + 1.5, 5.35 - 0.25]);
     assert_eq!(packing.domain(), &domain);
 }
 

@@ -28,9 +28,17 @@ fn domain<const D: usize>() -> impl Strategy<Value = Domain<D>> {
     let corner = prop_oneof![Just(0.0), Just(-0.0), -1e5..1e5];
     let sides = (prop::array::uniform::<_, D>(corner), prop::array::uniform::<_, D>(side));
     // A corner in sides of the box, at most a million of them.
-    let periodic = |(corner, lengths): (Vector<D>, Vector<D>)| Domain::Periodic {
+    let tilts = prop::array::uniform::<_, D>(prop_oneof![Just(0.0), -2.0..2.0f64]);
+    let sides = (sides.0, sides.1, tilts);
+    let periodic = |(corner, lengths, tilts): (Vector<D>, Vector<D>, Vector<D>)| Domain::Periodic {
         corner: std::array::from_fn(|axis| corner[axis] * lengths[axis].min(1e300)),
-        lengths,
+        edges: std::array::from_fn(|d| {
+            std::array::from_fn(|axis| match axis.cmp(&d) {
+                std::cmp::Ordering::Less => tilts[d] * lengths[axis].min(1e300),
+                std::cmp::Ordering::Equal => lengths[d],
+                std::cmp::Ordering::Greater => 0.0,
+            })
+        }),
     };
     prop_oneof![Just(Domain::Open), sides.prop_map(periodic)]
 }
@@ -85,7 +93,7 @@ fn packing<const D: usize>() -> impl Strategy<Value = Packing<D>> {
 fn bits<const D: usize>(packing: &Packing<D>) -> Vec<u64> {
     let domain: Vec<f64> = match packing.domain() {
         Domain::Open => vec![],
-        Domain::Periodic { corner, lengths } => corner.iter().chain(lengths).copied().collect(),
+        Domain::Periodic { corner, edges } => corner.iter().chain(edges.iter().flatten()).copied().collect(),
     };
     let vectors = packing.positions().iter().chain(packing.corrections()).flatten();
     let numbers = domain.iter().chain(vectors).chain(packing.radii()).map(|value| value.to_bits());
@@ -163,7 +171,7 @@ fn columns_stand_in_any_order_and_unknown_ones_are_ignored() {
         F 7 1 nan .5 1. 2e0 Small\n\
         T 3 3 nan 0.7 2.1 2 Large\n";
     let packing = scratch.read::<2>(content).expect("valid file");
-    let domain = Domain::Periodic { corner: [-1.0, -2.0], lengths: [9.0, 8.0] };
+    let domain = Domain::rectangular([-1.0, -2.0], [9.0, 8.0]);
     let expected = Packing::new(domain, vec![[1.0, 2.0], [2.1, 2.0]], vec![0.5, 0.7])
         .and_then(|packing| packing.with_labels(vec![7, 3]))
         .and_then(|packing| packing.with_held(vec![false, true]));
