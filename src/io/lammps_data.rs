@@ -153,17 +153,17 @@ impl<const D: usize> Header<D> {
                     };
                 }
                 [_, "atom", "types"] => type_count = Some(row.whole(0, "atom types")?),
+                [.., "xy", "xz", "yz"] => (tilts, tilt_line) = (row.three("xy xz yz")?, line),
+                [.., "avec"] => edges[0] = Some((line, row.three("avec")?)),
+                [.., "bvec"] => edges[1] = Some((line, row.three("bvec")?)),
+                [.., "cvec"] => edges[2] = Some((line, row.three("cvec")?)),
+                [.., "abc", "origin"] => origin = row.three("abc origin")?,
                 [low, high, first, second] => {
                     let name = format!("{first} {second}");
                     if let Some(axis) = SIDES.iter().position(|&side| side == name) {
                         sides[axis] = Some(source.side(line, &name, low, high)?);
                     }
                 }
-                [.., "xy", "xz", "yz"] => (tilts, tilt_line) = (row.three("xy xz yz")?, line),
-                [.., "avec"] => edges[0] = Some((line, row.three("avec")?)),
-                [.., "bvec"] => edges[1] = Some((line, row.three("bvec")?)),
-                [.., "cvec"] => edges[2] = Some((line, row.three("cvec")?)),
-                [.., "abc", "origin"] => origin = row.three("abc origin")?,
                 _ => {}
             }
         }
@@ -171,7 +171,7 @@ impl<const D: usize> Header<D> {
         let Some(count) = count else { return Err(source.missing(last, "header line `N atoms`", "none")) };
         let (line, triclinic) = match edges {
             [Some((line, a)), Some((_, b)), Some((_, c))] => (line, Triclinic { corner: origin, edges: [a, b, c] }),
-            _ => {
+            [None, None, None] => {
                 let (mut corner, mut lengths) = ([0.0; 3], [0.0; 3]);
                 for axis in 0..3 {
                     (corner[axis], lengths[axis]) = match sides[axis] {
@@ -184,6 +184,9 @@ impl<const D: usize> Header<D> {
                 let [xy, xz, yz] = tilts;
                 (triclinic.edges[1][0], triclinic.edges[2][0], triclinic.edges[2][1]) = (xy, xz, yz);
                 (tilt_line, triclinic)
+            }
+            _ => {
+                return Err(source.missing(last, "one of the header lines avec, bvec and cvec", "a header without it"));
             }
         };
         let (domain, turn) = triclinic.domain(source, line, "the box")?;

@@ -7,6 +7,7 @@ mod lammps_data_written;
 mod other_programs;
 mod refusals;
 mod round_trip;
+mod tilted;
 mod writing;
 
 use std::path::PathBuf;

@@ -138,7 +138,7 @@ fn ids_that_repeat_or_are_no_numbers() {
 }
 
 #[test]
-fn boxes_that_are_missing_tilted_or_empty() {
+fn boxes_that_are_missing_flat_or_empty() {
     assert_change_refused::<2>(XYZ, "Lattice=\"9 0 0 0 8 0 0 0 1\"", "", &["line 2", "Lattice is missing", "pbc"]);
     assert_change_refused::<2>(
         XYZ,
@@ -146,24 +146,30 @@ fn boxes_that_are_missing_tilted_or_empty() {
         "",
         &["line 2", "Lattice (or pbc=\"F F F\" for the open plane) is missing", "Properties"],
     );
-    assert_change_refused::<2>(XYZ, "9 0 0 0 8", "9 0 0 0.5 8", &["line 2", "tilted", "vector 2 along x", "`0.5`"]);
-    assert_change_refused::<2>(XYZ, "9 0 0", "0 0 0", &["line 2", "Lattice is `0`", "positive"]);
+    assert_change_refused::<2>(XYZ, "9 0 0 0 8 0", "9 0 0 0 8 1", &["line 2", "out of the plane", "edge 2 along z"]);
+    assert_change_refused::<2>(XYZ, "9 0 0", "0 0 0", &["line 2", "Lattice is", "span a box"]);
+    assert_change_refused::<2>(XYZ, "9 0 0 0 8", "9 3 0 18 6", &["line 2", "Lattice is", "span a box"]);
     assert_change_refused::<2>(XYZ, "9 0 0", "9 0", &["line 2", "Lattice is `9 0 0 8 0 0 0 1`", "nine numbers"]);
     assert_change_refused::<2>(DATA, "0.0 9.0 xlo xhi\n", "", &["xlo xhi is missing"]);
     assert_change_refused::<2>(DATA, "0.0 9.0", "9.0 0.0", &["line 5", "xlo xhi is `9.0 0.0`"]);
+    let tilts = "-0.5 0.5 zlo zhi\n0.1 0.2 0 xy xz yz";
     assert_change_refused::<2>(
         DATA,
         "-0.5 0.5 zlo zhi",
-        "-0.5 0.5 zlo zhi\n0.1 0 0 xy xz yz",
-        &["line 8", "tilted", "xy is `0.1`"],
+        tilts,
+        &["line 8", "out of the plane", "edge 3 along x", "`0.2`"],
     );
-    assert_change_refused::<2>(DATA, "0.0 9.0 xlo xhi", "9 0 0 avec", &["line 5", "tilted", "9 0 0 avec"]);
+    let tilts = "-0.5 0.5 zlo zhi\n0.1 no 0 xy xz yz";
+    assert_change_refused::<2>(DATA, "-0.5 0.5 zlo zhi", tilts, &["line 8", "xy xz yz is `no`", "finite number"]);
+    assert_change_refused::<2>(DATA, "0.0 9.0 xlo xhi", "9 0 0 avec", &["header lines avec, bvec and cvec is missing"]);
     assert_change_refused::<2>(DUMP, "0.0 9.0", "0.0 -9.0", &["line 6", "xlo xhi is `0.0 -9.0`"]);
-    let vectors = DUMP.replace("BOUNDS", "BOUNDS abc origin").replace("0.0 9.0", "9 0.5 0 0");
-    assert_refused::<2>(vectors, &["line 6", "tilted", "a y is `0.5`"]);
+    let vectors = DUMP.replace("BOUNDS", "BOUNDS abc origin").replace("0.0 9.0", "9 0 0.5 0");
+    let vectors = vectors.replace("0.0 8.0", "0 8 0 0").replace("-0.5 0.5", "0 0 1 -0.5");
+    assert_refused::<2>(vectors, &["line 6", "out of the plane", "edge 1 along z", "`0.5`"]);
     assert_change_refused::<2>(DUMP, "BOUNDS", "BOUNDS abc origin", &["line 6", "2 values, expected 4"]);
-    let tilted = DUMP.replace("BOUNDS", "BOUNDS xy xz yz").replace("9.0", "9.0 0.1").replace("8.0", "8.0 0");
-    assert_refused::<2>(tilted, &["line 6", "tilted", "xy is `0.1`"]);
+    let tilted = DUMP.replace("BOUNDS", "BOUNDS xy xz yz").replace("9.0", "9.0 0.1").replace("8.0", "8.0 0.2");
+    assert_refused::<2>(tilted.replace("-0.5 0.5", "-0.5 0.5 0"), &["line 6", "out of the plane", "edge 3 along x"]);
+    assert_refused::<2>(tilted, &["line 8", "2 values, expected 3"]);
 }
 
 #[test]
