@@ -63,6 +63,7 @@
 //! | [`relax`] | relaxation of a packing to rest | [`Relaxer`](relax::Relaxer), [`Fire`] |
 //! | [`certificate`] | verified properties of a state at rest | [`Certificate`](certificate::Certificate) |
 //! | [`preparation`] | from random points to a packing at a packing fraction or a pressure | [`prepare`] |
+//! | [`strain`] | quasistatic simple shear of a periodic packing | [`QuasistaticShear`](strain::QuasistaticShear) |
 //! | [`inflation`] | inflation of one disk and relaxation of the others; deflation | [`inflate`] |
 //! | [`lattice`] | lattices with known continuum response | [`Lattice`](lattice::Lattice) |
 //! | [`displacement`] | displacements of all disks | [`DisplacementField`] |
@@ -143,6 +144,7 @@ pub mod scene;
 mod simd;
 #[cfg(feature = "linear")]
 pub mod sparse;
+pub mod strain;
 pub mod study;
 #[cfg(feature = "fit")]
 pub mod transition;

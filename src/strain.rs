@@ -109,7 +109,7 @@ pub struct ShearState {
 /// while let Some(state) = shear.advance(&relaxer, &mut ())? {
 ///     states.push(state);
 /// }
-/// // dσ/dγ is the shear modulus plus the part of the turning stress, μ + (σ_yy − σ_xx)/2, which is 0 here, less p/2 twice.
+/// // At a pressure that is the same in all directions dσ/dγ is the shear modulus.
 /// let slope = states[2].shear_stress / states[2].strain;
 /// let exact = lattice.moduli(&law).expect("isotropic").shear;
 /// assert!((slope / exact - 1.0).abs() < 1e-3);

@@ -35,4 +35,5 @@ mod protocol;
 mod relax;
 #[cfg(feature = "linear")]
 mod stability;
+mod strain;
 mod tilted;

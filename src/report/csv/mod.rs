@@ -11,6 +11,7 @@ use std::fmt::Write as _;
 use crate::observe::{AngularProfile, RadialProfile};
 use crate::report::curve::{curves, fitted_range};
 use crate::response::Response;
+use crate::strain::ShearState;
 
 /// Columns of equal length under names and units.
 struct Table {
@@ -97,6 +98,49 @@ pub fn radial_profile(response: &Response, profile: &RadialProfile) -> String {
         table.cells(row.into_iter().map(Some).collect());
     }
     table.text()
+}
+
+/// Columns of [`shear_row`].
+const SHEAR: [(&str, &str); 13] = [
+    ("step", "1"),
+    ("strain", "1"),
+    ("shear_stress", "force/length^(D-1)"),
+    ("pressure", "force/length^(D-1)"),
+    ("energy", "energy"),
+    ("contacts", "1"),
+    ("coordination", "1"),
+    ("made", "1"),
+    ("broken", "1"),
+    ("non_affine", "length"),
+    ("dissipated", "energy"),
+    ("event", "1"),
+    ("residual", "1"),
+];
+
+/// Names and units of the columns of a shear.
+pub fn shear_header() -> String {
+    Table::new(&SHEAR).text()
+}
+
+/// One step of a shear.
+pub fn shear_row(state: &ShearState) -> String {
+    let mut table = Table::new(&SHEAR);
+    table.row([
+        state.step as f64,
+        state.strain,
+        state.shear_stress,
+        state.pressure,
+        state.energy,
+        state.contact_count as f64,
+        state.coordination,
+        state.made_count as f64,
+        state.broken_count as f64,
+        state.non_affine,
+        state.dissipated,
+        f64::from(u8::from(state.is_event)),
+        state.residual,
+    ]);
+    table.text().lines().skip(2).map(|line| format!("{line}\n")).collect()
 }
 
 /// Angular profiles, ring after ring.
