@@ -31,8 +31,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
-use jamscope::inspection::inspect;
-use jamscope::io::{Frame, ReadWarning, properties_of_frame, read_contents};
+#[cfg(feature = "linear")]
+use jamscope::inspection::Vibrations;
+use jamscope::inspection::{Inspection, inspect};
+use jamscope::io::{Column, Frame, ReadWarning, properties_of_frame, read_contents};
 use jamscope::law::LawChoice;
 use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
@@ -84,7 +86,7 @@ enum Command {
 struct RunArguments {
     /// Scene file (TOML); by default the built-in scene.
     scene: Option<PathBuf>,
-    /// Use this packing (extended XYZ, LAMMPS data or dump; `-` is the standard input) instead of the samples of the scene.
+    /// Use this packing (extended XYZ, LAMMPS data or dump, NumPy archive; `-` is the standard input) instead of the samples of the scene.
     #[arg(long, value_name = "FILE")]
     packing: Option<PathBuf>,
     /// Folder for the report.
@@ -103,7 +105,7 @@ struct RunArguments {
 
 #[derive(Args)]
 struct InspectArguments {
-    /// Packing file: extended XYZ, LAMMPS data or dump, possibly compressed by gzip or zstd; `-` is the standard input.
+    /// Packing file: extended XYZ, LAMMPS data or dump, possibly compressed by gzip or zstd, or a NumPy archive; `-` is the standard input.
     packing: PathBuf,
     /// Frame of a file with several: `last`, `all` or its number, from 0.
     #[arg(long, value_name = "FRAME", default_value = "last", value_parser = input::frames)]
@@ -124,10 +126,10 @@ struct InspectArguments {
     /// Print JSON, with every number in full precision.
     #[arg(long)]
     json: bool,
-    /// Write the packing with the results of each disk to this file (extended XYZ).
+    /// Write the packing with the results of each disk to this file: extended XYZ, or a NumPy archive if its name ends in .npz.
     #[arg(long, value_name = "FILE")]
     write: Option<PathBuf>,
-    /// Number of vibrational modes to compute, from the lowest.
+    /// Number of vibrational modes to compute, from the lowest; `--write` adds their vectors as columns.
     #[cfg(feature = "linear")]
     #[arg(long, value_name = "K", default_value_t = 0)]
     modes: usize,
@@ -280,6 +282,7 @@ fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
         input::check_output(out, &path)?;
     }
     let (mut documents, mut refused) = (Vec::new(), Vec::new());
+    let mut last = None;
     for &frame in &frames {
         let law = contact_law::law_of(&path, frame, arguments.law, arguments.stiffness)?;
         let inspection = inspect(&path, frame, law, dimension, mode_count, &settings)?;
@@ -298,12 +301,12 @@ fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
         if inspection.verdict.decision() == Decision::NotAtRest {
             refused.push(name);
         }
+        last = Some((frame, inspection));
     }
-    if let Some(out) = &arguments.write {
-        let frame = frames.last().copied().unwrap_or_default();
+    if let (Some(out), Some((frame, inspection))) = (&arguments.write, &last) {
         match dimension {
-            3 => write_inspected::<3>(&path, frame, arguments, out)?,
-            _ => write_inspected::<2>(&path, frame, arguments, out)?,
+            3 => write_inspected::<3>(&path, *frame, inspection, out)?,
+            _ => write_inspected::<2>(&path, *frame, inspection, out)?,
         }
     }
     match (arguments.json, arguments.frame) {
@@ -318,13 +321,17 @@ fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
 fn write_inspected<const D: usize>(
     path: &std::path::Path,
     frame: Frame,
-    arguments: &InspectArguments,
+    inspection: &Inspection,
     out: &std::path::Path,
 ) -> Result<(), Failure> {
-    let law = contact_law::law_of(path, frame, arguments.law, arguments.stiffness)?;
     let contents = read_contents::<D>(path, frame)?;
-    let network = ContactNetwork::new(&contents.packing, &law)?;
-    Ok(report::write_state(out, &contents.packing, (&network, &law), &contents.properties)?)
+    let network = ContactNetwork::new(&contents.packing, &inspection.law)?;
+    #[cfg(feature = "linear")]
+    let modes = inspection.modes.as_ref().map(Vibrations::columns).unwrap_or_default();
+    #[cfg(not(feature = "linear"))]
+    let modes: Vec<(String, &[f64])> = Vec::new();
+    let modes: Vec<Column> = modes.iter().map(|(name, values)| Column { name, width: D, values }).collect();
+    Ok(report::write_state(out, &contents.packing, (&network, &inspection.law), &modes, &contents.properties)?)
 }
 
 /// Prints warnings about a file to the standard error stream.

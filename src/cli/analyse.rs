@@ -44,6 +44,10 @@ pub struct AnalyseArguments {
     /// Report a phase and fits, and exit with code 0, even if a state is not at rest.
     #[arg(long)]
     not_at_rest: bool,
+    /// Write the state after with the response of each disk (displacement, its radial, linear and plastic parts) to this file: extended
+    /// XYZ, or a NumPy archive if its name ends in .npz.
+    #[arg(long, value_name = "FILE")]
+    write: Option<PathBuf>,
     /// Folder for the results.
     #[arg(long, value_name = "DIR", default_value = "jamscope-analysis")]
     out: PathBuf,
@@ -155,6 +159,14 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
     override_limit(&mut verdict, arguments.not_at_rest);
     let mut inputs = input::Inputs::default();
     let all = states(arguments, &mut inputs)?;
+    if let Some(out) = &arguments.write {
+        let [files] = &all[..] else {
+            return Err(format!("--write FILE takes one pair of states; here are {}", all.len()).into());
+        };
+        for state in [Some(&files.before), Some(&files.after), files.deflated.as_ref()].into_iter().flatten() {
+            input::check_output(out, &state.path)?;
+        }
+    }
     let output = report::OutputFolder::open(&arguments.out, report::Kind::Analysis)?;
     output.try_samples("name of a pair", all.iter().map(|files| files.name.as_str()))?;
     let mut analyses = Vec::new();
@@ -173,6 +185,14 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
         let page = written.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
         let shown = page.unwrap_or(&arguments.out).display();
         print(&format!("\n{} files in {}, start from {shown}\n", written.len(), arguments.out.display()))?;
+    }
+    if let (Some(out), [analysis]) = (&arguments.write, &analyses[..]) {
+        let response = report::DiskResponse::of(analysis);
+        response.write(out)?;
+        let missing = response.not_linear.as_ref();
+        let missing =
+            missing.map_or(String::new(), |reason| format!(", without the linear and the plastic part: {reason}"));
+        print(&format!("the response of each disk in {}{missing}\n", out.display()))?;
     }
     if !failures.is_empty() {
         return Err(failures.join("\n").into());

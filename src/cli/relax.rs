@@ -22,7 +22,7 @@ use crate::{Failure, exit_code, input, print, threads, warn};
 /// A packing file and how it is relaxed.
 #[derive(Args)]
 struct FileArguments {
-    /// Packing file: extended XYZ, LAMMPS data or dump, possibly compressed by gzip or zstd; `-` is the standard input.
+    /// Packing file: extended XYZ, LAMMPS data or dump, possibly compressed by gzip or zstd, or a NumPy archive; `-` is the standard input.
     packing: PathBuf,
     /// Frame of a file with several: `last` or its number, from 0.
     #[arg(long, value_name = "FRAME", default_value = "last", value_parser = input::frame)]
@@ -47,7 +47,7 @@ struct FileArguments {
     /// Number of threads; by default one per core. Changes no result.
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    /// File for the result, extended XYZ; by default NAME.relaxed.xyz or NAME.compressed.xyz in the current folder, if there is
+    /// File for the result: extended XYZ, or a NumPy archive if its name ends in .npz; by default NAME.relaxed.xyz or NAME.compressed.xyz in the current folder, if there is
     /// no such file.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -201,7 +201,7 @@ fn run_in<const D: usize>(
         return Err(format!("{name}: a force became infinite or not a number; nothing is written").into());
     }
     let network = ContactNetwork::new(&state, law)?;
-    write_state(out, &state, (&network, law), &properties)?;
+    write_state(out, &state, (&network, law), &[], &properties)?;
     print(&table(&first, &Numbers::of(&state, &network), &end, out))?;
     let moves = !is_at_rest(end.stop, end.residual);
     Ok(exit_code::of_relaxation(moves.then(|| format!("{name} ({:?})", end.stop))))
