@@ -87,18 +87,25 @@ fn outer_radius(text: &str) -> Result<OuterRadius, String> {
 #[derive(Clone)]
 struct StateFile {
     path: PathBuf,
+    /// Its name in messages.
+    shown: PathBuf,
     frame: Frame,
 }
 
 impl StateFile {
     /// The last frame of a file.
     fn last(path: PathBuf) -> Self {
-        StateFile { path, frame: Frame::Last }
+        StateFile { shown: path.clone(), path, frame: Frame::Last }
+    }
+
+    /// The last frame of a file given on the command line.
+    fn given(path: &Path, inputs: &mut input::Inputs) -> Result<Self, Failure> {
+        Ok(StateFile { path: inputs.file(path)?, shown: path.to_path_buf(), frame: Frame::Last })
     }
 
     fn read(&self) -> Result<Contents<2>, Failure> {
         let contents = read_contents(&self.path, self.frame)?;
-        warn(&self.path, &contents.warnings);
+        warn(&self.shown, &contents.warnings);
         Ok(contents)
     }
 }
@@ -122,7 +129,7 @@ fn states(arguments: &AnalyseArguments, inputs: &mut input::Inputs) -> Result<Ve
             return Err(format!("--frames names {} frames: two or three are states", frames.len()).into());
         }
         let file = inputs.file(path)?;
-        let of = |frame: &Frame| StateFile { path: file.clone(), frame: *frame };
+        let of = |frame: &Frame| StateFile { path: file.clone(), shown: path.clone(), frame: *frame };
         return Ok(vec![Files {
             name: name_of(path),
             before: of(before),
@@ -139,9 +146,9 @@ fn states(arguments: &AnalyseArguments, inputs: &mut input::Inputs) -> Result<Ve
         [folder] => pairs_in(folder),
         [before, after, deflated @ ..] => Ok(vec![Files {
             name: name_of(before),
-            before: StateFile::last(inputs.file(before)?),
-            after: StateFile::last(inputs.file(after)?),
-            deflated: deflated.first().map(|path| inputs.file(path)).transpose()?.map(StateFile::last),
+            before: StateFile::given(before, inputs)?,
+            after: StateFile::given(after, inputs)?,
+            deflated: deflated.first().map(|path| StateFile::given(path, inputs)).transpose()?,
         }]),
         [] => Ok(Vec::new()),
     }
@@ -149,6 +156,12 @@ fn states(arguments: &AnalyseArguments, inputs: &mut input::Inputs) -> Result<Ve
 
 /// Analyses all pairs; if one fails, the others are analysed before the error is returned.
 pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
+    let mut inputs = input::Inputs::default();
+    let result = run_with(arguments, &mut inputs);
+    inputs.named(result)
+}
+
+fn run_with(arguments: &AnalyseArguments, inputs: &mut input::Inputs) -> Result<ExitCode, Failure> {
     let (observables, mut verdict) = match &arguments.scene {
         Some(path) => {
             let scene = scene_file::read_scene(path)?;
@@ -157,8 +170,7 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
         None => (None, VerdictSettings::default()),
     };
     override_limit(&mut verdict, arguments.not_at_rest);
-    let mut inputs = input::Inputs::default();
-    let all = states(arguments, &mut inputs)?;
+    let all = states(arguments, inputs)?;
     if let Some(out) = &arguments.write {
         let [files] = &all[..] else {
             return Err(format!("--write FILE takes one pair of states; here are {}", all.len()).into());

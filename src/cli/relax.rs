@@ -133,6 +133,10 @@ fn run(arguments: &FileArguments, task: &Task) -> Result<ExitCode, Failure> {
     let relaxer = relaxer.map_err(|error| format!("--relaxer {name}: {}", error.message))?;
     let mut inputs = input::Inputs::default();
     let path = inputs.file(&arguments.packing)?;
+    inputs.named(run_file(&path, arguments, &relaxer, task))
+}
+
+fn run_file(path: &Path, arguments: &FileArguments, relaxer: &RelaxerChoice, task: &Task) -> Result<ExitCode, Failure> {
     let out = match (&arguments.out, named(&arguments.packing, task)) {
         (Some(out), _) => out.clone(),
         (None, default) if default.exists() => {
@@ -140,12 +144,12 @@ fn run(arguments: &FileArguments, task: &Task) -> Result<ExitCode, Failure> {
         }
         (None, default) => default,
     };
-    input::check_output(&out, &path)?;
-    let law = contact_law::law_of(&path, arguments.frame, arguments.law, arguments.stiffness)?;
+    input::check_output(&out, path)?;
+    let law = contact_law::law_of(path, arguments.frame, arguments.law, arguments.stiffness)?;
     law.check()?;
     match arguments.dimension {
-        3 => run_in::<3>((&path, &out), arguments, (&law, &relaxer), task),
-        _ => run_in::<2>((&path, &out), arguments, (&law, &relaxer), task),
+        3 => run_in::<3>((path, &out), arguments, (&law, relaxer), task),
+        _ => run_in::<2>((path, &out), arguments, (&law, relaxer), task),
     }
 }
 

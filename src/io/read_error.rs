@@ -257,7 +257,7 @@ pub enum ReadError {
         /// The file.
         path: PathBuf,
         /// The problem.
-        source: ArchiveError,
+        source: Box<ArchiveError>,
     },
     /// The disks are invalid.
     #[error("{path}: {source}")]

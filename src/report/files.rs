@@ -9,7 +9,6 @@ use crate::analysis::Analysis;
 use crate::certificate::Certificate;
 use crate::displacement::DisplacementField;
 use crate::io::{Column, write_atomically, write_packing};
-use crate::law::choice::LawChoice;
 use crate::packing::Packing;
 use crate::processor::{Processor, Vectors};
 use crate::report::columns::ResponseColumns;
@@ -20,6 +19,7 @@ use crate::report::output::Kind;
 use crate::report::output::OutputFolder;
 use crate::report::rows::law;
 use crate::report::rows::section::done;
+use crate::report::state_file::numbers_of;
 use crate::run::{Report, SampleReport, SampleResult};
 
 /// Writes a report into `folder`, which is created if necessary. Returns the paths of the files in the order written.
@@ -230,17 +230,6 @@ impl Files<'_> {
     ) -> Result<(), ReportError> {
         let columns = ResponseColumns::of(packing.len(), field, plastic);
         self.packing(name, packing, &columns.columns(), origin)
-    }
-}
-
-/// The parameters of a law, in the form that `jamscope inspect` reads.
-pub(super) fn numbers_of(law: &LawChoice) -> Vec<(&'static str, String)> {
-    match law {
-        LawChoice::Hertzian(law) => vec![("stiffness", format!("{:?}", law.stiffness))],
-        LawChoice::Hookean(law) => vec![("stiffness", format!("{:?}", law.stiffness))],
-        LawChoice::PowerLaw(law) => {
-            vec![("stiffness", format!("{:?}", law.energy_scale)), ("exponent", format!("{:?}", law.exponent))]
-        }
     }
 }
 

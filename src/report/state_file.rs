@@ -6,7 +6,6 @@ use crate::io::{Column, WriteError, npz, write_npz, write_packing};
 use crate::law::choice::LawChoice;
 use crate::network::ContactNetwork;
 use crate::packing::Packing;
-use crate::report::files::numbers_of;
 
 /// Keys of the comment line that describe the state or the law. They are not copied from the input.
 const OWN: [&str; 16] = [
@@ -111,4 +110,15 @@ pub(crate) fn law_keys(law: &LawChoice) -> Vec<(&'static str, String)> {
     let mut keys = vec![("jamscope_version", env!("CARGO_PKG_VERSION").into()), ("law", name.to_string())];
     keys.extend(numbers_of(law));
     keys
+}
+
+/// The parameters of a law, in the form that `jamscope inspect` reads.
+pub(super) fn numbers_of(law: &LawChoice) -> Vec<(&'static str, String)> {
+    match law {
+        LawChoice::Hertzian(law) => vec![("stiffness", format!("{:?}", law.stiffness))],
+        LawChoice::Hookean(law) => vec![("stiffness", format!("{:?}", law.stiffness))],
+        LawChoice::PowerLaw(law) => {
+            vec![("stiffness", format!("{:?}", law.energy_scale)), ("exponent", format!("{:?}", law.exponent))]
+        }
+    }
 }

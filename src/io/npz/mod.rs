@@ -48,7 +48,7 @@ pub(super) fn is_archive(bytes: &[u8]) -> bool {
 
 /// Reads one frame.
 pub(super) fn parse<const D: usize>(path: &Path, bytes: &[u8], frame: Frame) -> Result<Contents<D>, ReadError> {
-    let named = |source| ReadError::Archive { path: path.into(), source };
+    let named = |error| in_file(path, error);
     let arrays = Arrays::new(bytes).map_err(named)?;
     let count = count(&arrays).map_err(named)?;
     let frame = frame.index_of(path, count)?;
@@ -74,17 +74,20 @@ pub(super) fn parse<const D: usize>(path: &Path, bytes: &[u8], frame: Frame) -> 
 
 /// Number of frames.
 pub(super) fn frame_count(path: &Path, bytes: &[u8]) -> Result<usize, ReadError> {
-    Arrays::new(bytes)
-        .and_then(|arrays| count(&arrays))
-        .map_err(|source| ReadError::Archive { path: path.into(), source })
+    Arrays::new(bytes).and_then(|arrays| count(&arrays)).map_err(|error| in_file(path, error))
 }
 
 /// The key-value pairs, the same for all frames.
 pub(super) fn properties(path: &Path, bytes: &[u8], frame: Frame) -> Result<Vec<(String, String)>, ReadError> {
-    let named = |source| ReadError::Archive { path: path.into(), source };
+    let named = |error| in_file(path, error);
     let arrays = Arrays::new(bytes).map_err(named)?;
     frame.index_of(path, count(&arrays).map_err(named)?)?;
     Ok(arrays.properties())
+}
+
+/// The error with the file.
+fn in_file(path: &Path, error: ArchiveError) -> ReadError {
+    ReadError::Archive { path: path.into(), source: Box::new(error) }
 }
 
 fn count(arrays: &Arrays) -> Result<usize, ArchiveError> {
