@@ -27,12 +27,14 @@ mod study_progress;
 mod threads;
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
-use jamscope::inspection::inspect;
-use jamscope::io::{Frame, ReadWarning, properties_of_frame, read_contents};
+#[cfg(feature = "linear")]
+use jamscope::inspection::Vibrations;
+use jamscope::inspection::{Inspection, inspect};
+use jamscope::io::{Column, Frame, ReadWarning, properties_of_frame, read_contents};
 use jamscope::law::LawChoice;
 use jamscope::network::ContactNetwork;
 use jamscope::packing::Packing;
@@ -84,7 +86,7 @@ enum Command {
 struct RunArguments {
     /// Scene file (TOML); by default the built-in scene.
     scene: Option<PathBuf>,
-    /// Use this packing (extended XYZ, LAMMPS data or dump; `-` is the standard input) instead of the samples of the scene.
+    /// Use this packing (extended XYZ, LAMMPS data or dump, NumPy archive; `-` is the standard input) instead of the samples of the scene.
     #[arg(long, value_name = "FILE")]
     packing: Option<PathBuf>,
     /// Folder for the report.
@@ -103,7 +105,7 @@ struct RunArguments {
 
 #[derive(Args)]
 struct InspectArguments {
-    /// Packing file: extended XYZ, LAMMPS data or dump, possibly compressed by gzip or zstd; `-` is the standard input.
+    /// Packing file: extended XYZ, LAMMPS data or dump, possibly compressed by gzip or zstd, or a NumPy archive; `-` is the standard input.
     packing: PathBuf,
     /// Frame of a file with several: `last`, `all` or its number, from 0.
     #[arg(long, value_name = "FRAME", default_value = "last", value_parser = input::frames)]
@@ -124,10 +126,10 @@ struct InspectArguments {
     /// Print JSON, with every number in full precision.
     #[arg(long)]
     json: bool,
-    /// Write the packing with the results of each disk to this file (extended XYZ).
+    /// Write the packing with the results of each disk to this file: extended XYZ, or a NumPy archive if its name ends in .npz.
     #[arg(long, value_name = "FILE")]
     write: Option<PathBuf>,
-    /// Number of vibrational modes to compute, from the lowest.
+    /// Number of vibrational modes to compute, from the lowest; `--write` adds their vectors as columns.
     #[cfg(feature = "linear")]
     #[arg(long, value_name = "K", default_value_t = 0)]
     modes: usize,
@@ -163,11 +165,16 @@ fn run_command(command: Option<Command>) -> Result<ExitCode, Failure> {
 }
 
 fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
+    let mut inputs = input::Inputs::default();
+    let result = run_with(arguments, &mut inputs);
+    inputs.named(result)
+}
+
+fn run_with(arguments: &RunArguments, inputs: &mut input::Inputs) -> Result<ExitCode, Failure> {
     let mut scene = match &arguments.scene {
         Some(path) => scene_file::read_scene(path)?,
         None => Scene::default(),
     };
-    let mut inputs = input::Inputs::default();
     if let Some(path) = &arguments.packing {
         let path = inputs.file(path)?;
         scene.sample = vec![sample_of_file(&path, &scene)];
@@ -190,7 +197,7 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     output.try_samples("sample.name", scene.sample.iter().map(|sample| sample.name.as_str()))?;
     let bars = progress::Bars::new(scene.sample.iter().map(|sample| sample.name.as_str()));
     let report = run(&scene, &bars)?;
-    print(&report::table::terminal_table(&report))?;
+    print(&inputs.with_given_names(report::table::terminal_table(&report)))?;
     let files = report::write_into(&report, output)?;
     let page = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
     let shown = page.unwrap_or(&arguments.out);
@@ -205,7 +212,7 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
 }
 
 /// The law of `--packing`: that of the file, which must be that of the scene, if there is one and the file gives a law.
-fn law_of_run(path: &std::path::Path, of_scene: Option<&LawChoice>) -> Result<LawChoice, Failure> {
+fn law_of_run(path: &Path, of_scene: Option<&LawChoice>) -> Result<LawChoice, Failure> {
     // A file that cannot be read is reported by the run.
     if properties_of_frame(path, Frame::Last).is_err() {
         return Ok(of_scene.copied().unwrap_or_default());
@@ -240,7 +247,7 @@ fn is_refused(result: &SampleOutcome) -> bool {
 }
 
 /// The sample of `--packing`: the file, relaxed after the inflation like the first sample of the scene on the same side of jamming.
-fn sample_of_file(path: &std::path::Path, scene: &Scene) -> Sample {
+fn sample_of_file(path: &Path, scene: &Scene) -> Sample {
     let stem: String = path
         .file_stem()
         .map(|stem| stem.to_string_lossy().into_owned())
@@ -254,7 +261,7 @@ fn sample_of_file(path: &std::path::Path, scene: &Scene) -> Sample {
 }
 
 /// What the scene relaxes packings with that are as dense as this one; the default protocol, if it has none of them.
-fn relaxer_of_file(path: &std::path::Path, scene: &Scene) -> RelaxerChoice {
+fn relaxer_of_file(path: &Path, scene: &Scene) -> RelaxerChoice {
     // A file that cannot be read is reported by the run.
     let fraction = read_packing::<2>(path).ok().and_then(|packing| packing.packing_fraction()).unwrap_or(1.0);
     let own = Source::PackingFraction(fraction);
@@ -265,6 +272,10 @@ fn relaxer_of_file(path: &std::path::Path, scene: &Scene) -> RelaxerChoice {
 fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
     let mut inputs = input::Inputs::default();
     let path = inputs.file(&arguments.packing)?;
+    inputs.named(inspect_file(arguments, &path))
+}
+
+fn inspect_file(arguments: &InspectArguments, path: &Path) -> Result<ExitCode, Failure> {
     #[cfg(feature = "linear")]
     let mode_count = arguments.modes;
     #[cfg(not(feature = "linear"))]
@@ -272,17 +283,18 @@ fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
     let mut settings = VerdictSettings::default();
     override_limit(&mut settings, arguments.not_at_rest);
     let dimension = usize::from(arguments.dimension);
-    let frames = arguments.frame.of(&path)?;
+    let frames = arguments.frame.of(path)?;
     if let Some(out) = &arguments.write {
         if frames.len() > 1 {
             return Err("--write FILE takes one frame".into());
         }
-        input::check_output(out, &path)?;
+        input::check_output(out, path)?;
     }
     let (mut documents, mut refused) = (Vec::new(), Vec::new());
+    let mut last = None;
     for &frame in &frames {
-        let law = contact_law::law_of(&path, frame, arguments.law, arguments.stiffness)?;
-        let inspection = inspect(&path, frame, law, dimension, mode_count, &settings)?;
+        let law = contact_law::law_of(path, frame, arguments.law, arguments.stiffness)?;
+        let inspection = inspect(path, frame, law, dimension, mode_count, &settings)?;
         warn(&arguments.packing, &inspection.warnings);
         let name = match frame {
             Frame::Index(frame) => format!("{}, frame {frame}", arguments.packing.display()),
@@ -298,12 +310,12 @@ fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
         if inspection.verdict.decision() == Decision::NotAtRest {
             refused.push(name);
         }
+        last = Some((frame, inspection));
     }
-    if let Some(out) = &arguments.write {
-        let frame = frames.last().copied().unwrap_or_default();
+    if let (Some(out), Some((frame, inspection))) = (&arguments.write, &last) {
         match dimension {
-            3 => write_inspected::<3>(&path, frame, arguments, out)?,
-            _ => write_inspected::<2>(&path, frame, arguments, out)?,
+            3 => write_inspected::<3>(path, *frame, inspection, out)?,
+            _ => write_inspected::<2>(path, *frame, inspection, out)?,
         }
     }
     match (arguments.json, arguments.frame) {
@@ -316,19 +328,23 @@ fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {
 
 /// Writes a packing with the results of each disk.
 fn write_inspected<const D: usize>(
-    path: &std::path::Path,
+    path: &Path,
     frame: Frame,
-    arguments: &InspectArguments,
-    out: &std::path::Path,
+    inspection: &Inspection,
+    out: &Path,
 ) -> Result<(), Failure> {
-    let law = contact_law::law_of(path, frame, arguments.law, arguments.stiffness)?;
     let contents = read_contents::<D>(path, frame)?;
-    let network = ContactNetwork::new(&contents.packing, &law)?;
-    Ok(report::write_state(out, &contents.packing, (&network, &law), &contents.properties)?)
+    let network = ContactNetwork::new(&contents.packing, &inspection.law)?;
+    #[cfg(feature = "linear")]
+    let modes = inspection.modes.as_ref().map(Vibrations::columns).unwrap_or_default();
+    #[cfg(not(feature = "linear"))]
+    let modes: Vec<(String, &[f64])> = Vec::new();
+    let modes: Vec<Column> = modes.iter().map(|(name, values)| Column { name, width: D, values }).collect();
+    Ok(report::write_state(out, &contents.packing, (&network, &inspection.law), &modes, &contents.properties)?)
 }
 
 /// Prints warnings about a file to the standard error stream.
-fn warn(path: &std::path::Path, warnings: &[ReadWarning]) {
+fn warn(path: &Path, warnings: &[ReadWarning]) {
     for warning in warnings {
         // The standard error stream may be closed.
         let _ = writeln!(std::io::stderr(), "jamscope: warning: {}, {warning}", path.display());

@@ -59,7 +59,14 @@ impl<const D: usize> PlasticPart<D> {
     /// If the response belongs to another packing.
     pub fn of(inflated: &Inflated<D>, response: &LinearResponse<D>) -> Self {
         let increase = inflated.after.packing.get().radii()[inflated.centre] - inflated.inner_radius;
-        let mut field = DisplacementField::of_inflation(inflated);
+        Self::of_field(DisplacementField::of_inflation(inflated), increase, response)
+    }
+
+    /// The plastic part of the displacements after an inflation by `increase`. The linear response must be that of the state before.
+    ///
+    /// # Panics
+    /// If the response belongs to another packing.
+    pub fn of_field(mut field: DisplacementField<D>, increase: f64, response: &LinearResponse<D>) -> Self {
         let relaxed = Squares::of(field.counted().map(|disk| disk.displacement));
         for disk in &mut field.disks {
             let linear = scaled(increase, response.displacements[disk.disk]);

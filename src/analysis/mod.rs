@@ -98,7 +98,8 @@ impl Analysis {
         verdict: &VerdictSettings,
     ) -> Result<Self, PackingError> {
         let (centre, outer_radius) = (pair.centre, pair.outer_radius);
-        let state = |packing| State::new(packing, law);
+        let labels = pair.before.labels();
+        let state = |packing| State::new(packing, law).map_err(|error| error.with_labels(labels));
         let (before, after) = (state(&pair.before)?, state(&pair.after)?);
         let deflated = pair.deflated.as_ref().map(state).transpose()?;
         let known = |state: &State<'_, 2>| StateAnalysis::of(state, &pair, law);

@@ -44,6 +44,10 @@ pub struct AnalyseArguments {
     /// Report a phase and fits, and exit with code 0, even if a state is not at rest.
     #[arg(long)]
     not_at_rest: bool,
+    /// Write the state after with the response of each disk (displacement, its radial, linear and plastic parts) to this file: extended
+    /// XYZ, or a NumPy archive if its name ends in .npz.
+    #[arg(long, value_name = "FILE")]
+    write: Option<PathBuf>,
     /// Folder for the results.
     #[arg(long, value_name = "DIR", default_value = "jamscope-analysis")]
     out: PathBuf,
@@ -83,18 +87,25 @@ fn outer_radius(text: &str) -> Result<OuterRadius, String> {
 #[derive(Clone)]
 struct StateFile {
     path: PathBuf,
+    /// Its name in messages.
+    shown: PathBuf,
     frame: Frame,
 }
 
 impl StateFile {
     /// The last frame of a file.
     fn last(path: PathBuf) -> Self {
-        StateFile { path, frame: Frame::Last }
+        StateFile { shown: path.clone(), path, frame: Frame::Last }
+    }
+
+    /// The last frame of a file given on the command line.
+    fn given(path: &Path, inputs: &mut input::Inputs) -> Result<Self, Failure> {
+        Ok(StateFile { path: inputs.file(path)?, shown: path.to_path_buf(), frame: Frame::Last })
     }
 
     fn read(&self) -> Result<Contents<2>, Failure> {
         let contents = read_contents(&self.path, self.frame)?;
-        warn(&self.path, &contents.warnings);
+        warn(&self.shown, &contents.warnings);
         Ok(contents)
     }
 }
@@ -118,7 +129,7 @@ fn states(arguments: &AnalyseArguments, inputs: &mut input::Inputs) -> Result<Ve
             return Err(format!("--frames names {} frames: two or three are states", frames.len()).into());
         }
         let file = inputs.file(path)?;
-        let of = |frame: &Frame| StateFile { path: file.clone(), frame: *frame };
+        let of = |frame: &Frame| StateFile { path: file.clone(), shown: path.clone(), frame: *frame };
         return Ok(vec![Files {
             name: name_of(path),
             before: of(before),
@@ -135,9 +146,9 @@ fn states(arguments: &AnalyseArguments, inputs: &mut input::Inputs) -> Result<Ve
         [folder] => pairs_in(folder),
         [before, after, deflated @ ..] => Ok(vec![Files {
             name: name_of(before),
-            before: StateFile::last(inputs.file(before)?),
-            after: StateFile::last(inputs.file(after)?),
-            deflated: deflated.first().map(|path| inputs.file(path)).transpose()?.map(StateFile::last),
+            before: StateFile::given(before, inputs)?,
+            after: StateFile::given(after, inputs)?,
+            deflated: deflated.first().map(|path| StateFile::given(path, inputs)).transpose()?,
         }]),
         [] => Ok(Vec::new()),
     }
@@ -145,6 +156,12 @@ fn states(arguments: &AnalyseArguments, inputs: &mut input::Inputs) -> Result<Ve
 
 /// Analyses all pairs; if one fails, the others are analysed before the error is returned.
 pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
+    let mut inputs = input::Inputs::default();
+    let result = run_with(arguments, &mut inputs);
+    inputs.named(result)
+}
+
+fn run_with(arguments: &AnalyseArguments, inputs: &mut input::Inputs) -> Result<ExitCode, Failure> {
     let (observables, mut verdict) = match &arguments.scene {
         Some(path) => {
             let scene = scene_file::read_scene(path)?;
@@ -153,8 +170,15 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
         None => (None, VerdictSettings::default()),
     };
     override_limit(&mut verdict, arguments.not_at_rest);
-    let mut inputs = input::Inputs::default();
-    let all = states(arguments, &mut inputs)?;
+    let all = states(arguments, inputs)?;
+    if let Some(out) = &arguments.write {
+        let [files] = &all[..] else {
+            return Err(format!("--write FILE takes one pair of states; here are {}", all.len()).into());
+        };
+        for state in [Some(&files.before), Some(&files.after), files.deflated.as_ref()].into_iter().flatten() {
+            input::check_output(out, &state.path)?;
+        }
+    }
     let output = report::OutputFolder::open(&arguments.out, report::Kind::Analysis)?;
     output.try_samples("name of a pair", all.iter().map(|files| files.name.as_str()))?;
     let mut analyses = Vec::new();
@@ -173,6 +197,14 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
         let page = written.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
         let shown = page.unwrap_or(&arguments.out).display();
         print(&format!("\n{} files in {}, start from {shown}\n", written.len(), arguments.out.display()))?;
+    }
+    if let (Some(out), [analysis]) = (&arguments.write, &analyses[..]) {
+        let response = report::DiskResponse::of(analysis);
+        response.write(out)?;
+        let missing = response.not_linear.as_ref();
+        let missing =
+            missing.map_or(String::new(), |reason| format!(", without the linear and the plastic part: {reason}"));
+        print(&format!("the response of each disk in {}{missing}\n", out.display()))?;
     }
     if !failures.is_empty() {
         return Err(failures.join("\n").into());

@@ -12,7 +12,8 @@ use crate::Failure;
 /// is removed at the end.
 #[derive(Default)]
 pub struct Inputs {
-    copies: Vec<TempDir>,
+    /// The folder of a copy, the copy, and what it is a copy of.
+    copies: Vec<(TempDir, PathBuf, PathBuf)>,
     has_standard: bool,
 }
 
@@ -37,8 +38,25 @@ impl Inputs {
             File::open(path).and_then(|mut pipe| std::io::copy(&mut pipe, &mut file))
         };
         copied.map_err(failed)?;
-        self.copies.push(folder);
+        self.copies.push((folder, copy.clone(), path.to_path_buf()));
         Ok(copy)
+    }
+
+    /// A text with the names that the user gave in place of those of the copies.
+    pub fn with_given_names(&self, mut text: String) -> String {
+        for (_, copy, given) in &self.copies {
+            let shown = if given == Path::new("-") { "standard input".into() } else { given.display().to_string() };
+            text = text.replace(&copy.display().to_string(), &shown);
+        }
+        text
+    }
+
+    /// The result, with the names that the user gave in its error.
+    pub fn named<T>(&self, result: Result<T, Failure>) -> Result<T, Failure> {
+        match result {
+            Err(error) if !self.copies.is_empty() => Err(self.with_given_names(error.to_string()).into()),
+            other => other,
+        }
     }
 }
 

@@ -22,7 +22,7 @@ use crate::{Failure, exit_code, input, print, threads, warn};
 /// A packing file and how it is relaxed.
 #[derive(Args)]
 struct FileArguments {
-    /// Packing file: extended XYZ, LAMMPS data or dump, possibly compressed by gzip or zstd; `-` is the standard input.
+    /// Packing file: extended XYZ, LAMMPS data or dump, possibly compressed by gzip or zstd, or a NumPy archive; `-` is the standard input.
     packing: PathBuf,
     /// Frame of a file with several: `last` or its number, from 0.
     #[arg(long, value_name = "FRAME", default_value = "last", value_parser = input::frame)]
@@ -47,7 +47,7 @@ struct FileArguments {
     /// Number of threads; by default one per core. Changes no result.
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    /// File for the result, extended XYZ; by default NAME.relaxed.xyz or NAME.compressed.xyz in the current folder, if there is
+    /// File for the result: extended XYZ, or a NumPy archive if its name ends in .npz; by default NAME.relaxed.xyz or NAME.compressed.xyz in the current folder, if there is
     /// no such file.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -133,6 +133,10 @@ fn run(arguments: &FileArguments, task: &Task) -> Result<ExitCode, Failure> {
     let relaxer = relaxer.map_err(|error| format!("--relaxer {name}: {}", error.message))?;
     let mut inputs = input::Inputs::default();
     let path = inputs.file(&arguments.packing)?;
+    inputs.named(run_file(&path, arguments, &relaxer, task))
+}
+
+fn run_file(path: &Path, arguments: &FileArguments, relaxer: &RelaxerChoice, task: &Task) -> Result<ExitCode, Failure> {
     let out = match (&arguments.out, named(&arguments.packing, task)) {
         (Some(out), _) => out.clone(),
         (None, default) if default.exists() => {
@@ -140,12 +144,12 @@ fn run(arguments: &FileArguments, task: &Task) -> Result<ExitCode, Failure> {
         }
         (None, default) => default,
     };
-    input::check_output(&out, &path)?;
-    let law = contact_law::law_of(&path, arguments.frame, arguments.law, arguments.stiffness)?;
+    input::check_output(&out, path)?;
+    let law = contact_law::law_of(path, arguments.frame, arguments.law, arguments.stiffness)?;
     law.check()?;
     match arguments.dimension {
-        3 => run_in::<3>((&path, &out), arguments, (&law, &relaxer), task),
-        _ => run_in::<2>((&path, &out), arguments, (&law, &relaxer), task),
+        3 => run_in::<3>((path, &out), arguments, (&law, relaxer), task),
+        _ => run_in::<2>((path, &out), arguments, (&law, relaxer), task),
     }
 }
 
@@ -201,7 +205,7 @@ fn run_in<const D: usize>(
         return Err(format!("{name}: a force became infinite or not a number; nothing is written").into());
     }
     let network = ContactNetwork::new(&state, law)?;
-    write_state(out, &state, (&network, law), &properties)?;
+    write_state(out, &state, (&network, law), &[], &properties)?;
     print(&table(&first, &Numbers::of(&state, &network), &end, out))?;
     let moves = !is_at_rest(end.stop, end.residual);
     Ok(exit_code::of_relaxation(moves.then(|| format!("{name} ({:?})", end.stop))))

@@ -127,6 +127,9 @@ pub struct ModeSummary {
     pub residual: f64,
     /// Participation ratio, (Σ|e_i|²)²/(N Σ|e_i|⁴) \[1\].
     pub participation_ratio: f64,
+    /// e, D values per disk, Σ |e_i|² = 1; 0 for held disks and those off the backbone \[1\]. Not in the JSON.
+    #[serde(skip)]
+    pub displacements: Vec<f64>,
 }
 
 impl Vibrations {
@@ -138,12 +141,20 @@ impl Vibrations {
                     eigenvalue: mode.eigenvalue,
                     residual: mode.residual,
                     participation_ratio: mode.participation_ratio,
+                    displacements: mode.displacements.as_flattened().to_vec(),
                 };
                 let lowest = found.modes.iter().map(summary).collect();
                 Vibrations::Found { translation_count: found.translation_count, lowest }
             }
             Err(error) => Vibrations::Refused(error.to_string()),
         }
+    }
+
+    /// The names `mode_1`, `mode_2`, … and the vectors of the modes; none if they were refused.
+    pub fn columns(&self) -> Vec<(String, &[f64])> {
+        let Vibrations::Found { lowest, .. } = self else { return Vec::new() };
+        let names = (1..=lowest.len()).map(|number| format!("mode_{number}"));
+        names.zip(lowest.iter().map(|mode| mode.displacements.as_slice())).collect()
     }
 
     /// The modes as lines.

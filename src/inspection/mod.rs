@@ -77,9 +77,9 @@ pub struct Inspection {
     pub largest_overlap: f64,
     /// Its certificate.
     pub certificate: Certificate,
-    /// Contact forces of the backbone; absent without one.
+    /// Contact forces of the backbone over the mean contact force; absent without a backbone.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub forces: Option<ForceDistribution>,
+    pub force_over_mean_contact_force: Option<ForceDistribution>,
     /// Elastic moduli, or why there are none.
     #[cfg(feature = "linear")]
     pub moduli: Elasticity,
@@ -179,7 +179,7 @@ impl Inspection {
         settings: &VerdictSettings,
     ) -> Result<Self, PackingError> {
         let law = &choice;
-        let state = State::new(packing, law)?;
+        let state = State::new(packing, law).map_err(|error| error.with_labels(packing.labels()))?;
         let verdict = RestVerdict::of(&[("in the file", &state)], law, &choice, None, settings);
         let network = state.network;
         let volume = packing.domain().volume();
@@ -215,7 +215,7 @@ impl Inspection {
                 / contacts.len().max(1) as f64,
             largest_overlap: largest(&mut contacts.iter().map(|contact| contact.overlap)),
             certificate: Certificate::of(packing, law, None)?,
-            forces: ForceDistribution::of(&network),
+            force_over_mean_contact_force: ForceDistribution::of(&network),
             #[cfg(feature = "linear")]
             moduli: Elasticity::of(packing, law),
             #[cfg(feature = "linear")]
@@ -322,15 +322,16 @@ impl std::fmt::Display for Inspection {
         writeln!(f, "{:<28} mean {}, largest {} [length]", "overlap", self.mean_overlap, self.largest_overlap)?;
         writeln!(f, "{:<28} {:e} [force]", "largest net force", self.largest_net_force)?;
         write_certificate(f, &self.certificate)?;
-        if let Some(forces) = &self.forces {
+        if let Some(forces) = &self.force_over_mean_contact_force {
             let over = |value: f64| format!("{value:.4}");
-            writeln!(f, "{:<28} {} to {} [1]", "force / mean, range", over(forces.smallest), over(forces.largest))?;
+            let range = [over(forces.smallest), over(forces.largest)];
+            writeln!(f, "{:<28} range {} [1]", "force over mean contact force", range.join(" to "))?;
             let percentiles: Vec<String> = PERCENTILES
                 .iter()
                 .zip(forces.percentiles)
                 .map(|(at, value)| format!("{at} %: {}", over(value)))
                 .collect();
-            writeln!(f, "{:<28} {} [1]", "force / mean, percentiles", percentiles.join("  "))?;
+            writeln!(f, "{:<28} percentiles {} [1]", "force over mean contact force", percentiles.join("  "))?;
         }
         #[cfg(feature = "linear")]
         {

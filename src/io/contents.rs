@@ -8,7 +8,8 @@ use crate::packing::Packing;
 pub struct Contents<const D: usize> {
     /// The packing.
     pub packing: Packing<D>,
-    /// The key-value pairs of the comment line of extended XYZ, in its order; none in other formats.
+    /// The key-value pairs of the comment line of extended XYZ, in its order, or the arrays without an axis of a NumPy archive; none in other
+    /// formats.
     pub properties: Vec<(String, String)>,
     /// What was read but should be known.
     pub warnings: Vec<ReadWarning>,

@@ -1,11 +1,12 @@
 //! Packings in files: [`read_packing`] recognises the format by the content, [`write_packing`] writes extended XYZ,
-//! [`write_lammps_data`] LAMMPS data.
+//! [`write_lammps_data`] LAMMPS data, [`write_npz`] NumPy archives.
 //!
 //! | format | read | written | radii from |
 //! |---|---|---|---|
 //! | extended XYZ (ASE, OVITO) | yes | yes, to the same bits | column `radius` |
 //! | LAMMPS data, `atom_style sphere` | yes | yes, without corrections | column `diameter` |
 //! | LAMMPS text dump | yes | no | column `radius` or `diameter` |
+//! | NumPy archive `.npz` | yes | yes, to the same bits | array `radii` or `diameters` |
 //!
 //! Files compressed by gzip or zstd are decompressed.
 //!
@@ -23,6 +24,7 @@ pub mod extended_xyz;
 mod frame;
 pub mod lammps_data;
 pub mod lammps_dump;
+pub mod npz;
 mod plane;
 mod read_error;
 mod read_warning;
@@ -38,6 +40,7 @@ use std::path::Path;
 pub use atomic::{WriteError, check_place, write_atomically};
 pub use contents::Contents;
 pub use frame::Frame;
+pub use npz::{ArchiveError, write_npz};
 pub use read_error::ReadError;
 pub use read_warning::ReadWarning;
 pub use unfinished::{remove_unfinished, try_name};
@@ -55,7 +58,7 @@ enum Format {
     LammpsDump,
 }
 
-/// Reads a packing from extended XYZ, LAMMPS data or a LAMMPS text dump, recognised by the content. Of several frames
+/// Reads a packing from extended XYZ, LAMMPS data, a LAMMPS text dump or a NumPy archive, recognised by the content. Of several frames
 /// the last is read.
 ///
 /// Disks are in the order of the file for extended XYZ, and in ascending order of their ids for LAMMPS (whose own order
@@ -100,7 +103,12 @@ pub fn read_frame<const D: usize>(path: impl AsRef<Path>, frame: Frame) -> Resul
 /// ```
 pub fn read_contents<const D: usize>(path: impl AsRef<Path>, frame: Frame) -> Result<Contents<D>, ReadError> {
     const { assert!(D == 2 || D == 3, "packings have two or three dimensions") };
-    with_source(path.as_ref(), |source, format| {
+    let path = path.as_ref();
+    let bytes = bytes_of(path)?;
+    if npz::is_archive(&bytes) {
+        return npz::parse(path, &bytes, frame);
+    }
+    with_source(path, &bytes, |source, format| {
         let mut contents = match format {
             Format::ExtendedXyz => extended_xyz::parse(source, frame),
             Format::LammpsData => lammps_data::parse(source, frame),
@@ -118,7 +126,12 @@ pub fn read_contents<const D: usize>(path: impl AsRef<Path>, frame: Frame) -> Re
 /// # Errors
 /// [`ReadError`] as for [`read_packing`], without those of the disks.
 pub fn frame_count(path: impl AsRef<Path>) -> Result<usize, ReadError> {
-    with_source(path.as_ref(), |source, format| match format {
+    let path = path.as_ref();
+    let bytes = bytes_of(path)?;
+    if npz::is_archive(&bytes) {
+        return npz::frame_count(path, &bytes);
+    }
+    with_source(path, &bytes, |source, format| match format {
         Format::ExtendedXyz => extended_xyz::frame_count(source),
         Format::LammpsData => Ok(1),
         Format::LammpsDump => Ok(lammps_dump::starts(source).len()),
@@ -126,7 +139,7 @@ pub fn frame_count(path: impl AsRef<Path>) -> Result<usize, ReadError> {
 }
 
 /// The key-value pairs of the packing that [`read_packing`] would read: those of the comment line of extended XYZ, in
-/// its order; none in other formats.
+/// its order, arrays without an axis of a NumPy archive; none in other formats.
 ///
 /// # Errors
 /// [`ReadError`] as for [`read_packing`], for the comment line alone.
@@ -146,17 +159,30 @@ pub fn read_properties(path: impl AsRef<Path>) -> Result<Vec<(String, String)>, 
 /// # Errors
 /// See [`read_properties`]; also [`ReadError::NoSuchFrame`].
 pub fn properties_of_frame(path: impl AsRef<Path>, frame: Frame) -> Result<Vec<(String, String)>, ReadError> {
-    with_source(path.as_ref(), |source, format| match format {
+    let path = path.as_ref();
+    let bytes = bytes_of(path)?;
+    if npz::is_archive(&bytes) {
+        return npz::properties(path, &bytes, frame);
+    }
+    with_source(path, &bytes, |source, format| match format {
         Format::ExtendedXyz => extended_xyz::properties(source, frame),
         Format::LammpsData | Format::LammpsDump => Ok(Vec::new()),
     })
 }
 
-/// Opens a file, recognises its format and calls `read`.
-fn with_source<T>(path: &Path, read: impl FnOnce(&Source, Format) -> Result<T, ReadError>) -> Result<T, ReadError> {
+/// The bytes of a file, decompressed.
+fn bytes_of(path: &Path) -> Result<Vec<u8>, ReadError> {
     let bytes = std::fs::read(path).map_err(|source| ReadError::Io { path: path.into(), source })?;
-    let bytes = decompress::decompressed(path, bytes)?;
-    let text = std::str::from_utf8(&bytes).map_err(|error| ReadError::NotText {
+    decompress::decompressed(path, bytes)
+}
+
+/// Recognises the format of a text and calls `read`.
+fn with_source<T>(
+    path: &Path,
+    bytes: &[u8],
+    read: impl FnOnce(&Source, Format) -> Result<T, ReadError>,
+) -> Result<T, ReadError> {
+    let text = std::str::from_utf8(bytes).map_err(|error| ReadError::NotText {
         path: path.into(),
         line: 1 + bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count(),
     })?;

@@ -5,7 +5,7 @@ use crate::io::source::Source;
 
 /// Largest difference of z over the largest radius at which disks lie in one plane \[1\]. It changes a distance of
 /// two disks by less than its square, 10⁻¹⁸ of a radius, which is below the rounding of the coordinates.
-const FLATNESS: f64 = 1e-9;
+pub(super) const FLATNESS: f64 = 1e-9;
 
 /// The third coordinates of the disks of a plane, which must be equal.
 pub(super) struct Plane {

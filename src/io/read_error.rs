@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::io::npz::error::ArchiveError;
 use crate::packing::PackingError;
 
 /// Why a file was not read as a packing. Line numbers start at 1; long values are shortened.
@@ -31,7 +32,9 @@ pub enum ReadError {
         source: std::io::Error,
     },
     /// The file is not UTF-8 text.
-    #[error("{path}, line {line}: not text; of binary files only those compressed by gzip or zstd are read")]
+    #[error(
+        "{path}, line {line}: not text; of binary files only NumPy archives (.npz) and those compressed by gzip or zstd are read"
+    )]
     NotText {
         /// The file.
         path: PathBuf,
@@ -40,7 +43,7 @@ pub enum ReadError {
     },
     /// The format is unknown.
     #[error(
-        "{path}: no known format; it starts with `{first_line}`. Known are extended XYZ (first line: the number of disks), LAMMPS data (a line `N atoms` before the sections) and LAMMPS text dump (first line: `ITEM: ...`)"
+        "{path}: no known format; it starts with `{first_line}`. Known are extended XYZ (first line: the number of disks), LAMMPS data (a line `N atoms` before the sections), LAMMPS text dump (first line: `ITEM: ...`) and NumPy archives (.npz)"
     )]
     UnknownFormat {
         /// The file.
@@ -248,6 +251,14 @@ pub enum ReadError {
         frame: usize,
         /// Number of frames.
         frame_count: usize,
+    },
+    /// A NumPy archive does not contain a packing.
+    #[error("{path}: {source}")]
+    Archive {
+        /// The file.
+        path: PathBuf,
+        /// The problem.
+        source: Box<ArchiveError>,
     },
     /// The disks are invalid.
     #[error("{path}: {source}")]

@@ -18,7 +18,7 @@ pub(super) const AXES: [char; 3] = ['x', 'y', 'z'];
 /// The rounding of such a coordinate is 2·10⁻¹⁰ radii; overlaps at the lowest pressures of the study are 10⁻⁵ radii. No
 /// packing near the origin extends so far: a box of a million radii has space for 10¹¹ disks, more than there are
 /// indices.
-const FARTHEST: f64 = 1e6;
+pub(super) const FARTHEST: f64 = 1e6;
 
 /// A file split into lines. Line indices start at 0 here and at 1 in errors.
 pub(super) struct Source<'a> {
@@ -167,14 +167,7 @@ impl<'a> Source<'a> {
 
     /// Index of the requested frame among `count`.
     pub fn frame(&self, frame: Frame, count: usize) -> Result<usize, ReadError> {
-        let index = match frame {
-            Frame::Last => count.saturating_sub(1),
-            Frame::Index(index) => index,
-        };
-        if index < count {
-            return Ok(index);
-        }
-        Err(ReadError::NoSuchFrame { path: self.path.into(), frame: index, frame_count: count })
+        frame.index_of(self.path, count)
     }
 
     /// Refuses the corner of a box that is more than [`FARTHEST`] sides away from the origin.

@@ -55,7 +55,12 @@ pub fn write_packing<const D: usize>(
     write_atomically(path, |writer| write(writer, packing, columns, properties))
 }
 
-fn check(path: &Path, disks: usize, columns: &[Column], properties: &[(&str, &str)]) -> Result<(), WriteError> {
+pub(super) fn check(
+    path: &Path,
+    disks: usize,
+    columns: &[Column],
+    properties: &[(&str, &str)],
+) -> Result<(), WriteError> {
     check_names(path, &RESERVED_COLUMNS, columns.iter().map(|column| column.name))?;
     check_names(path, &RESERVED_KEYS, properties.iter().map(|&(key, _)| key))?;
     for column in columns {

@@ -1,11 +1,11 @@
 //! [`Fluctuations`]: the standard deviation of a quantity in rings, h(r).
 //!
 //! ```text
-//! h(r) = √⟨(x − ⟨x⟩)²⟩        ⟨·⟩ over the bonds or disks of the ring around r
+//! h(r)² = Σ (x − ⟨x⟩)²/(n − 1)        over the n bonds or disks of the ring around r
 //! ```
 //!
-//! x = d_∥ of the bonds gives h_∥, x = d_r of the disks h_r. With n members s² = Σ (x − ⟨x⟩)²/(n − 1). Its standard
-//! error follows from the fourth moment for any distribution: var s² = (m₄ − s⁴ (n − 3)/(n − 1))/n.
+//! x = d_∥ of the bonds gives h_∥, x = d_r of the disks h_r. The standard error of h² follows from the fourth moment m₄ for any
+//! distribution: var h² = (m₄ − h⁴ (n − 3)/(n − 1))/n.
 //!
 //! # Source
 //! Ellenbroek, Somfai, van Hecke, van Saarloos (2006), Phys. Rev. Lett. 97, 258001. Variance of s²: Cramér (1946),

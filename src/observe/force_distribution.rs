@@ -22,18 +22,18 @@ const BIN_LIMIT: usize = 10_000;
 pub struct ForceDistribution {
     /// Number of contacts.
     pub contact_count: usize,
-    /// Mean force \[force\].
-    pub mean: f64,
-    /// Smallest force over the mean \[1\].
+    /// Mean contact force \[force\].
+    pub mean_contact_force: f64,
+    /// Smallest force over the mean contact force \[1\].
     pub smallest: f64,
-    /// Largest force over the mean \[1\].
+    /// Largest force over the mean contact force \[1\].
     pub largest: f64,
-    /// Percentiles [`PERCENTILES`] of the forces over the mean, by linear interpolation between the order statistics
+    /// Percentiles [`PERCENTILES`] of the forces over the mean contact force, by linear interpolation between the order statistics
     /// \[1\].
     pub percentiles: [f64; 5],
-    /// Width of a bin \[1\].
+    /// Width of a bin of the force over the mean contact force \[1\].
     pub bin_width: f64,
-    /// P in bins from 0 to the last bin that is not empty \[1\].
+    /// P of the force over the mean contact force, in bins from 0 to the last bin that is not empty \[1\].
     pub density: Vec<f64>,
 }
 
@@ -63,7 +63,15 @@ impl ForceDistribution {
         let mut density = vec![0.0; bin(largest) + 1];
         forces.iter().for_each(|&force| density[bin(force)] += 1.0);
         density.iter_mut().for_each(|value| *value /= contact_count as f64 * BIN_WIDTH);
-        Some(ForceDistribution { contact_count, mean, smallest, largest, percentiles, bin_width: BIN_WIDTH, density })
+        Some(ForceDistribution {
+            contact_count,
+            mean_contact_force: mean,
+            smallest,
+            largest,
+            percentiles,
+            bin_width: BIN_WIDTH,
+            density,
+        })
     }
 }
 
@@ -75,7 +83,10 @@ mod tests {
     fn forces_in_arithmetic_progression_have_their_percentiles_and_bins() {
         // 0, 1, …, 20 over their mean 10: the p-th percentile is p/50, two forces per bin of 0.2.
         let found = ForceDistribution::of_forces((0..21).rev().map(f64::from).collect()).expect("forces");
-        assert_eq!((found.contact_count, found.mean, found.smallest, found.largest), (21, 10.0, 0.0, 2.0));
+        assert_eq!(
+            (found.contact_count, found.mean_contact_force, found.smallest, found.largest),
+            (21, 10.0, 0.0, 2.0)
+        );
         for (value, percent) in found.percentiles.iter().zip(PERCENTILES) {
             // Interpolated between numbers up to 2.
             assert!((value - f64::from(percent) / 50.0).abs() < 1e-15);

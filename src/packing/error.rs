@@ -103,9 +103,22 @@ pub enum PackingError {
     /// Two centres at one point: the direction of their force is undefined.
     #[error("disks {first} and {second} have the same centre: the direction of their contact force is undefined")]
     CoincidentCentres {
-        /// Index of the first disk, from 0.
+        /// The first disk: its index, from 0, or its label if a command reports the error.
         first: usize,
-        /// Index of the second disk, from 0.
+        /// The second disk.
         second: usize,
     },
+}
+
+impl PackingError {
+    /// The same error with disks named by their labels, as a file numbers them.
+    pub(crate) fn with_labels(self, labels: &[u64]) -> Self {
+        let label = |disk: usize| labels.get(disk).and_then(|&label| usize::try_from(label).ok()).unwrap_or(disk);
+        match self {
+            PackingError::CoincidentCentres { first, second } => {
+                PackingError::CoincidentCentres { first: label(first), second: label(second) }
+            }
+            other => other,
+        }
+    }
 }

@@ -9,9 +9,9 @@ use crate::analysis::Analysis;
 use crate::certificate::Certificate;
 use crate::displacement::DisplacementField;
 use crate::io::{Column, write_atomically, write_packing};
-use crate::law::choice::LawChoice;
 use crate::packing::Packing;
 use crate::processor::{Processor, Vectors};
+use crate::report::columns::ResponseColumns;
 use crate::report::csv;
 use crate::report::data_file::DataFile;
 use crate::report::error::ReportError;
@@ -19,8 +19,8 @@ use crate::report::output::Kind;
 use crate::report::output::OutputFolder;
 use crate::report::rows::law;
 use crate::report::rows::section::done;
+use crate::report::state_file::numbers_of;
 use crate::run::{Report, SampleReport, SampleResult};
-use crate::vector::Vector;
 
 /// Writes a report into `folder`, which is created if necessary. Returns the paths of the files in the order written.
 ///
@@ -156,13 +156,17 @@ impl Files<'_> {
                 DataFile::Displacement => {
                     let (after, certificate) = (&result.inflated.after, &result.inflation.after.certificate);
                     let origin = origin("inflated", after.pressure, certificate);
-                    self.field(&path, after.packing.get(), &result.response.field, &origin)?;
+                    #[cfg(feature = "linear")]
+                    let plastic = result.plastic_part.as_ref().and_then(|it| it.measured()).map(|it| &it.field);
+                    #[cfg(not(feature = "linear"))]
+                    let plastic = None;
+                    self.field(&path, after.packing.get(), (&result.response.field, plastic), &origin)?;
                 }
                 DataFile::Deflated => {
                     let rest = result.inflated.deflated.as_ref().zip(result.inflation.deflated.as_ref());
                     if let (Some(field), Some((rest, summary))) = (&result.cycle_field, rest) {
                         let origin = origin("deflated", rest.pressure, &summary.certificate);
-                        self.field(&path, rest.packing.get(), field, &origin)?;
+                        self.field(&path, rest.packing.get(), (field, None), &origin)?;
                     }
                 }
                 DataFile::OfResponse(file) => {
@@ -216,41 +220,16 @@ impl Files<'_> {
         Ok(())
     }
 
-    /// A packing with its displacements. Held disks and the centre have none and do not count.
+    /// A packing with its displacements, and their plastic part, if that is known.
     fn field(
         &mut self,
         name: &str,
         packing: &Packing<2>,
-        field: &DisplacementField<2>,
+        (field, plastic): (&DisplacementField<2>, Option<&DisplacementField<2>>),
         origin: &Origin<'_>,
     ) -> Result<(), ReportError> {
-        let count = packing.len();
-        let mut displacement: Vec<Vector<2>> = vec![[0.0; 2]; count];
-        let (mut radial, mut transverse, mut counted) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
-        for disk in &field.disks {
-            displacement[disk.disk] = disk.displacement;
-            radial[disk.disk] = disk.radial;
-            transverse[disk.disk] = disk.transverse();
-            counted[disk.disk] = f64::from(u8::from(disk.counted));
-        }
-        let columns = [
-            Column { name: "displacement", width: 2, values: displacement.as_flattened() },
-            Column { name: "radial", width: 1, values: &radial },
-            Column { name: "transverse", width: 1, values: &transverse },
-            Column { name: "counted", width: 1, values: &counted },
-        ];
-        self.packing(name, packing, &columns, origin)
-    }
-}
-
-/// The parameters of a law, in the form that `jamscope inspect` reads.
-pub(super) fn numbers_of(law: &LawChoice) -> Vec<(&'static str, String)> {
-    match law {
-        LawChoice::Hertzian(law) => vec![("stiffness", format!("{:?}", law.stiffness))],
-        LawChoice::Hookean(law) => vec![("stiffness", format!("{:?}", law.stiffness))],
-        LawChoice::PowerLaw(law) => {
-            vec![("stiffness", format!("{:?}", law.energy_scale)), ("exponent", format!("{:?}", law.exponent))]
-        }
+        let columns = ResponseColumns::of(packing.len(), field, plastic);
+        self.packing(name, packing, &columns.columns(), origin)
     }
 }
 

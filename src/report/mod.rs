@@ -25,6 +25,7 @@
 //! | `NAME.protocol.csv` | the end state of every relaxer, if the scene compares them |
 //! | `report.html` | all of it on one page (feature `plot`) |
 
+mod columns;
 pub mod csv;
 mod curve;
 mod data_file;
@@ -46,6 +47,7 @@ mod state_file;
 pub mod study;
 pub mod table;
 
+pub use columns::DiskResponse;
 pub use error::ReportError;
 #[cfg(feature = "fit")]
 pub use files::write_study;

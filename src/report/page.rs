@@ -9,6 +9,7 @@ use crate::report::figures::map::MapFrame;
 use crate::report::figures::{Figure, FigureError, escaped};
 use crate::report::number::{count, significant};
 use crate::report::response_page;
+use crate::report::rows::estimators::sentences;
 use crate::report::rows::section::{Section, done};
 use crate::report::rows::{Times, law, sections, settings};
 use crate::response::Response;
@@ -80,8 +81,9 @@ pub fn analysis_page(analyses: &[Analysis]) -> Result<String, FigureError> {
     let names: Vec<&str> = analyses.iter().map(|analysis| analysis.name.as_str()).collect();
     let _ = write!(
         html,
-        "<section aria-label=\"Numbers\">\n<h2>Numbers</h2>\n{}</section>\n",
-        numbers_table(&names, &crate::report::rows::analysis::sections(analyses))
+        "<section aria-label=\"Numbers\">\n<h2>Numbers</h2>\n{}{}</section>\n",
+        numbers_table(&names, &crate::report::rows::analysis::sections(analyses)),
+        estimators(responses.iter().copied())
     );
     let law = analyses.first().map_or(String::new(), |first| law(&first.law));
     let _ = write!(
@@ -249,12 +251,23 @@ fn numbers(report: &Report) -> String {
         "<section aria-label=\"Numbers\">\n<h2>Numbers</h2>\n{}",
         numbers_table(&names, &sections(report, &report.samples, Times::LeftOut))
     );
+    html.push_str(&estimators(report.samples.iter().filter_map(done).map(|result| &result.response)));
     #[cfg(feature = "linear")]
     if let Some(text) = crate::report::protocol::summary(report) {
         let _ = writeln!(html, "<p>{}</p>", escaped(&text));
     }
     html.push_str("</section>\n");
     html
+}
+
+/// The estimator of each observable.
+fn estimators<'a>(responses: impl Iterator<Item = &'a Response>) -> String {
+    let sentences = sentences(responses);
+    let each = sentences.iter().map(|sentence| format!("<li>{}</li>\n", escaped(sentence)));
+    match &sentences[..] {
+        [] => String::new(),
+        _ => format!("<h3>Estimators</h3>\n<ul>\n{}</ul>\n", each.collect::<String>()),
+    }
 }
 
 /// A table with one column per name.

@@ -2,8 +2,10 @@
 //! [`WIDTH`] wide.
 
 use crate::analysis::Analysis;
-use crate::report::rows::section::Section;
+use crate::report::rows::estimators::sentences;
+use crate::report::rows::section::{Section, done};
 use crate::report::rows::{Times, failures, refusals, sections};
+use crate::response::Response;
 use crate::run::{Report, SampleReport};
 use crate::verdict::RestVerdict;
 
@@ -12,6 +14,9 @@ pub const WIDTH: usize = 100;
 
 /// Width of the column of labels, in characters.
 const LABEL_WIDTH: usize = 40;
+
+/// Indent of a second line, in characters.
+const INDENT: usize = 4;
 
 /// Number of samples in a row.
 const SAMPLES_ABREAST: usize = 3;
@@ -29,6 +34,7 @@ pub fn terminal_table(report: &Report) -> String {
         let names = samples.iter().map(|sample| sample.name.as_str());
         columns(names, &sections(report, samples, Times::Shown), &mut lines);
     }
+    estimators(report.samples.iter().filter_map(done).map(|result| &result.response), &mut lines);
     #[cfg(feature = "linear")]
     if let Some(text) = crate::report::protocol::summary(report) {
         lines.push(String::new());
@@ -47,6 +53,7 @@ pub fn analysis_table(analyses: &[Analysis]) -> String {
         let names = analyses.iter().map(|analysis| analysis.name.as_str());
         columns(names, &crate::report::rows::analysis::sections(analyses), &mut lines);
     }
+    estimators(analyses.iter().map(|analysis| &analysis.response), &mut lines);
     for analysis in analyses {
         for (what, reason) in crate::report::rows::response::refusals(&analysis.response) {
             lines.push(String::new());
@@ -54,6 +61,18 @@ pub fn analysis_table(analyses: &[Analysis]) -> String {
         }
     }
     text(&lines)
+}
+
+/// The estimator of each observable.
+fn estimators<'a>(responses: impl Iterator<Item = &'a Response>, lines: &mut Vec<String>) {
+    let sentences = sentences(responses);
+    if !sentences.is_empty() {
+        lines.push("Estimators".into());
+    }
+    for sentence in sentences {
+        let wrapped = wrapped(&sentence).into_iter().enumerate();
+        lines.extend(wrapped.map(|(at, line)| format!("{}{line}", if at == 0 { "  " } else { "    " })));
+    }
 }
 
 /// Warnings about states that are not at rest, with likely causes.
@@ -109,12 +128,12 @@ fn line<'a>(label: &str, cells: impl Iterator<Item = &'a str>) -> String {
     line
 }
 
-/// Text in lines of at most [`WIDTH`] characters, broken between words; a longer word has its own line.
+/// Text in lines of at most [`WIDTH`] characters, less an indent of four, broken between words; a longer word has its own line.
 fn wrapped(text: &str) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= WIDTH => {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= WIDTH - INDENT => {
                 line.push(' ');
                 line.push_str(word);
             }

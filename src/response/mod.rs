@@ -142,6 +142,9 @@ pub struct Response {
     /// The displacement field.
     #[serde(skip)]
     pub field: DisplacementField<2>,
+    /// Labels of all disks, by their indices in the field, the bonds and the contacts.
+    #[serde(skip)]
+    pub labels: Vec<u64>,
 }
 
 /// Spectrum and correlation of one ring, and the fits to the spectrum.
@@ -220,10 +223,16 @@ impl Response {
             bond_changes: observables
                 .bond_changes
                 .map(|settings| BondChanges::between(&before, &after, centre, settings.bonds)),
+            labels: before.packing.labels().to_vec(),
             field,
         };
         response.phase = response.phase(pressure_change, increase);
         response
+    }
+
+    /// The labels of two disks.
+    pub(crate) fn labels_of(&self, disks: [u32; 2]) -> [u64; 2] {
+        disks.map(|disk| self.labels[disk as usize])
     }
 
     /// The phase by all evidence; `increase` is d_0.

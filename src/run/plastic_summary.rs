@@ -38,6 +38,7 @@ pub(super) fn of(
         share: plastic.share,
         participation_ratio: plastic.participation_ratio,
         radial_profile: RadialProfile::of(&plastic.field, ring_width),
+        field: plastic.field,
         first_opening: openings.reduce(f64::min),
         linear_pressure_change: increase * per_increase,
         negative_eigenvalue_count: response.negative_eigenvalue_count,

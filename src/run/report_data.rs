@@ -99,6 +99,9 @@ pub struct PlasticSummary {
     pub share: f64,
     /// Participation ratio, 1 if all disks move equally \[1\].
     pub participation_ratio: f64,
+    /// d − d_0 u of each disk.
+    #[serde(skip)]
+    pub field: DisplacementField<2>,
     /// Mean radial part in rings.
     pub radial_profile: RadialProfile,
     /// d_0 at which the linear response opens its first contact; absent if it opens none \[length\].

@@ -222,16 +222,21 @@ fn inspect_certifies_and_gives_forces_moduli_and_modes() {
     assert_eq!(certificate["contacts"]["contact_count"], found["backbone_contact_count"]);
     assert!(certificate["relative_residual"].as_f64().expect("a number") < 1e-10);
     assert!(certificate.get("criterion").is_none(), "nobody relaxed it here");
-    let forces = &found["forces"];
+    let forces = &found["force_over_mean_contact_force"];
     assert_eq!(forces["contact_count"], found["backbone_contact_count"]);
-    assert_eq!(forces["mean"], found["mean_contact_force"]);
+    assert_eq!(forces["mean_contact_force"], found["mean_contact_force"]);
     let sum: f64 = forces["density"].as_array().expect("bins").iter().map(|bin| bin.as_f64().expect("a number")).sum();
     // Some forty bins of whole numbers over the count.
     assert!((sum * forces["bin_width"].as_f64().expect("a number") - 1.0).abs() < 1e-13);
     let plain = String::from_utf8(jamscope(&["inspect", text(&path)]).stdout).expect("Unicode");
-    for line in
-        ["contacts - isostatic", "bucklers", "rounding floor", "virial", "percentiles", "Hertzian, stiffness 200000"]
-    {
+    for line in [
+        "contacts - isostatic",
+        "bucklers",
+        "rounding floor",
+        "virial",
+        "force over mean contact force percentiles",
+        "Hertzian, stiffness 200000",
+    ] {
         assert!(plain.contains(line), "no {line:?} in {plain}");
     }
     if cfg!(feature = "linear") {

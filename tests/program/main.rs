@@ -4,6 +4,8 @@ mod analysis;
 #[cfg(feature = "cli")]
 mod any_field;
 #[cfg(feature = "cli")]
+mod columns;
+#[cfg(feature = "cli")]
 mod command_line;
 #[cfg(all(feature = "fit", feature = "linear"))]
 mod ensembles;

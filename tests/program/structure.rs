@@ -10,15 +10,18 @@ const LONGEST_FILE: usize = 450;
 const LONG: [&str; 1] = ["reference::bessel::modified_tables"];
 
 /// Names of files that are standard terms of physics, mathematics, numerical computing or programming.
-const STANDARD: [&str; 151] = [
+const STANDARD: [&str; 156] = [
     "analyse",
     "angular",
+    "archive",
+    "array",
     "atomic",
     "bessel",
     "bootstrap",
     "chart",
     "check",
     "coefficients",
+    "columns",
     "compare",
     "complex",
     "components",
@@ -46,6 +49,7 @@ const STANDARD: [&str; 151] = [
     "ensemble",
     "error",
     "estimates",
+    "estimators",
     "exact",
     "execute",
     "exponential",
@@ -96,6 +100,7 @@ const STANDARD: [&str; 151] = [
     "multipoles",
     "neighbours",
     "newton",
+    "npz",
     "number",
     "observables",
     "observe",

@@ -6,8 +6,6 @@ pub(crate) mod response;
 #[cfg(feature = "fit")]
 pub(crate) mod transition;
 
-use std::fmt::Write as _;
-
 use crate::observe::{AngularProfile, RadialProfile};
 use crate::report::curve::{curves, fitted_range};
 use crate::response::Response;
@@ -17,7 +15,7 @@ use crate::strain::ShearState;
 struct Table {
     names: Vec<String>,
     units: Vec<&'static str>,
-    rows: Vec<Vec<Option<f64>>>,
+    rows: Vec<String>,
 }
 
 impl Table {
@@ -35,28 +33,24 @@ impl Table {
 
     /// Adds a row of numbers.
     fn row<const N: usize>(&mut self, values: [f64; N]) {
-        self.rows.push(values.map(Some).to_vec());
+        self.cells(values.map(Some).to_vec());
     }
 
     /// Adds a row in which some cells are empty.
     fn cells(&mut self, cells: Vec<Option<f64>>) {
-        self.rows.push(cells);
+        // Integers below 2⁵³ are written without a decimal point.
+        let cells = cells.into_iter().map(|cell| cell.map_or(String::new(), |value| value.to_string()));
+        self.rows.push(cells.collect::<Vec<_>>().join(","));
+    }
+
+    /// Adds a row with integers of more digits than an `f64` has: labels.
+    fn mixed(&mut self, cells: &[&dyn std::fmt::Display]) {
+        self.rows.push(cells.iter().map(|cell| cell.to_string()).collect::<Vec<_>>().join(","));
     }
 
     fn text(&self) -> String {
-        let mut text = format!("{}\n{}\n", self.names.join(","), self.units.join(","));
-        for row in &self.rows {
-            for (column, value) in row.iter().enumerate() {
-                let comma = if column > 0 { "," } else { "" };
-                text.push_str(comma);
-                if let Some(value) = value {
-                    // Integers below 2⁵³ are written without a decimal point.
-                    write!(text, "{value}").expect("a String takes all that is written to it");
-                }
-            }
-            text.push('\n');
-        }
-        text
+        let head = format!("{}\n{}\n", self.names.join(","), self.units.join(","));
+        head + &self.rows.iter().map(|row| format!("{row}\n")).collect::<String>()
     }
 }
 

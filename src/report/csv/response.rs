@@ -153,8 +153,8 @@ fn multipoles(response: &Response) -> Option<String> {
     Some(table.text())
 }
 
-/// Contacts made (1) and broken (−1): one row per contact. Disks are given by their row in the packing files, from 0;
-/// midpoints are relative to the inflated disk.
+/// Contacts made (1) and broken (−1): one row per contact. Disks are given by their labels, the ids of the packing files; midpoints are
+/// relative to the inflated disk.
 fn contact_changes(response: &Response) -> Option<String> {
     let mut table = Table::new(&[
         ("change", "1"),
@@ -168,7 +168,8 @@ fn contact_changes(response: &Response) -> Option<String> {
     for (change, contacts) in [(1.0, &changes.made), (-1.0, &changes.broken)] {
         for contact in contacts {
             let [x, y] = contact.midpoint;
-            table.row([change, f64::from(contact.first), f64::from(contact.second), x, y, contact.distance]);
+            let [first, second] = response.labels_of([contact.first, contact.second]);
+            table.mixed(&[&change, &first, &second, &x, &y, &contact.distance]);
         }
     }
     Some(table.text())
@@ -187,8 +188,8 @@ fn bond_changes(response: &Response) -> Option<String> {
     ]);
     for bond in &response.bond_changes.as_ref()?.bonds {
         let [x, y] = bond.midpoint;
-        let ends = [f64::from(bond.first), f64::from(bond.second)];
-        table.row([ends[0], ends[1], x, y, bond.distance, bond.parallel, bond.length_change]);
+        let [first, second] = response.labels_of([bond.first, bond.second]);
+        table.mixed(&[&first, &second, &x, &y, &bond.distance, &bond.parallel, &bond.length_change]);
     }
     Some(table.text())
 }

@@ -1,6 +1,7 @@
 //! The numbers of each sample, row by row, for the terminal table and for the page.
 
 pub(crate) mod analysis;
+pub(crate) mod estimators;
 mod phase_frequency;
 pub(crate) mod response;
 pub(crate) mod section;

@@ -10,6 +10,7 @@ use crate::observe::penetration_length::Penetration;
 #[cfg(feature = "fit")]
 use crate::report::curve;
 use crate::report::number::{count, significant};
+use crate::report::rows::estimators::negative_powers;
 use crate::report::rows::refused_of;
 use crate::report::rows::section::{Rows, Section};
 #[cfg(feature = "fit")]
@@ -116,6 +117,10 @@ fn angular(responses: Vec<Option<&Response>>) -> Section {
     let mut rows = Rows::new(responses);
     rows.add("ring, r/R", |it| Some(significant(ring(it)?.relative_radius, 3)))
         .add("disks in the ring", |it| Some(count(ring(it)?.spectrum.disk_count)))
+        .add("negative S(f), number of f", |it| {
+            let [negative, all] = negative_powers(ring(it)?)?;
+            Some(format!("{negative} of {all}"))
+        })
         .add("G* = −G(π)", |it| {
             let value = ring(it)?.correlation.anticorrelation;
             value.is_finite().then(|| significant(value, 3))

@@ -4,6 +4,7 @@ mod contradictions;
 mod damaged_files;
 mod lammps;
 mod lammps_data_written;
+mod npz;
 mod other_programs;
 mod refusals;
 mod round_trip;
