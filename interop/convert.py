@@ -5,12 +5,12 @@
 | ending | program | read by | centres | radii | box |
 |---|---|---|---|---|---|
 | .gsd | HOOMD-blue, freud, OVITO | gsd | particles.position | particles.diameter / 2 | configuration.box |
-| .npz | NumPy, freud, jax-md | numpy | positions, position, R, points, pos or x | radii, radius, or diameter(s) / 2, sigma / 2 | box (sides, or a matrix with the sides on its diagonal), L |
+| .npz | NumPy, freud, jax-md | numpy | positions, position, R, points, pos or x | radii, radius, or diameter(s) / 2, sigma / 2 | box (sides, or a triangular matrix), L |
 | .nc | jax-md, jamming (AMBER-like netCDF) | scipy | pos or coordinates | rad, radius, radii | box, BoxMatrix or cell_lengths |
 
 What is missing is an error, unless --radius gives one radius for all. GSD keeps diameters of 1 for particles without any; if all are 1,
 give --radius. GSD has single precision: overlaps then have errors of 10^-7, so relax the packing.
-A tilted box is an error. HOOMD's box is centred at the origin; the file has Origin accordingly.
+A box may be tilted: rows of a lower triangular matrix are the edges, columns of an upper one. HOOMD's box is centred at the origin; the file has Origin accordingly.
 """
 
 import argparse
@@ -29,14 +29,15 @@ def fail(message):
     raise SystemExit(f"convert.py: {message}")
 
 
-def sides_of(box, path):
-    """Sides of a box given as sides or as a matrix; a box per particle pair or a tilt is refused."""
+def edges_of(box, path):
+    """Edges, one a row, of a box given as sides or as a triangular matrix: rows of a lower one are edges, columns of an upper one."""
     box = np.asarray(box, float)
-    if box.ndim == 2:
-        if np.abs(box - np.diag(np.diag(box))).max() > 0:
-            fail(f"{path}: the box is tilted ({box.tolist()}); only rectangular boxes are supported")
-        return np.diag(box)
-    return np.atleast_1d(box)
+    if box.ndim < 2:
+        return np.diag(np.atleast_1d(box))
+    lower, upper = np.abs(np.tril(box, -1)).max() > 0, np.abs(np.triu(box, 1)).max() > 0
+    if lower and upper:
+        fail(f"{path}: the matrix of the box is not triangular ({box.tolist()}), so its rows or its columns may be the edges")
+    return box.T if upper else box
 
 
 def from_gsd(path):
@@ -45,16 +46,17 @@ def from_gsd(path):
     with gsd.hoomd.open(path, "r") as trajectory:
         for frame in trajectory:
             box = np.asarray(frame.configuration.box, float)
-            if np.abs(box[3:]).max() > 0:
-                fail(f"{path}: the box is tilted (xy, xz, yz = {box[3:].tolist()}); only rectangular boxes are supported")
             dimension = 2 if frame.configuration.dimensions == 2 or box[2] == 0 else 3
+            (x, y, z), (xy, xz, yz) = box[:3], box[3:]
+            # Tilts of HOOMD are over the side of their edge.
+            edges = np.array([[x, 0, 0], [xy * y, y, 0], [xz * z, yz * z, z]])
             radii = np.asarray(frame.particles.diameter, float) / 2
             yield {
                 "positions": np.asarray(frame.particles.position, float)[:, :dimension],
                 # A diameter that was never written is 1.
                 "radii": None if np.all(radii == 0.5) else radii,
-                "sides": box[:dimension],
-                "corner": -box[:dimension] / 2,
+                "edges": edges[:dimension, :dimension],
+                "corner": -edges[:dimension, :dimension].sum(axis=0) / 2,
             }
 
 
@@ -82,9 +84,9 @@ def from_arrays(arrays, path):
         # netCDF files of packings flatten D centres and D x D boxes.
         if each.ndim == 1 and each.size == centres.shape[-1] ** 2 and centres.shape[-1] > 1:
             each = each.reshape(centres.shape[-1], -1)
-        sides = sides_of(each, path)
-        sides = np.full(centres.shape[1], sides[0]) if sides.size == 1 else sides[: centres.shape[1]]
-        yield {"positions": centres.astype(float), "radii": own, "sides": sides, "corner": np.zeros(len(sides))}
+        edges, width = edges_of(each, path), centres.shape[1]
+        edges = edges[0, 0] * np.eye(width) if edges.size == 1 else edges[:width, :width]
+        yield {"positions": centres.astype(float), "radii": own, "edges": edges, "corner": np.zeros(width)}
 
 
 def from_npz(path):
@@ -112,17 +114,18 @@ def written(frame, radius, dimension, path):
     """One frame as extended XYZ."""
     positions, radii = frame["positions"], frame["radii"]
     if dimension == 2 and positions.shape[1] == 3:
-        if np.ptp(positions[:, 2]) > 1e-9 * np.abs(frame["sides"]).max():
+        if np.ptp(positions[:, 2]) > 1e-9 * np.abs(frame["edges"]).max():
             fail(f"{path}: z is not the same for all disks; give --dimension 3")
-        positions, frame = positions[:, :2], {**frame, "sides": frame["sides"][:2], "corner": frame["corner"][:2]}
+        positions, frame = positions[:, :2], {**frame, "edges": frame["edges"][:2, :2], "corner": frame["corner"][:2]}
     width = positions.shape[1]
     if radius is not None:
         radii = np.full(len(positions), radius)
     if radii is None:
         fail(f"{path}: no radii; give --radius R if all are equal")
     radii = np.broadcast_to(np.asarray(radii, float), len(positions))
-    sides, corner = (list(frame[name]) + [end] * (3 - width) for name, end in (("sides", 1.0), ("corner", 0.0)))
-    lattice = " ".join(repr(float(sides[i]) if i == j else 0.0) for i in range(3) for j in range(3))
+    cell, corner = np.eye(3), list(frame["corner"]) + [0.0] * (3 - width)
+    cell[:width, :width] = frame["edges"]
+    lattice = " ".join(repr(float(component)) for component in cell.flatten())
     origin = " ".join(repr(float(value)) for value in corner)
     periodic = "T T F" if width == 2 else "T T T"
     lines = [

@@ -8,6 +8,8 @@ mod contact_law;
 mod exact;
 #[path = "cli/exit_code.rs"]
 mod exit_code;
+#[path = "cli/file_arguments.rs"]
+mod file_arguments;
 #[path = "cli/input.rs"]
 mod input;
 #[cfg(feature = "linear")]
@@ -19,6 +21,8 @@ mod progress;
 mod relax;
 #[path = "cli/scene_file.rs"]
 mod scene_file;
+#[path = "cli/strain.rs"]
+mod strain;
 #[path = "cli/study.rs"]
 mod study;
 #[path = "cli/study_progress.rs"]
@@ -69,6 +73,8 @@ enum Command {
     Relax(relax::RelaxArguments),
     /// Compress or decompress a packing file to a pressure or a packing fraction.
     Compress(relax::CompressArguments),
+    /// Shear a packing file in small steps, each relaxed to rest: stress against strain, and plastic events.
+    Strain(strain::StrainArguments),
     /// Measure the observables of states that another program relaxed, before and after an inflation.
     Analyse(analyse::AnalyseArguments),
     /// Run an experiment over sizes, pressures, inflations, laws and seeds; an interrupted study continues.
@@ -155,6 +161,7 @@ fn run_command(command: Option<Command>) -> Result<ExitCode, Failure> {
         Some(Command::Inspect(arguments)) => inspect_packing(&arguments),
         Some(Command::Relax(arguments)) => relax::relax(&arguments),
         Some(Command::Compress(arguments)) => relax::compress_file(&arguments),
+        Some(Command::Strain(arguments)) => strain::run(&arguments),
         Some(Command::Analyse(arguments)) => analyse::run(&arguments),
         Some(Command::Study(arguments)) => study::run(&arguments),
         Some(Command::Merge(arguments)) => study::merge(&arguments),

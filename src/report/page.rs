@@ -197,6 +197,9 @@ fn requests(report: &Report, sample: &SampleReport) -> String {
         Some(Source::PackingFraction(value)) => format!("packing fraction {value}"),
         Some(Source::Pressure(value)) => format!("pressure {value}"),
         Some(Source::File(path)) => format!("the packing in {}", path.display()),
+        Some(Source::FileAtPressure { file, pressure }) => {
+            format!("the packing in {}, brought to pressure {pressure}", file.display())
+        }
         None => "a sample that is not in the scene".into(),
     }
 }

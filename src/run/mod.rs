@@ -18,7 +18,7 @@ use crate::network::ContactNetwork;
 use crate::observe::PressureChange;
 use crate::observe::state::State;
 use crate::packing::{Packing, PackingError};
-use crate::preparation::{Preparation, Target, prepare_with};
+use crate::preparation::{Preparation, Prepared, Target, compress, prepare_with};
 use crate::processor::Processor;
 #[cfg(feature = "linear")]
 use crate::protocol::{Compared, Protocol, ProtocolSensitivity, ProtocolSettings, ProtocolSummary, chosen};
@@ -262,7 +262,8 @@ pub(crate) fn packing_of(
     trace: &mut dyn Trace,
 ) -> Result<(Packing<2>, PackingSummary), RunError> {
     let target = match &sample.source {
-        Source::File(path) => return packing_from(path, scene, law, trace),
+        Source::File(path) => return packing_from((path, None), scene, law, trace),
+        Source::FileAtPressure { file, pressure } => return packing_from((file, Some(*pressure)), scene, law, trace),
         Source::PackingFraction(fraction) => Target::PackingFraction(*fraction),
         Source::Pressure(pressure) => Target::Pressure(*pressure),
     };
@@ -274,6 +275,13 @@ pub(crate) fn packing_of(
         seed: sample.seed,
     };
     let prepared = prepare_with::<2>(&preparation, law, &scene.preparation.relaxer, trace)?;
+    let quench_packing_fraction = Some(prepared.quench_packing_fraction);
+    let (packing, summary) = prepared_summary(prepared, law)?;
+    Ok((packing, PackingSummary { quench_packing_fraction, ..summary }))
+}
+
+/// The packing at rest and its summary.
+fn prepared_summary(prepared: Prepared<2>, law: &dyn PairLaw) -> Result<(Packing<2>, PackingSummary), RunError> {
     let rest = RestSummary {
         criterion: prepared.criterion,
         relative_residual: prepared.residual.relative(),
@@ -282,17 +290,14 @@ pub(crate) fn packing_of(
         cost: prepared.cost,
     };
     let packing = prepared.packing.into_inner();
-    let summary = PackingSummary {
-        quench_packing_fraction: Some(prepared.quench_packing_fraction),
-        relaxation_count: prepared.relaxation_count,
-        ..packing_summary(&packing, law, rest)?
-    };
+    let summary =
+        PackingSummary { relaxation_count: prepared.relaxation_count, ..packing_summary(&packing, law, rest)? };
     Ok((packing, summary))
 }
 
-/// A packing from a file, relaxed if it is not at rest. The verdict on the file is kept.
+/// A packing from a file, relaxed if it is not at rest, or brought to a pressure. The verdict on the file is kept.
 fn packing_from(
-    path: &Path,
+    (path, pressure): (&Path, Option<f64>),
     scene: &Scene,
     law: &dyn PairLaw,
     trace: &mut dyn Trace,
@@ -303,6 +308,12 @@ fn packing_from(
         let state = State::new(&read, law).map_err(named)?;
         RestVerdict::of(&[("as read", &state)], law, &scene.law, None, &scene.verdict)
     };
+    if let Some(pressure) = pressure {
+        let target = (Target::Pressure(pressure), scene.preparation.pressure_tolerance);
+        let prepared = compress(read, target, law, &scene.preparation.relaxer, trace)?;
+        let (packing, summary) = prepared_summary(prepared, law)?;
+        return Ok((packing, PackingSummary { as_read: Some(as_read), ..summary }));
+    }
     let outcome = scene.preparation.relaxer.relax(read, law, trace).map_err(named)?;
     let Outcome { stop, residual, rounding_floor, cost, .. } = outcome;
     let (Stop::Converged(criterion), Ok(packing)) = (stop, outcome.converged()) else {

@@ -266,7 +266,9 @@ impl Sample {
             Source::PackingFraction(value) => {
                 within(field("source.packing_fraction"), value, "above 0 and below 4", value > 0.0 && value < 4.0)?;
             }
-            Source::Pressure(value) => positive(field("source.pressure"), value)?,
+            Source::Pressure(value) | Source::FileAtPressure { pressure: value, .. } => {
+                positive(field("source.pressure"), value)?
+            }
             Source::File(_) => {}
         }
         check_relaxer(&field("relaxer"), &self.relaxer)

@@ -42,7 +42,7 @@ impl Scene {
             self.mixture.components.iter().map(|part| part.share * of(part.radius)).sum::<f64>() / shares
         };
         match sample.source {
-            Source::Pressure(pressure) => {
+            Source::Pressure(pressure) | Source::FileAtPressure { pressure, .. } => {
                 let square = mean(&|radius| radius * radius);
                 pressure * std::f64::consts::PI * square / (PACKING_FRACTION * mean(&|radius| radius))
             }

@@ -112,16 +112,6 @@ pub enum ArchiveError {
         /// The dimension requested.
         dimension: usize,
     },
-    /// The box is tilted.
-    #[error(
-        "array {array} is the matrix or the sides of a tilted box ({value} is not 0); only rectangular boxes are supported"
-    )]
-    Tilted {
-        /// The array.
-        array: String,
-        /// The component that is not 0.
-        value: f64,
-    },
     /// A label occurs twice.
     #[error("array {array}: label {label} occurs more than once among the mobile disks")]
     Repeated {

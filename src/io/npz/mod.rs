@@ -5,7 +5,7 @@
 //! | centres \[length\] | (N, D), or (N, 3) in a plane; frames: (F, N, D) | `positions`, `position`, `R`, `points`, `pos`, `x`, `coordinates` | `positions` |
 //! | radii \[length\] | (N,), or one number; frames: (F, N) | `radii`, `radius`, `rad` | `radii` |
 //! | diameters \[length\] | the same, if there are no radii | `diameters`, `diameter`, `sigma` | no |
-//! | box \[length\] | sides (D,) or (3,), one side, a diagonal matrix, or six numbers of HOOMD; frames: a first axis F | `box`, `BoxMatrix`, `cell_lengths`, `L` | `box`, the sides |
+//! | box \[length\] | sides (D,) or (3,), one side, a triangular matrix (lower: its rows are the edges; upper: its columns), or six numbers of HOOMD; frames: a first axis F | `box`, `BoxMatrix`, `cell_lengths`, `L` | `box`: the sides, or a matrix with the edges of a tilted box as rows |
 //! | lower corner of the box \[length\] | (D,) or (3,) | `origin` | `origin` |
 //! | whether it is periodic | (), (D,) or (3,) | `pbc`, `periodic` | `pbc` |
 //! | labels | (N,) | `labels`, `label`, `ids`, `id` | `labels` |
@@ -201,12 +201,12 @@ impl Reader<'_> {
             _ => false,
         };
         let array = if has_frames { array.frame(self.frame) } else { array };
-        let lengths = sides::<D>(&array)?;
+        let edges = edges::<D>(&array)?;
         let corner = match self.find(&ORIGIN, 1)? {
-            Some(array) => corner::<D>(&array, &lengths)?,
+            Some(array) => corner::<D>(&array, &edges)?,
             None => [0.0; D],
         };
-        Ok(Domain::Periodic { corner, lengths })
+        Ok(Domain::Periodic { corner, edges })
     }
 
     /// Low parts of coordinates, which are below the spacing of numbers there; 0 without such an array.
@@ -282,43 +282,66 @@ fn check_reach<const D: usize>(
     }
 }
 
-/// The sides of the box.
-fn sides<const D: usize>(array: &Array) -> Result<[f64; D], ArchiveError> {
+/// The edges of the box: from sides, from a triangular matrix, or from the six numbers of HOOMD.
+fn edges<const D: usize>(array: &Array) -> Result<[Vector<D>; D], ArchiveError> {
     let numbers: Vec<f64> = (0..array.len()).map(|at| array.finite(at)).collect::<Result<_, _>>()?;
-    // Where the sides are, and the components that are 0 in a box without tilt.
-    let (at, rest): (Vec<usize>, Vec<usize>) = match array.shape[..] {
-        [] | [1] => (vec![0; D], Vec::new()),
-        [3] => ((0..D).collect(), Vec::new()),
-        [6] => ((0..D).collect(), (3..6).collect()),
-        [count] if count == D => ((0..D).collect(), Vec::new()),
-        [rows, columns] if rows == columns && (rows == D || rows == 3) => (
-            (0..D).map(|axis| axis * (rows + 1)).collect(),
-            (0..rows * rows).filter(|at| at % (rows + 1) != 0).collect(),
-        ),
-        _ => return Err(array.wrong_shape(format!("({D},) or ({D}, {D}), sides or a diagonal matrix"))),
+    // Where component `axis` of edge d is, if it is given.
+    let at: Box<dyn Fn(usize, usize) -> Option<usize>> = match array.shape[..] {
+        [] | [1] => Box::new(|d, axis| (d == axis).then_some(0)),
+        [3] => Box::new(|d, axis| (d == axis).then_some(d)),
+        [6] => Box::new(|d, axis| match (d, axis) {
+            (1, 0) => Some(3),
+            (2, 0) => Some(4),
+            (2, 1) => Some(5),
+            _ => (d == axis).then_some(d),
+        }),
+        [count] if count == D => Box::new(|d, axis| (d == axis).then_some(d)),
+        [rows, columns] if rows == columns && (rows == D || rows == 3) => {
+            let given = |above: bool| {
+                let places = (0..rows).flat_map(|row| (0..rows).map(move |column| (row, column)));
+                let mut places = places.filter(|&(row, column)| if above { column > row } else { column < row });
+                places.find(|&(row, column)| numbers[rows * row + column] != 0.0)
+            };
+            // A triangular matrix shows whether its rows or its columns are the edges.
+            let is_upper = given(true).is_some();
+            if let (true, Some((row, column))) = (is_upper, given(false)) {
+                return Err(array.wrong_value(rows * row + column, "0, or 0 above the diagonal: a triangular matrix"));
+            }
+            if let Some((row, column)) = given(true).or(given(false)).filter(|&(row, column)| row.max(column) >= D) {
+                return Err(
+                    array.wrong_value(rows * row + column, "0: a box tilted out of the plane has three dimensions")
+                );
+            }
+            Box::new(move |d, axis| Some(if is_upper { rows * axis + d } else { rows * d + axis }))
+        }
+        _ => return Err(array.wrong_shape(format!("({D},) or ({D}, {D}), sides or a triangular matrix"))),
     };
-    if let Some(&tilt) = rest.iter().find(|&&at| numbers[at] != 0.0) {
-        return Err(ArchiveError::Tilted { array: array.name.clone(), value: numbers[tilt] });
-    }
-    let mut sides = [0.0; D];
-    for (side, &at) in sides.iter_mut().zip(&at) {
-        *side = numbers[at];
-        if *side <= 0.0 {
-            return Err(array.wrong_value(at, "a positive side of the box"));
+    let mut edges = [[0.0; D]; D];
+    for d in 0..D {
+        for axis in 0..=d {
+            let Some(at) = at(d, axis) else { continue };
+            if d == axis && numbers[at] <= 0.0 {
+                return Err(array.wrong_value(at, "a positive side of the box"));
+            }
+            edges[d][axis] = numbers[at];
         }
     }
-    Ok(sides)
+    if array.shape == [6] {
+        // Tilts of HOOMD are over the side of their edge.
+        (0..D).for_each(|d| (0..d).for_each(|axis| edges[d][axis] *= edges[d][d]));
+    }
+    Ok(edges)
 }
 
 /// The lower corner of the box.
-fn corner<const D: usize>(array: &Array, lengths: &[f64; D]) -> Result<[f64; D], ArchiveError> {
+fn corner<const D: usize>(array: &Array, edges: &[Vector<D>; D]) -> Result<[f64; D], ArchiveError> {
     if !(array.shape == [D] || array.shape == [3]) {
         return Err(array.wrong_shape(format!("({D},)")));
     }
     let mut corner = [0.0; D];
     for (axis, value) in corner.iter_mut().enumerate() {
         *value = array.finite(axis)?;
-        if value.abs() > FARTHEST * lengths[axis] {
+        if value.abs() > FARTHEST * edges[axis][axis] {
             return Err(array.wrong_value(axis, "within a million sides of the box"));
         }
     }

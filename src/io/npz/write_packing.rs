@@ -69,8 +69,11 @@ fn write<const D: usize>(
     add("held", &[count], &Values::Flags(packing.held().to_vec()))?;
     let is_periodic = packing.domain().lengths().is_some();
     add("pbc", &[D], &Values::Flags(vec![is_periodic; D]))?;
-    if let Domain::Periodic { corner, lengths } = packing.domain() {
-        add("box", &[D], &Values::Real(lengths.to_vec()))?;
+    if let Domain::Periodic { corner, edges } = packing.domain() {
+        match packing.domain().lengths().filter(|_| !packing.domain().is_tilted()) {
+            Some(lengths) => add("box", &[D], &Values::Real(lengths.to_vec()))?,
+            None => add("box", &[D, D], &Values::Real(edges.as_flattened().to_vec()))?,
+        }
         add("origin", &[D], &Values::Real(corner.to_vec()))?;
     }
     if !is_zero(packing.corrections()) {

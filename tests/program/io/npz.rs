@@ -179,6 +179,24 @@ fn names_of_arrays_are_unique_and_nothing_is_written_otherwise() {
     refused(&column("law"), &[("law", "hooke")], "law");
 }
 
+/// Rows of a lower triangular matrix are the edges, columns of an upper one; tilts of HOOMD are over the side L_y.
+#[test]
+fn a_tilted_box_is_read_from_every_form_of_it() {
+    let forms: [(&str, &[f64]); 5] = [
+        ("2, 2", &[9.0, 0.0, 2.0, 8.0]),
+        ("2, 2", &[9.0, 2.0, 0.0, 8.0]),
+        ("3, 3", &[9.0, 0.0, 0.0, 2.0, 8.0, 0.0, 0.0, 0.0, 1.0]),
+        ("3, 3", &[9.0, 2.0, 0.0, 0.0, 8.0, 0.0, 0.0, 0.0, 1.0]),
+        ("6,", &[9.0, 8.0, 1.0, 0.25, 0.0, 0.0]),
+    ];
+    for (shape, numbers) in forms {
+        let packing = Scratch::new().read::<2>(two_disks("box", "<f8", shape, &reals(numbers))).expect(shape);
+        assert_eq!(packing.domain().edges(), Some([[9.0, 0.0], [2.0, 8.0]]), "{shape} {numbers:?}");
+    }
+    let out = reals(&[9.0, 0.0, 0.0, 2.0, 8.0, 0.0, 0.5, 0.0, 1.0]);
+    assert_refused::<2>(two_disks("box", "<f8", "3, 3", &out), &["array box[2, 0] is 0.5", "out of the plane"]);
+}
+
 #[test]
 fn what_is_missing_or_odd_is_named_with_its_value() {
     assert_refused::<2>(
@@ -212,7 +230,7 @@ fn what_is_missing_or_odd_is_named_with_its_value() {
     let uneven = reals(&[1.0, 2.0, 0.0, 2.1, 2.0, 0.5]);
     refused("positions", "<f8", "2, 3", &uneven, &["not a packing in 2 dimensions", "--dimension 3"]);
     assert_refused::<3>(two_disks("", "", "", &[]), &["not a packing in 3 dimensions", "--dimension 2"]);
-    refused("box", "<f8", "2, 2", &reals(&[9.0, 0.0, 0.5, 8.0]), &["array box", "tilted box (0.5 is not 0)"]);
+    refused("box", "<f8", "2, 2", &reals(&[9.0, 0.1, 0.5, 8.0]), &["array box", "triangular matrix"]);
     refused("box", "<f8", "2,", &reals(&[9.0, 0.0]), &["array box[1] is 0.0", "a positive side"]);
     refused("box", "<f8", "5,", &reals(&[9.0; 5]), &["array box has shape [5]"]);
     refused("pbc", "|b1", "2,", &[1, 0], &["array pbc[1] is False", "the same in all directions"]);

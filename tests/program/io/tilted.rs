@@ -141,3 +141,20 @@ fn lattices_of_extended_xyz_in_any_order_and_direction() {
     let apart = difference(turned.positions()[1], turned.positions()[0]);
     assert!(norm(difference(apart, [0.8 + 0.3, -0.6 + 0.4])) < 1e-14, "{apart:?}");
 }
+
+#[test]
+fn tilted_boxes_in_numpy_archives() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("packing.npz");
+    for dimension in [2, 3] {
+        if dimension == 2 {
+            let packing = read::<2>("tilted.dump");
+            jamscope::io::write_npz(&path, &packing, &[], &[]).expect("written");
+            assert_eq!(read_packing::<2>(&path).expect("read"), packing);
+        } else {
+            let packing = read::<3>("tilted_balls.dump");
+            jamscope::io::write_npz(&path, &packing, &[], &[]).expect("written");
+            assert_eq!(read_packing::<3>(&path).expect("read"), packing);
+        }
+    }
+}
