@@ -7,8 +7,8 @@ use clap::Args;
 use jamscope::io::{Contents, Frame, read_contents};
 use jamscope::law::LawChoice;
 use jamscope::network::ContactNetwork;
-use jamscope::packing::Packing;
-use jamscope::preparation::{Target, compress};
+use jamscope::packing::{Packing, PackingError};
+use jamscope::preparation::{PreparationError, Target, compress};
 use jamscope::relax::{Relaxer, RelaxerChoice, Stop};
 use jamscope::report::write_state;
 use jamscope::run::{Progress, Watch};
@@ -180,17 +180,22 @@ fn run_in<const D: usize>(
     check(&packing).map_err(|reason| format!("{name}: {reason}"))?;
     let bars = Bars::new(std::iter::once(name.to_string().as_str()));
     let mut trace = Watch { progress: &bars, sample: 0, stage: "relaxation", limit: relaxer.limit().value() };
-    let first = Numbers::of(&packing, &ContactNetwork::new(&packing, law)?);
+    let labels = packing.labels().to_vec();
+    let network =
+        ContactNetwork::new(&packing, law).map_err(|error| format!("{name}: {}", error.with_labels(&labels)))?;
+    let first = Numbers::of(&packing, &network);
     let (state, end) = match task {
         Task::Relax => {
-            let outcome = relaxer.relax(packing, law, &mut trace).map_err(|error| format!("{name}: {error}"))?;
+            let outcome = relaxer
+                .relax(packing, law, &mut trace)
+                .map_err(|error| format!("{name}: {}", error.with_labels(&labels)))?;
             let cost = outcome.cost;
             let end = End { stop: outcome.stop, residual: outcome.residual.relative(), cost, relaxation_count: 1 };
             (outcome.state, end)
         }
         Task::Compress(target, tolerance) => {
             let prepared = compress(packing, (*target, *tolerance), law, relaxer, &mut trace)
-                .map_err(|error| format!("{name}: {error}"))?;
+                .map_err(|error| format!("{name}: {}", too_few(&labels, error)))?;
             let end = End {
                 stop: Stop::Converged(prepared.criterion),
                 residual: prepared.residual.relative(),
@@ -209,6 +214,19 @@ fn run_in<const D: usize>(
     print(&table(&first, &Numbers::of(&state, &network), &end, out))?;
     let moves = !is_at_rest(end.stop, end.residual);
     Ok(exit_code::of_relaxation(moves.then(|| format!("{name} ({:?})", end.stop))))
+}
+
+/// The error of a compression; a box that becomes too small has too few disks.
+fn too_few(labels: &[u64], error: PreparationError) -> String {
+    match error {
+        PreparationError::Packing(PackingError::BoxTooSmall { length, range, .. }) => format!(
+            "{} disks are too few: the target needs a box with a side of {length}, below twice the longest contact range {range}, and a \
+             pair of disks would touch twice; use a larger packing",
+            labels.len()
+        ),
+        PreparationError::Packing(error) => error.with_labels(labels).to_string(),
+        other => other.to_string(),
+    }
 }
 
 /// How the last relaxation ended, and what all of them cost.
