@@ -20,7 +20,7 @@ pub struct PrecisionArguments {
     /// Run only the sample with this name.
     #[arg(long, value_name = "NAME", conflicts_with = "packing")]
     sample: Option<String>,
-    /// Use this packing (extended XYZ, LAMMPS data or dump) instead of the samples of the scene.
+    /// Use this packing (extended XYZ, LAMMPS data or dump, NumPy archive) instead of the samples of the scene.
     #[arg(long, value_name = "FILE")]
     packing: Option<PathBuf>,
     /// Folder for the tables, the plots and the page.

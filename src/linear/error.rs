@@ -22,7 +22,7 @@ pub enum LinearError {
     /// The disk to inflate has no contact with the backbone.
     #[error("disk {disk} has no contact with the backbone: inflating it by an infinitesimal amount moves nothing")]
     CentreTouchesNothing {
-        /// The disk.
+        /// The disk: its index, from 0, or its label if a report contains the error.
         disk: usize,
     },
     /// No disk has this index.
@@ -145,4 +145,19 @@ pub enum LinearError {
         /// Its number of rows.
         dimension: usize,
     },
+}
+
+impl LinearError {
+    /// The same error with disks named by their labels, as a file numbers them.
+    #[must_use]
+    pub fn with_labels(self, labels: &[u64]) -> Self {
+        match self {
+            LinearError::Packing(error) => LinearError::Packing(error.with_labels(labels)),
+            LinearError::CentreTouchesNothing { disk } => {
+                let label = labels.get(disk).and_then(|&label| usize::try_from(label).ok());
+                LinearError::CentreTouchesNothing { disk: label.unwrap_or(disk) }
+            }
+            other => other,
+        }
+    }
 }

@@ -112,6 +112,7 @@ pub enum PackingError {
 
 impl PackingError {
     /// The same error with disks named by their labels, as a file numbers them.
+    #[must_use]
     pub fn with_labels(self, labels: &[u64]) -> Self {
         let label = |disk: usize| labels.get(disk).and_then(|&label| usize::try_from(label).ok()).unwrap_or(disk);
         match self {

@@ -100,7 +100,7 @@ impl<'a> DiskResponse<'a> {
         #[cfg(feature = "linear")]
         let (plastic, not_linear) = match plastic_part(analysis) {
             Ok(plastic) => (Some(plastic.field), None),
-            Err(error) => (None, Some(error.to_string())),
+            Err(error) => (None, Some(error.with_labels(analysis.pair.before.labels()).to_string())),
         };
         #[cfg(not(feature = "linear"))]
         let (plastic, not_linear) = (None, Some("the program was built without the feature `linear`".into()));

@@ -148,9 +148,10 @@ pub(crate) fn measure(
     };
     let response = Response::of(subject(&inflated, law, verdict)?, observables);
     #[cfg(feature = "linear")]
-    let plastic_part = observables
-        .plastic_part
-        .map(|settings| plastic_summary::of(&inflated, &scene.inflation, law, settings.ring_width).into());
+    let plastic_part = observables.plastic_part.map(|settings| {
+        let summary = plastic_summary::of(&inflated, &scene.inflation, law, settings.ring_width);
+        summary.map_err(|error| error.with_labels(inflated.before.packing.get().labels())).into()
+    });
     #[cfg(feature = "linear")]
     let protocol = observables.protocol.filter(|settings| takes(scene, sample, settings)).map(|settings| {
         let trace = &mut watch("protocols", &sample.relaxer);

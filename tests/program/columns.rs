@@ -1,6 +1,8 @@
 //! Columns of what the program writes: in the book with their units, of each disk under its label, and the same in both formats.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
+#[cfg(all(feature = "fit", feature = "linear"))]
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
 
@@ -214,6 +216,7 @@ fn contacts_and_bonds_have_the_labels_of_the_packing_that_was_read() {
 }
 
 /// File, column and unit of the tables in the book.
+#[cfg(all(feature = "fit", feature = "linear"))]
 fn described() -> BTreeSet<[String; 3]> {
     let book = text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("book/src/columns.md"));
     let (mut file, mut all) = (String::new(), BTreeSet::new());
@@ -231,6 +234,7 @@ fn described() -> BTreeSet<[String; 3]> {
 }
 
 /// The columns of a table: names, and units if its second row has them.
+#[cfg(all(feature = "fit", feature = "linear"))]
 fn columns_of(file: &str, table: &str, has_units: bool) -> Vec<[String; 3]> {
     let mut lines = table.lines();
     let names = lines.next().expect("names").split(',');

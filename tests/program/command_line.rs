@@ -195,7 +195,7 @@ fn bad_packings_are_refused_by_file_line_and_value() {
         (lines[..100].join("\n") + "\n", "line 100"),
         (replaced(4, lines[4].replacen(" 0.5 ", " nan ", 1)), "line 5: radius is `nan`"),
         (replaced(4, lines[4].replacen(" 0.5 ", " -0.5 ", 1)), "line 5: radius is `-0.5`"),
-        (replaced(4, moved(lines[4], lines[5])), "disks 2 and 3 have the same centre"),
+        (replaced(4, moved(lines[4], lines[5])), "disks 3 and 4 have the same centre"),
     ] {
         let path = folder.path().join("packing.xyz");
         std::fs::write(&path, content).expect("a temporary file");

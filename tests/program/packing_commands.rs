@@ -194,13 +194,19 @@ fn what_cannot_be_done_with_a_packing_is_refused_with_its_reason() {
     std::fs::write(folder.path().join("open.xyz"), open).expect("written");
     refused(folder.path(), &["compress", "open.xyz", "--pressure", "1"], &["open.xyz", "open plane"]);
     refused(folder.path(), &["relax", "open.xyz"], &["open.xyz", "no disk is held"]);
+    let few = "1\nLattice=\"9 0 0 9\" Properties=pos:R:2:radius:R:1\n1 1 0.5\n";
+    std::fs::write(folder.path().join("few.xyz"), few).expect("written");
+    for target in [["--pressure", "10"], ["--packing-fraction", "0.8"]] {
+        let arguments = [&["compress", "few.xyz"][..], &target].concat();
+        refused(folder.path(), &arguments, &["few.xyz", "1 disks are too few", "use a larger packing"]);
+    }
     let site = open.replace("radius:R:1", "radius:R:1:site:R:2").replace("0 0 0.5", "0 0 0.5 0 0");
     std::fs::write(folder.path().join("site.xyz"), site).expect("written");
     refused(folder.path(), &["relax", "site.xyz"], &["site.xyz", "sites"]);
     let exponent = open.replace("pbc", "exponent=2.2 pbc");
     std::fs::write(folder.path().join("exponent.xyz"), exponent).expect("written");
     refused(folder.path(), &["relax", "exponent.xyz"], &["exponent is `2.2`", "--law power:2.2"]);
-    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 3, "nothing is written");
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 4, "nothing is written");
 }
 
 #[test]
@@ -222,6 +228,19 @@ fn the_standard_input_and_compressed_files_are_read_like_the_file() {
     let c = folder.path().join("c.xyz");
     assert_eq!(read_packing::<2>(&c).expect("readable"), read_packing::<2>(&path).expect("readable"));
     assert_eq!(column(&c, "virial").len(), 1000);
+}
+
+#[test]
+fn messages_about_the_standard_input_do_not_name_its_copy() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = fixture("packings/hertz_N1000_p100.xyz");
+    let text = std::fs::read_to_string(&path).expect("a fixture").replacen("0.7", "-0.7", 1);
+    for arguments in [&["inspect", "-"][..], &["relax", "-"], &["run", "--packing", "-"], &["analyse", "-", &path]] {
+        let output = jamscope(folder.path(), arguments, text.as_bytes());
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+        let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("Unicode")).concat();
+        assert!(said.contains("standard input, line ") && !said.contains("/standard-input"), "{arguments:?}: {said}");
+    }
 }
 
 /// A packing before and after an inflation, as files and as the two frames of one.

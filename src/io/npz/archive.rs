@@ -1,8 +1,8 @@
 //! [`members`] and [`Archive`]: the files inside a zip archive, as NumPy writes them.
 //!
 //! Members are stored, or compressed by DEFLATE. Each has a CRC-32, which is checked. Archives above 4 GiB (zip64) and encrypted ones are
-//! refused. Hand-written on top of `flate2`, which decompresses packings anyway: the crate `zip` added 15 s of processor time to a first
-//! build of 2026 (`benches/NOTES.md`).
+//! refused. DEFLATE and CRC-32 are those of `flate2`, which the reader of gzip needs anyway; a crate for zip would make a first build
+//! longer (`benches/NOTES.md`).
 //!
 //! # Source
 //! PKWARE (2022), APPNOTE.TXT, .ZIP File Format Specification 6.3.10, sections 4.3 and 4.4.

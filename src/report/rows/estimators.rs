@@ -1,6 +1,6 @@
 //! [`sentences`]: how each observable of a report was estimated.
 
-use crate::observe::angular::{CorrelationEstimator, Leakage, SpectrumEstimator, Weights};
+use crate::observe::angular::{CorrelationEstimator, Leakage, RingOutcome, SpectrumEstimator, Weights};
 use crate::response::{Response, RingResponse};
 
 /// One sentence per observable and estimator, each once, for the observables that these responses have.
@@ -27,8 +27,17 @@ fn of(response: &Response) -> Vec<String> {
     if response.penetration_lengths.is_some() {
         all.push("ξ: outermost crossing of the threshold by |⟨d_r⟩|, interpolated exponentially between rings.".into());
     }
+    #[cfg(feature = "fit")]
+    all.extend(of_fits(response));
     let ring = response.angular_correlation.as_ref().and_then(|it| it.measured());
-    all.extend(ring.into_iter().flat_map(of_ring));
+    all.extend(ring.into_iter().flat_map(|ring| of_ring(&ring.spectrum.estimator, &ring.correlation.estimator)));
+    let rings = response.radial_dependence.as_ref().and_then(|it| it.measured());
+    all.extend(rings.into_iter().flatten().flat_map(|ring| match &ring.outcome {
+        RingOutcome::Measured { spectrum, correlation } => {
+            of_ring(&spectrum.estimator, &correlation.estimator).to_vec()
+        }
+        _ => Vec::new(),
+    }));
     if response.multipoles.as_ref().is_some_and(|it| it.measured().is_some()) {
         all.push("Angular modes: least squares at the angles of the disks of a ring.".into());
     }
@@ -42,8 +51,28 @@ fn of(response: &Response) -> Vec<String> {
     all
 }
 
-fn of_ring(ring: &RingResponse) -> [String; 3] {
-    let (spectrum, correlation) = (&ring.spectrum.estimator, &ring.correlation.estimator);
+#[cfg(feature = "fit")]
+fn of_fits(response: &Response) -> Vec<String> {
+    let mut all = Vec::new();
+    if response.profile_fit.as_ref().is_some_and(|it| it.measured().is_some()) {
+        all.push(
+            "d_0^eff, κ: least squares of r⟨d_r⟩ over rings, weighted with errors that are moderated by the pooled variance; decision by an F \
+             test."
+                .into(),
+        );
+    }
+    let ring = response.angular_correlation.as_ref().and_then(|it| it.measured());
+    let has_fit = |ring: &RingResponse| {
+        let (slope, crossover) = (ring.slope.as_ref(), ring.crossover.as_ref());
+        slope.is_some_and(|it| it.measured().is_some()) || crossover.is_some_and(|it| it.measured().is_some())
+    };
+    if ring.is_some_and(has_fit) {
+        all.push("s, f†: maximum of Whittle's likelihood of the powers with gaps as weights.".into());
+    }
+    all
+}
+
+fn of_ring(spectrum: &SpectrumEstimator, correlation: &CorrelationEstimator) -> [String; 3] {
     let (of_correlation, of_crossing) = match correlation {
         CorrelationEstimator::Spectral(settings) if settings.estimator == *spectrum => {
             ("cosine sum of the powers of this spectrum".into(), "by bisection of the cosine sum")

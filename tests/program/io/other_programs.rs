@@ -141,6 +141,13 @@ fn compressed_files_are_read_and_damaged_ones_refused() {
         wrong[place] ^= 4;
         assert_refused::<2>(wrong, &["damaged or cut"]);
     }
+    // A skippable frame of three bytes, before, after and alone.
+    let skippable = [&[0x5a, 0x2a, 0x4d, 0x18, 3, 0, 0, 0][..], b"abc"].concat();
+    for frames in [[&skippable[..], &zstd], [&zstd, &skippable[..]]] {
+        assert_eq!(contents(frames.concat()).packing, packing());
+    }
+    assert_refused::<2>(&skippable, &["the file is empty"]);
+    assert_refused::<2>(&skippable[..10], &["damaged or cut", "a skippable frame is cut"]);
     assert_refused::<2>([0x1f, 0x8b], &["damaged or cut"]);
     assert_refused::<2>([0x28, 0xb5, 0x2f, 0xfd, 1], &["damaged or cut"]);
 }

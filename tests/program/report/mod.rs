@@ -1,5 +1,6 @@
 //! What a report writes: the files asked for, every number to the bit, pages that stand alone.
 
+mod estimators;
 mod kernels;
 #[cfg(feature = "plot")]
 mod pictures;
@@ -317,14 +318,12 @@ fn check_field(path: &Path, field: &DisplacementField<2>) {
         assert!(comment.contains(key), "{key} in {comment}");
     }
     assert!(comment.contains(":displacement:R:2:radial:R:1:transverse:R:1:counted:R:1"), "{comment}");
-    let rows: Vec<Vec<f64>> = lines
-        .map(|line| {
-            let mut last: Vec<f64> =
-                line.split(' ').rev().take(5).map(|number| number.parse().expect("a number")).collect();
-            last.reverse();
-            last
-        })
-        .collect();
+    let layout: Vec<&str> = comment.split("Properties=").nth(1).expect("columns").split([':', ' ']).collect();
+    let columns = layout.chunks(3).take_while(|column| column[0] != "displacement");
+    let start: usize = columns.map(|column| column[2].parse::<usize>().expect("a width")).sum();
+    let numbers =
+        |line: &str| line.split(' ').skip(start).take(5).map(|word| word.parse().expect("a number")).collect();
+    let rows: Vec<Vec<f64>> = lines.map(numbers).collect();
     let mut seen = vec![false; rows.len()];
     for disk in &field.disks {
         let counted = f64::from(u8::from(disk.counted));
