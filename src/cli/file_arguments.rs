@@ -222,24 +222,26 @@ fn check<const D: usize>(packing: &Packing<D>) -> Result<(), &'static str> {
 pub struct InPortions<'a> {
     task: &'a Task,
     relaxer: RelaxerChoice,
+    portion: usize,
 }
 
 impl<'a> InPortions<'a> {
     pub fn of(task: &'a Task) -> Self {
-        InPortions { task, relaxer: task.relaxer }
+        InPortions { task, relaxer: task.relaxer, portion: PORTION }
     }
 }
 
 /// Ends a relaxation after a portion.
 struct Portion<'a> {
     trace: &'a mut dyn Trace,
+    step_count: usize,
     is_over: bool,
 }
 
 impl Trace for Portion<'_> {
     fn checked(&mut self, check: &jamscope::relax::Check) {
         self.trace.checked(check);
-        self.is_over = check.step_count >= PORTION;
+        self.is_over = check.step_count >= self.step_count;
     }
 
     fn interrupted(&mut self) -> bool {
@@ -263,7 +265,7 @@ impl Relaxer for InPortions<'_> {
         }
         let (mut packing, mut cost) = (packing, Cost::default());
         loop {
-            let mut portion = Portion { trace, is_over: false };
+            let mut portion = Portion { trace, step_count: self.portion, is_over: false };
             let outcome = self.relaxer.relax(packing, law, &mut portion)?;
             cost = cost.plus(outcome.cost);
             if outcome.stop != Stop::Interrupted {
@@ -277,6 +279,42 @@ impl Relaxer for InPortions<'_> {
 
     fn for_intermediate_states(&self, limit: f64) -> Option<Self> {
         let relaxer = self.relaxer.for_intermediate_states(limit)?;
-        Some(InPortions { task: self.task, relaxer })
+        Some(InPortions { relaxer, ..*self })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jamscope::io::read_packing;
+
+    fn task(out: PathBuf) -> Task {
+        let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz"));
+        let (law, relaxer) = (LawChoice::default(), RelaxerChoice::default());
+        let (name, description, frame) = ("a packing".into(), "relax".into(), Frame::Last);
+        Task { name, out, law, relaxer, description, path, frame, _inputs: Inputs::default() }
+    }
+
+    /// A relaxation in portions that is interrupted between two of them and continued has the bits of the whole one.
+    #[test]
+    fn a_relaxation_continues_from_its_last_portion() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let task = task(folder.path().join("out.xyz"));
+        let start: Start<2> = task.start().expect("a packing");
+        let first = start.given.radii()[0];
+        let moved = start.given.with_radius(0, 1.1 * first).expect("a radius");
+        let law = LawChoice::default();
+        let relaxer = InPortions { portion: 40, ..InPortions::of(&task) };
+        let whole = relaxer.relax(moved.clone(), &law, &mut ()).expect("apart");
+        assert!(matches!(whole.stop, Stop::Converged(_)) && whole.cost.step_count > 120, "{:?}", whole.cost);
+        // The file holds the last portion that was written. The relaxation goes on from there as it did.
+        let saved: Packing<2> = read_packing(&task.out).expect("a state");
+        assert_ne!(saved, moved);
+        let rest = relaxer.relax(saved, &law, &mut ()).expect("apart");
+        assert_eq!(rest.state, whole.state);
+        assert!(rest.cost.step_count < whole.cost.step_count);
+        // Of another packing it is refused: its radii are not those of the input.
+        let error = task.start::<2>().err().expect("another packing").to_string();
+        assert!(error.contains("unfinished result of another packing"), "{error}");
     }
 }

@@ -257,6 +257,7 @@ fn every_column_of_a_table_is_in_the_book_and_the_reverse() {
     let sample = "disk_count = 600\n[[sample]]\nname = \"dense\"\nseed = 1\nsource = { pressure = 3000.0 }\n";
     write("all.toml", sample);
     write("protocol.toml", &format!("{sample}[observables.protocol]\n"));
+    std::fs::create_dir(folder.path().join("shear")).expect("a folder");
     write("small.toml", &sample.replace("600", "100"));
     let study = "targets = [{ pressure = 500.0 }]\nincreases = [0.1]\nseeds = { first = 1, count = 3 }\n";
     write("study.toml", &format!("{study}[scene]\ndisk_count = 100\n"));
@@ -266,11 +267,12 @@ fn every_column_of_a_table_is_in_the_book_and_the_reverse() {
         "precision small.toml --out precision",
         "study study.toml --out study",
         "merge study",
+        "strain all/dense.packing.xyz --shear 0.001 --steps 1 --limit 1e-5 --out shear/dense.sheared.xyz",
     ] {
         done(folder.path(), arguments);
     }
     let mut found = BTreeSet::new();
-    for (place, has_units) in [("all", true), ("protocol", true), ("precision", true), ("study", false)] {
+    for (place, has_units) in [("all", true), ("protocol", true), ("precision", true), ("study", false), ("shear", true)] {
         for entry in std::fs::read_dir(folder.path().join(place)).expect("a folder") {
             let path = entry.expect("an entry").path();
             if path.extension().is_some_and(|extension| extension == "csv") {

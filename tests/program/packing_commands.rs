@@ -343,3 +343,100 @@ fn the_outer_radius_may_be_given_over_the_side_of_the_box() {
         &["0.4L", "open plane"],
     );
 }
+
+/// A shear that is killed and continued has the bytes of the whole one.
+#[test]
+fn a_shear_continues_where_it_was_interrupted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    let input = fixture("packings/hertz_N1000_p100.xyz");
+    let arguments = |out: &'static str| {
+        vec!["strain", input.as_str(), "--shear", "0.01", "--steps", "12", "--limit", "1e-6", "--out", out]
+    };
+    let printed = done(folder.path(), &arguments("whole.xyz"), b"");
+    assert!(printed.contains("shear 0.01:") && printed.contains("in 12 steps"), "{printed}");
+    let (state, table) = (path("cut.xyz"), path("cut.csv"));
+    let mut child = Command::new(env!("CARGO_BIN_EXE_jamscope"))
+        .args(arguments("cut.xyz"))
+        .current_dir(folder.path())
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let has_rows = || std::fs::read_to_string(&table).is_ok_and(|text| text.lines().count() > 2 + 3);
+    for _ in 0..60_000 {
+        if has_rows() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    child.kill().expect("it runs");
+    let _ = child.wait();
+    let text = std::fs::read_to_string(&state).expect("a state");
+    assert!(text.contains("unfinished=\"shear by 0.01 in 12 steps"), "{}", text.lines().nth(1).unwrap_or(""));
+    // Other settings do not continue it, and do not remove it.
+    let mut other = arguments("cut.xyz");
+    other[3] = "0.02";
+    refused(
+        folder.path(),
+        &other,
+        &["cut.xyz: holds the unfinished result of `shear by 0.01", "remove it, or give another"],
+    );
+    done(folder.path(), &arguments("cut.xyz"), b"");
+    for name in ["xyz", "csv"] {
+        let read = |stem: &str| std::fs::read(path(&format!("{stem}.{name}"))).expect("a file");
+        assert!(read("whole") == read("cut"), "{name}");
+    }
+    // The table: step 0 to 12, and the box of the state has the tilt.
+    let text = std::fs::read_to_string(&table).expect("a table");
+    assert_eq!(text.lines().count(), 2 + 13);
+    let [[_, _], [tilt, height]] = read_packing::<2>(&state).expect("a state").domain().edges().expect("a box");
+    assert!((tilt / height - 0.01).abs() < 1e-15);
+    refused(folder.path(), &["strain", &input, "--shear", "0", "--steps", "3"], &["shear is 0"]);
+    refused(folder.path(), &["strain", &input, "--shear", "0.1", "--steps", "0"], &["steps is 0"]);
+    refused(
+        folder.path(),
+        &["strain", &input, "--shear", "0.1", "--steps", "2", "--out", "a.npz"],
+        &["a.npz: a shear writes a state after every step"],
+    );
+}
+
+#[test]
+fn a_tilted_packing_goes_through_every_command() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let input = fixture("packings/hertz_N1000_p100.xyz");
+    let law = ["--law", "hertzian"];
+    done(folder.path(), &["strain", &input, "--shear", "0.3", "--steps", "1", "--out", "tilted.xyz"], b"");
+    let seen: Value =
+        serde_json::from_str(&done(folder.path(), &["inspect", "tilted.xyz", "--json"], b"")).expect("JSON");
+    let edge = &seen["box_edges"][1];
+    assert!((edge[0].as_f64().expect("a number") / edge[1].as_f64().expect("a number") - 0.3).abs() < 1e-15);
+    done(folder.path(), &["relax", "tilted.xyz", "--out", "relaxed.xyz"], b"");
+    done(folder.path(), &["compress", "tilted.xyz", "--pressure", "300", "--out", "compressed.xyz"], b"");
+    let pressure = |name: &str| {
+        let seen: Value = serde_json::from_str(&done(folder.path(), &["inspect", name, "--json"], b"")).expect("JSON");
+        seen["pressure"].as_f64().expect("a pressure")
+    };
+    assert!((pressure("compressed.xyz") / 300.0 - 1.0).abs() < 0.01);
+    // A run inflates a disk in a circle of the tilted box.
+    let _ = law;
+    done(folder.path(), &["run", "--packing", "compressed.xyz", "--out", "report"], b"");
+    let field = std::fs::read_to_string(folder.path().join("report/compressed.displacement.xyz")).expect("a field");
+    assert!(field.lines().count() > 600);
+    let scene = "[[sample]]\nname = \"a\"\nsource = { file = \"tilted.xyz\", pressure = 500.0 }\n";
+    std::fs::write(folder.path().join("scene.toml"), scene).expect("written");
+    done(folder.path(), &["run", "scene.toml", "--out", "second"], b"");
+    let report: Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.path().join("second/report.json")).expect("a report"))
+            .expect("JSON");
+    let text = report.to_string();
+    assert!(text.contains("tilted.xyz"));
+    let state = std::fs::read_to_string(folder.path().join("second/a.packing.xyz")).expect("a packing");
+    let pressure: f64 = state
+        .split("pressure=")
+        .nth(1)
+        .and_then(|rest| rest.split(' ').next())
+        .expect("a pressure")
+        .parse()
+        .expect("a number");
+    assert!((pressure / 500.0 - 1.0).abs() < 0.01, "{pressure}");
+}
