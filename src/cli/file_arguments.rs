@@ -72,8 +72,8 @@ pub struct Task {
     description: String,
     path: PathBuf,
     frame: Frame,
-    // A copy of the standard input lasts as long as this.
-    _inputs: Inputs,
+    /// Copies of the standard input and of pipes, which last as long as this.
+    inputs: Inputs,
 }
 
 /// A packing that was read, and where to continue.
@@ -93,7 +93,7 @@ impl FileArguments {
         let relaxer = self.relaxer()?;
         let mut inputs = Inputs::default();
         let path = inputs.file(&self.packing)?;
-        let law = contact_law::law_of(&path, self.frame, self.law, self.stiffness)?;
+        let law = inputs.named(contact_law::law_of(&path, self.frame, self.law, self.stiffness))?;
         law.check()?;
         let limit = relaxer.limit().value();
         let description = format!("{action}, {} to {limit:e}, {law:?}", relaxer.name());
@@ -113,7 +113,7 @@ impl FileArguments {
         }
         input::check_output(&out, &path)?;
         let name = self.packing.display().to_string();
-        Ok(Task { name, out, law, relaxer, description, path, frame: self.frame, _inputs: inputs })
+        Ok(Task { name, out, law, relaxer, description, path, frame: self.frame, inputs })
     }
 
     fn relaxer(&self) -> Result<RelaxerChoice, Failure> {
@@ -154,6 +154,11 @@ fn named(path: &Path, ending: &str) -> PathBuf {
 }
 
 impl Task {
+    /// The result, with the names that the user gave in its error.
+    pub fn named<T>(&self, result: Result<T, Failure>) -> Result<T, Failure> {
+        self.inputs.named(result)
+    }
+
     /// Reads the packing, and the unfinished result, if there is one.
     pub fn start<const D: usize>(&self) -> Result<Start<D>, Failure> {
         let name = &self.name;
@@ -292,7 +297,7 @@ mod tests {
         let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz"));
         let (law, relaxer) = (LawChoice::default(), RelaxerChoice::default());
         let (name, description, frame) = ("a packing".into(), "relax".into(), Frame::Last);
-        Task { name, out, law, relaxer, description, path, frame, _inputs: Inputs::default() }
+        Task { name, out, law, relaxer, description, path, frame, inputs: Inputs::default() }
     }
 
     /// A relaxation in portions that is interrupted between two of them and continued has the bits of the whole one.

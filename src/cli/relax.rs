@@ -80,10 +80,10 @@ pub fn compress_file(arguments: &CompressArguments) -> Result<ExitCode, Failure>
 }
 
 fn run(arguments: &FileArguments, task: &Task, action: &Action) -> Result<ExitCode, Failure> {
-    match arguments.dimension {
+    task.named(match arguments.dimension {
         3 => run_in::<3>(task, action),
         _ => run_in::<2>(task, action),
-    }
+    })
 }
 
 fn run_in<const D: usize>(task: &Task, action: &Action) -> Result<ExitCode, Failure> {

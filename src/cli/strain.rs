@@ -41,10 +41,10 @@ pub fn run(arguments: &StrainArguments) -> Result<ExitCode, Failure> {
         )
         .into());
     }
-    match arguments.file.dimension {
+    task.named(match arguments.file.dimension {
         3 => run_in::<3>(&task, settings),
         _ => run_in::<2>(&task, settings),
-    }
+    })
 }
 
 fn run_in<const D: usize>(task: &Task, settings: ShearSettings) -> Result<ExitCode, Failure> {

@@ -10,7 +10,7 @@ const LONGEST_FILE: usize = 450;
 const LONG: [&str; 1] = ["reference::bessel::modified_tables"];
 
 /// Names of files that are standard terms of physics, mathematics, numerical computing or programming.
-const STANDARD: [&str; 156] = [
+const STANDARD: [&str; 158] = [
     "analyse",
     "angular",
     "archive",
@@ -56,6 +56,7 @@ const STANDARD: [&str; 156] = [
     "extended_xyz",
     "factorisation",
     "figure",
+    "file_arguments",
     "files",
     "fits",
     "for_each_pair",
@@ -154,6 +155,7 @@ const STANDARD: [&str; 156] = [
     "statistics",
     "step",
     "store_error",
+    "strain",
     "study_input",
     "subset",
     "synthetic",

@@ -297,20 +297,18 @@ fn edges<const D: usize>(array: &Array) -> Result<[Vector<D>; D], ArchiveError> 
         }),
         [count] if count == D => Box::new(|d, axis| (d == axis).then_some(d)),
         [rows, columns] if rows == columns && (rows == D || rows == 3) => {
-            let given = |above: bool| {
+            let tilts = || {
                 let places = (0..rows).flat_map(|row| (0..rows).map(move |column| (row, column)));
-                let mut places = places.filter(|&(row, column)| if above { column > row } else { column < row });
-                places.find(|&(row, column)| numbers[rows * row + column] != 0.0)
+                places.filter(|&(row, column)| row != column && numbers[rows * row + column] != 0.0)
             };
             // A triangular matrix shows whether its rows or its columns are the edges.
-            let is_upper = given(true).is_some();
-            if let (true, Some((row, column))) = (is_upper, given(false)) {
+            let is_upper = tilts().any(|(row, column)| column > row);
+            if let (true, Some((row, column))) = (is_upper, tilts().find(|&(row, column)| column < row)) {
                 return Err(array.wrong_value(rows * row + column, "0, or 0 above the diagonal: a triangular matrix"));
             }
-            if let Some((row, column)) = given(true).or(given(false)).filter(|&(row, column)| row.max(column) >= D) {
-                return Err(
-                    array.wrong_value(rows * row + column, "0: a box tilted out of the plane has three dimensions")
-                );
+            if let Some((row, column)) = tilts().find(|&(row, column)| row.max(column) >= D) {
+                let expected = "0: a box tilted out of the plane has three dimensions";
+                return Err(array.wrong_value(rows * row + column, expected));
             }
             Box::new(move |d, axis| Some(if is_upper { rows * axis + d } else { rows * d + axis }))
         }
