@@ -272,7 +272,10 @@ fn relaxer_of_file(path: &Path, scene: &Scene) -> RelaxerChoice {
     // A file that cannot be read is reported by the run.
     let fraction = read_packing::<2>(path).ok().and_then(|packing| packing.packing_fraction()).unwrap_or(1.0);
     let own = Source::PackingFraction(fraction);
-    let alike = scene.sample.iter().find(|sample| sample.source.is_below_jamming() == own.is_below_jamming());
+    let alike = scene
+        .sample
+        .iter()
+        .find(|sample| sample.source.is_below_jamming(scene.dimension) == own.is_below_jamming(scene.dimension));
     alike.map_or_else(|| ProtocolChoice::default().relaxer_of(&own), |sample| sample.relaxer)
 }
 

@@ -26,24 +26,25 @@ use crate::report::state_file::{law_keys, write_by_ending};
 use crate::vector::{Vector, difference};
 
 /// The columns of a response.
-pub(crate) struct ResponseColumns {
-    displacement: Vec<Vector<2>>,
+pub(crate) struct ResponseColumns<const D: usize> {
+    displacement: Vec<Vector<D>>,
     radial: Vec<f64>,
-    transverse: Vec<f64>,
+    /// Only in the plane, where it has one component.
+    transverse: Option<Vec<f64>>,
     counted: Vec<f64>,
     rattler: Vec<f64>,
     /// The linear and the plastic part.
-    parts: Option<[Vec<Vector<2>>; 2]>,
+    parts: Option<[Vec<Vector<D>>; 2]>,
 }
 
-impl ResponseColumns {
+impl<const D: usize> ResponseColumns<D> {
     /// The columns of a field in a packing of `count` disks, and of its plastic part, if that is known.
-    pub fn of(count: usize, field: &DisplacementField<2>, plastic: Option<&DisplacementField<2>>) -> Self {
-        let (zeros, vectors) = (vec![0.0; count], vec![[0.0; 2]; count]);
+    pub fn of(count: usize, field: &DisplacementField<D>, plastic: Option<&DisplacementField<D>>) -> Self {
+        let (zeros, vectors) = (vec![0.0; count], vec![[0.0; D]; count]);
         let mut columns = ResponseColumns {
             displacement: vectors.clone(),
             radial: zeros.clone(),
-            transverse: zeros.clone(),
+            transverse: (D == 2).then(|| zeros.clone()),
             counted: zeros.clone(),
             rattler: zeros,
             parts: None,
@@ -53,7 +54,10 @@ impl ResponseColumns {
         for disk in &field.disks {
             columns.displacement[disk.disk] = disk.displacement;
             columns.radial[disk.disk] = disk.radial;
-            columns.transverse[disk.disk] = disk.transverse();
+            if let Some(transverse) = &mut columns.transverse {
+                transverse[disk.disk] =
+                    (disk.position[0] * disk.displacement[1] - disk.position[1] * disk.displacement[0]) / disk.distance;
+            }
             columns.counted[disk.disk] = f64::from(u8::from(disk.counted));
             columns.rattler[disk.disk] = f64::from(u8::from(!(jammed && disk.counted)));
         }
@@ -69,16 +73,16 @@ impl ResponseColumns {
     }
 
     pub fn columns(&self) -> Vec<Column<'_>> {
-        fn vector<'a>(name: &'a str, values: &'a [Vector<2>]) -> Column<'a> {
-            Column { name, width: 2, values: values.as_flattened() }
+        fn vector<'a, const D: usize>(name: &'a str, values: &'a [Vector<D>]) -> Column<'a> {
+            Column { name, width: D, values: values.as_flattened() }
         }
-        let mut all = vec![
-            vector("displacement", &self.displacement),
-            Column { name: "radial", width: 1, values: &self.radial },
-            Column { name: "transverse", width: 1, values: &self.transverse },
+        let mut all =
+            vec![vector("displacement", &self.displacement), Column { name: "radial", width: 1, values: &self.radial }];
+        all.extend(self.transverse.as_ref().map(|values| Column { name: "transverse", width: 1, values }));
+        all.extend([
             Column { name: "counted", width: 1, values: &self.counted },
             Column { name: "rattler", width: 1, values: &self.rattler },
-        ];
+        ]);
         if let Some([linear, plastic]) = &self.parts {
             all.extend([vector("linear", linear), vector("plastic", plastic)]);
         }
@@ -89,7 +93,7 @@ impl ResponseColumns {
 /// The response of each disk of an analysis, written with the packing after the inflation.
 pub struct DiskResponse<'a> {
     analysis: &'a Analysis,
-    columns: ResponseColumns,
+    columns: ResponseColumns<2>,
     /// Why there is no linear response; none if there is one.
     pub not_linear: Option<String>,
 }
@@ -104,7 +108,7 @@ impl<'a> DiskResponse<'a> {
         };
         #[cfg(not(feature = "linear"))]
         let (plastic, not_linear) = (None, Some("the program was built without the feature `linear`".into()));
-        let columns = ResponseColumns::of(analysis.pair.after.len(), &analysis.response.field, plastic.as_ref());
+        let columns = ResponseColumns::of(analysis.pair.after.len(), field_of(analysis), plastic.as_ref());
         DiskResponse { analysis, columns, not_linear }
     }
 
@@ -131,5 +135,10 @@ impl<'a> DiskResponse<'a> {
 fn plastic_part(analysis: &Analysis) -> Result<PlasticPart<2>, LinearError> {
     let pair = &analysis.pair;
     let linear = LinearResponse::of_inflation(&pair.before, pair.centre, &analysis.law, Prestress::Included)?;
-    Ok(PlasticPart::of_field(analysis.response.field.clone(), analysis.increase, &linear))
+    Ok(PlasticPart::of_field(field_of(analysis).clone(), analysis.increase, &linear))
+}
+
+/// An analysis is of the plane.
+fn field_of(analysis: &Analysis) -> &DisplacementField<2> {
+    &analysis.response.detail.plane().expect("an analysis is of the plane").field
 }

@@ -35,7 +35,7 @@ pub(crate) fn fit_of(response: &Response) -> Option<&ProfileFit> {
 #[cfg(feature = "fit")]
 pub(crate) fn curves(response: &Response) -> Vec<Curve> {
     let Some(fit) = fit_of(response) else { return Vec::new() };
-    let Ok(annulus) = Annulus::new(response.field.inner_radius, response.field.outer_radius) else {
+    let Ok(annulus) = Annulus::new(response.detail.radii()[0], response.detail.radii()[1]) else {
         return Vec::new();
     };
     let elastic = Elastic::<2>::new(annulus, fit.elastic.amplitude.value).ok().map(|solution| Curve {

@@ -23,7 +23,7 @@ impl DataFile {
         let mut all = Vec::new();
         if report.scene.observables.displacement_field.is_some() {
             all.extend([DataFile::Packing, DataFile::Before, DataFile::Displacement]);
-            all.extend(result.cycle_field.as_ref().map(|_| DataFile::Deflated));
+            all.extend(result.states.largest_cycle_displacement().map(|_| DataFile::Deflated));
         }
         all.extend(files(&result.response).map(DataFile::OfResponse));
         #[cfg(feature = "linear")]

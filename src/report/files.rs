@@ -20,7 +20,8 @@ use crate::report::output::OutputFolder;
 use crate::report::rows::law;
 use crate::report::rows::section::done;
 use crate::report::state_file::numbers_of;
-use crate::run::{Report, SampleReport, SampleResult};
+use crate::response::Detail;
+use crate::run::{Report, SampleReport, SampleResult, States, StatesOf};
 
 /// Writes a report into `folder`, which is created if necessary. Returns the paths of the files in the order written.
 ///
@@ -140,33 +141,15 @@ impl Files<'_> {
         for file in DataFile::of(report, result) {
             let path = file.name(name);
             match file {
-                DataFile::Packing => {
-                    self.packing(
-                        &path,
-                        &result.prepared,
-                        &[],
-                        &origin("prepared", result.packing.pressure, &result.packing.certificate),
-                    )?;
-                }
-                DataFile::Before => {
-                    let (before, certificate) = (&result.inflated.before, &result.inflation.before.certificate);
-                    let origin = origin("before", before.pressure, certificate);
-                    self.packing(&path, before.packing.get(), &[], &origin)?;
-                }
-                DataFile::Displacement => {
-                    let (after, certificate) = (&result.inflated.after, &result.inflation.after.certificate);
-                    let origin = origin("inflated", after.pressure, certificate);
-                    #[cfg(feature = "linear")]
-                    let plastic = result.plastic_part.as_ref().and_then(|it| it.measured()).map(|it| &it.field);
-                    #[cfg(not(feature = "linear"))]
-                    let plastic = None;
-                    self.field(&path, after.packing.get(), (&result.response.field, plastic), &origin)?;
-                }
-                DataFile::Deflated => {
-                    let rest = result.inflated.deflated.as_ref().zip(result.inflation.deflated.as_ref());
-                    if let (Some(field), Some((rest, summary))) = (&result.cycle_field, rest) {
-                        let origin = origin("deflated", rest.pressure, &summary.certificate);
-                        self.field(&path, rest.packing.get(), (field, None), &origin)?;
+                DataFile::Packing | DataFile::Before | DataFile::Displacement | DataFile::Deflated => {
+                    match (&result.states, &result.response.detail) {
+                        (States::Plane(states), Detail::Plane(detail)) => {
+                            self.state(&path, file, (states, &detail.field), result, &origin)?;
+                        }
+                        (States::Space(states), Detail::Space(detail)) => {
+                            self.state(&path, file, (states, &detail.field), result, &origin)?;
+                        }
+                        _ => {}
                     }
                 }
                 DataFile::OfResponse(file) => {
@@ -191,10 +174,46 @@ impl Files<'_> {
         Ok(())
     }
 
-    fn packing(
+    /// One of the states of a sample.
+    fn state<'a, const D: usize>(
+        &mut self,
+        path: &str,
+        file: DataFile,
+        (states, field): (&StatesOf<D>, &DisplacementField<D>),
+        result: &'a SampleResult,
+        origin: &dyn Fn(&'static str, f64, &'a Certificate) -> Origin<'a>,
+    ) -> Result<(), ReportError> {
+        let (inflated, inflation) = (&states.inflated, &result.inflation);
+        match file {
+            DataFile::Before => {
+                let origin = origin("before", inflated.before.pressure, &inflation.before.certificate);
+                self.packing(path, inflated.before.packing.get(), &[], &origin)
+            }
+            DataFile::Displacement => {
+                let origin = origin("inflated", inflated.after.pressure, &inflation.after.certificate);
+                #[cfg(feature = "linear")]
+                let plastic = states.plastic_field.as_ref();
+                #[cfg(not(feature = "linear"))]
+                let plastic = None;
+                self.field(path, inflated.after.packing.get(), (field, plastic), &origin)
+            }
+            DataFile::Deflated => {
+                let rest = inflated.deflated.as_ref().zip(inflation.deflated.as_ref());
+                let Some((field, (rest, summary))) = states.cycle_field.as_ref().zip(rest) else { return Ok(()) };
+                let origin = origin("deflated", rest.pressure, &summary.certificate);
+                self.field(path, rest.packing.get(), (field, None), &origin)
+            }
+            _ => {
+                let origin = origin("prepared", result.packing.pressure, &result.packing.certificate);
+                self.packing(path, &states.prepared, &[], &origin)
+            }
+        }
+    }
+
+    fn packing<const D: usize>(
         &mut self,
         name: &str,
-        packing: &Packing<2>,
+        packing: &Packing<D>,
         columns: &[Column],
         origin: &Origin<'_>,
     ) -> Result<(), ReportError> {
@@ -221,11 +240,11 @@ impl Files<'_> {
     }
 
     /// A packing with its displacements, and their plastic part, if that is known.
-    fn field(
+    fn field<const D: usize>(
         &mut self,
         name: &str,
-        packing: &Packing<2>,
-        (field, plastic): (&DisplacementField<2>, Option<&DisplacementField<2>>),
+        packing: &Packing<D>,
+        (field, plastic): (&DisplacementField<D>, Option<&DisplacementField<D>>),
         origin: &Origin<'_>,
     ) -> Result<(), ReportError> {
         let columns = ResponseColumns::of(packing.len(), field, plastic);

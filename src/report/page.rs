@@ -239,10 +239,15 @@ fn decided(_response: &Response) -> Option<String> {
 }
 
 fn figures(report: &Report, name: &str, result: &SampleResult) -> Result<Vec<Figure>, FigureError> {
-    let radii = result.inflated.before.packing.get().radii();
+    let radii = result.states.radii();
     // Disks with centres within the boundary extend beyond it by a radius.
-    let (boundary, outer_radius) = (report.scene.inflation.boundary, result.response.field.outer_radius);
-    let frame = MapFrame::new(boundary, outer_radius, result.packing.box_sides, widest(radii));
+    let (boundary, [_, outer_radius]) = (report.scene.inflation.boundary, result.response.detail.radii());
+    let frame = MapFrame::new(
+        boundary,
+        outer_radius,
+        [result.packing.box_sides[0], result.packing.box_sides[1]],
+        widest(radii),
+    );
     let heat = report.scene.observables.displacement_field.is_some();
     response_page::figures(name, &result.response, radii, &frame, heat)
 }

@@ -30,8 +30,9 @@ pub(crate) fn figures(
     heat: bool,
 ) -> Result<Vec<Figure>, FigureError> {
     let mut figures = Vec::new();
-    if heat {
-        figures.push(heat_map(name, &response.field, radii, frame));
+    let plane = response.detail.plane();
+    if let Some(detail) = plane.filter(|_| heat) {
+        figures.push(heat_map(name, &detail.field, radii, frame));
     }
     if let Some(profile) = &response.radial_profile {
         figures.push(radial_figure(name, response, profile)?);
@@ -62,18 +63,17 @@ pub(crate) fn figures(
         figures.extend(multipole_figure(name, multipoles, Component::Radial, HIGHEST_MODE, curve).ok());
     }
     let isostatic = response.isostatic_length.as_ref().and_then(|it| it.measured());
-    if let Some(bonds) = response.bond_changes.as_ref().filter(|changes| !changes.bonds.is_empty()) {
+    let bonds = plane.and_then(|detail| detail.bond_changes.as_ref());
+    if let Some(bonds) = bonds.filter(|changes| !changes.bonds.is_empty()) {
         let length = isostatic.and_then(|found| match found.outcome {
             IsostaticOutcome::Reached { length, .. } => Some(length),
             _ => None,
         });
         figures.push(bond_map(name, bonds, frame, length));
     }
-    if let Some(contacts) = response.contact_changes.as_ref() {
-        let changes = &contacts.changes;
-        if !(changes.made.is_empty() && changes.broken.is_empty()) {
-            figures.push(contact_map(name, changes, frame));
-        }
+    let changes = plane.and_then(|detail| detail.contact_changes.as_ref());
+    if let Some(changes) = changes.filter(|changes| !(changes.made.is_empty() && changes.broken.is_empty())) {
+        figures.push(contact_map(name, changes, frame));
     }
     if let Some(length) = isostatic.filter(|length| !length.curve.is_empty()) {
         figures.push(isostatic_figure(name, &[("this sample", length)])?);
@@ -181,10 +181,10 @@ pub(crate) fn legend(responses: &[&Response], heat: bool) -> String {
             "Angular modes: isotropic part n = 0, dipole 1, quadrupole 2; the dashed lines are the fitted elastic modes. ",
         );
     }
-    if any(|it| it.bond_changes.is_some()) {
+    if any(|it| it.detail.plane().is_some_and(|detail| detail.bond_changes.is_some())) {
         text.push_str("The map of r·d<sub>∥</sub> shows bonds, blue stretched, red compressed, with a circle at the isostatic length. ");
     }
-    if any(|it| it.contact_changes.is_some()) {
+    if any(|it| it.detail.plane().is_some_and(|detail| detail.contact_changes.is_some())) {
         text.push_str("New contacts are red, broken contacts blue. ");
     }
     text

@@ -13,9 +13,6 @@ pub struct ContactSummary {
     /// The deflation, if there was one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deflation: Option<CycleCounts>,
-    /// The changed contacts of the inflation.
-    #[serde(skip)]
-    pub changes: ContactChanges<2>,
 }
 
 /// Numbers of contacts from one state to another.
@@ -48,7 +45,7 @@ pub struct CycleCounts {
 }
 
 impl ContactChangeCounts {
-    fn of(changes: &ContactChanges<2>) -> Self {
+    fn of<const D: usize>(changes: &ContactChanges<D>) -> Self {
         ContactChangeCounts {
             kept_count: changes.kept_count,
             made_count: changes.made.len(),
@@ -59,15 +56,16 @@ impl ContactChangeCounts {
 }
 
 impl ContactSummary {
-    pub(super) fn of(
-        before: &State<'_, 2>,
-        after: &State<'_, 2>,
-        deflated: Option<&State<'_, 2>>,
+    /// The numbers, and the changed contacts of the inflation.
+    pub(super) fn of<const D: usize>(
+        before: &State<'_, D>,
+        after: &State<'_, D>,
+        deflated: Option<&State<'_, D>>,
         centre: usize,
-    ) -> Self {
+    ) -> (Self, ContactChanges<D>) {
         let Some(deflated) = deflated else {
             let changes = ContactChanges::between(before, after, centre);
-            return ContactSummary { inflation: ContactChangeCounts::of(&changes), deflation: None, changes };
+            return (ContactSummary { inflation: ContactChangeCounts::of(&changes), deflation: None }, changes);
         };
         let cycle = ContactCycle::through([before, after, deflated], centre);
         let deflation = CycleCounts {
@@ -77,10 +75,8 @@ impl ContactSummary {
             made_returned_count: cycle.made_returned_count,
             returned_share: cycle.returned_share(),
         };
-        ContactSummary {
-            inflation: ContactChangeCounts::of(&cycle.inflation),
-            deflation: Some(deflation),
-            changes: cycle.inflation,
-        }
+        let summary =
+            ContactSummary { inflation: ContactChangeCounts::of(&cycle.inflation), deflation: Some(deflation) };
+        (summary, cycle.inflation)
     }
 }

@@ -6,6 +6,7 @@
 
 mod calibration;
 mod contacts;
+mod detail;
 mod phase;
 
 use std::fmt::Display;
@@ -16,6 +17,7 @@ pub use calibration::{
     CalibratedCell, CalibratedEnsemble, Calibration, Conditions, EvidenceCounts, PhaseFrequency, WordCounts,
 };
 pub use contacts::{ContactChangeCounts, ContactSummary, CycleCounts};
+pub use detail::{Detail, DetailOf};
 pub use phase::{Evidence, Phase, PhaseDecision, PhaseOutcome};
 
 use crate::displacement::{DisplacementField, MeasuredOn};
@@ -35,6 +37,7 @@ use crate::observe::state::State;
 use crate::observe::{AngularProfile, Multipoles, RadialProfile};
 #[cfg(feature = "fit")]
 use crate::reference::{Annulus, poles::pole};
+use crate::response::detail::in_plane;
 use crate::response::phase::{by_contact_changes, by_pressure_change};
 use crate::scene::{AngularCorrelationSettings, Observables};
 use crate::verdict::RestVerdict;
@@ -74,17 +77,17 @@ impl<T, E: Display> From<Result<T, E>> for Measurement<T> {
 }
 
 /// The states of a response.
-pub struct Subject<'a> {
+pub struct Subject<'a, const D: usize> {
     /// Whether they are at rest.
     pub verdict: RestVerdict,
     /// The displacement field from the first to the second.
-    pub field: DisplacementField<2>,
+    pub field: DisplacementField<D>,
     /// State before the inflation.
-    pub before: State<'a, 2>,
+    pub before: State<'a, D>,
     /// State after it.
-    pub after: State<'a, 2>,
+    pub after: State<'a, D>,
     /// State after the deflation, if there was one.
-    pub deflated: Option<State<'a, 2>>,
+    pub deflated: Option<State<'a, D>>,
     /// Index of the inflated disk in all of them.
     pub centre: usize,
     /// Δp \[force / length\].
@@ -136,12 +139,9 @@ pub struct Response {
     /// ℓ_iso.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub isostatic_length: Option<Measurement<IsostaticLength>>,
-    /// The stretch of every bond.
+    /// The displacement field, the stretch of every bond and the changed contacts.
     #[serde(skip)]
-    pub bond_changes: Option<BondChanges<2>>,
-    /// The displacement field.
-    #[serde(skip)]
-    pub field: DisplacementField<2>,
+    pub detail: Detail,
     /// Labels of all disks, by their indices in the field, the bonds and the contacts.
     #[serde(skip)]
     pub labels: Vec<u64>,
@@ -168,13 +168,18 @@ pub struct RingResponse {
 
 impl Response {
     /// Computes the requested observables; the settings must have been [checked](Observables::check).
-    pub fn of(subject: Subject<'_>, observables: &Observables) -> Self {
+    pub fn of<const D: usize>(subject: Subject<'_, D>, observables: &Observables) -> Self {
         let Subject { verdict, field, before, after, deflated, centre, pressure_change } = subject;
         let increase = after.packing.radii()[centre] - before.packing.radii()[centre];
         let no_fit = no_fit(&verdict, increase);
         let radial_profile = observables.radial_profile.map(|settings| RadialProfile::of(&field, settings.ring_width));
+        let plane = in_plane(&field);
         let multipoles: Option<Measurement<Multipoles>> =
-            observables.multipoles.map(|settings| Multipoles::of(&field, &settings).into());
+            observables.multipoles.zip(plane).map(|(settings, field)| Multipoles::of(field, &settings).into());
+        let (contact_summary, contact_changes) =
+            observables.contact_changes.map(|_| ContactSummary::of(&before, &after, deflated.as_ref(), centre)).unzip();
+        let bond_changes =
+            observables.bond_changes.map(|settings| BondChanges::between(&before, &after, centre, settings.bonds));
         let mut response = Response {
             verdict,
             measured_on: field.measured_on,
@@ -195,17 +200,19 @@ impl Response {
                 .zip(radial_profile.as_ref())
                 .map(|(settings, profile)| PenetrationLength::of(profile, settings).into()),
             radial_profile,
-            angular_profiles: observables.angular_profiles.as_ref().map(|settings| {
-                settings.relative_radii.iter().map(|&radius| AngularProfile::of(&field, radius)).collect()
+            angular_profiles: observables.angular_profiles.as_ref().zip(plane).map(|(settings, field)| {
+                settings.relative_radii.iter().map(|&radius| AngularProfile::of(field, radius)).collect()
             }),
             angular_correlation: observables
                 .angular_correlation
                 .as_ref()
-                .map(|settings| RingResponse::of(&field, settings, observables, no_fit.as_deref()).into()),
+                .zip(plane)
+                .map(|(settings, field)| RingResponse::of(field, settings, observables, no_fit.as_deref()).into()),
             radial_dependence: observables
                 .radial_dependence
                 .as_ref()
-                .map(|settings| radial_dependence(&field, settings).into()),
+                .zip(plane)
+                .map(|(settings, field)| radial_dependence(field, settings).into()),
             #[cfg(feature = "fit")]
             elastic_modes: observables.elastic_modes.zip(multipoles.as_ref().and_then(Measurement::measured)).map(
                 |(settings, modes)| match &no_fit {
@@ -214,17 +221,12 @@ impl Response {
                 },
             ),
             multipoles,
-            contact_changes: observables
-                .contact_changes
-                .map(|_| ContactSummary::of(&before, &after, deflated.as_ref(), centre)),
+            contact_changes: contact_summary,
             isostatic_length: observables.isostatic_length.map(|settings| {
                 IsostaticLength::between(&before, &after, centre, field.outer_radius, &settings).into()
             }),
-            bond_changes: observables
-                .bond_changes
-                .map(|settings| BondChanges::between(&before, &after, centre, settings.bonds)),
             labels: before.packing.labels().to_vec(),
-            field,
+            detail: Detail::of(DetailOf { field, bond_changes, contact_changes }),
         };
         response.phase = response.phase(pressure_change, increase);
         response
@@ -293,9 +295,11 @@ fn by_profile(response: &Response) -> Option<Phase> {
     match fit.decision {
         Decision::Screened => Some(Phase::Plastic),
         Decision::Elastic => {
-            let annulus = Annulus::new(response.field.inner_radius, response.field.outer_radius).ok()?;
+            let [inner, outer] = response.detail.radii();
+            let annulus = Annulus::new(inner, outer).ok()?;
             let bound = fit.elastic.wavenumber_bound?;
-            (bound < pole::<2>(annulus, 1)).then_some(Phase::Quasielastic)
+            let first = if response.detail.dimension() == 3 { pole::<3>(annulus, 1) } else { pole::<2>(annulus, 1) };
+            (bound < first).then_some(Phase::Quasielastic)
         }
         Decision::Neither => None,
     }

@@ -6,6 +6,8 @@ mod plastic_summary;
 mod progress;
 mod report_data;
 
+#[cfg(feature = "linear")]
+use std::any::Any;
 use std::path::Path;
 
 use crate::certificate::Certificate;
@@ -23,6 +25,8 @@ use crate::processor::Processor;
 #[cfg(feature = "linear")]
 use crate::protocol::{Compared, Protocol, ProtocolSensitivity, ProtocolSettings, ProtocolSummary, chosen};
 use crate::relax::{Criterion, Outcome, Relaxer, RelaxerChoice, Stop, Trace};
+#[cfg(feature = "linear")]
+use crate::response::Measurement;
 use crate::response::{Calibration, Conditions, PhaseFrequency, Response, Subject};
 use crate::scene::reduced_pressure::reduction;
 use crate::scene::{Sample, Scene, SceneError, Source};
@@ -34,6 +38,7 @@ pub use progress::{Progress, Watch};
 pub use report_data::PlasticSummary;
 pub use report_data::{
     InflationSummary, PackingSummary, Report, RestSummary, SampleOutcome, SampleReport, SampleResult, StateSummary,
+    States, StatesOf,
 };
 
 /// Runs a scene. Samples are independent; with the feature `parallel` each has a thread, and results do not depend on
@@ -45,7 +50,11 @@ pub fn run(scene: &Scene, progress: &dyn Progress) -> Result<Report, RunError> {
     scene.check()?;
     scene.check_memory(Memory::of_machine(), thread_count()).map_err(SceneError::from)?;
     let one = |(index, sample): (usize, &Sample)| {
-        let result = match run_sample(scene, sample, index, progress) {
+        let result = match scene.dimension {
+            3 => run_sample::<3>(scene, sample, index, progress),
+            _ => run_sample::<2>(scene, sample, index, progress),
+        };
+        let result = match result {
             Ok(result) => SampleOutcome::Done(Box::new(result)),
             Err(error) => SampleOutcome::Failed(error.to_string()),
         };
@@ -104,34 +113,34 @@ fn protocol_summary(samples: &[SampleReport]) -> Option<ProtocolSummary> {
 ///
 /// # Errors
 /// [`RunError`] with the stage.
-pub fn run_sample(
+pub fn run_sample<const D: usize>(
     scene: &Scene,
     sample: &Sample,
     index: usize,
     progress: &dyn Progress,
 ) -> Result<SampleResult, RunError> {
-    let (prepared, packing) = prepared(scene, sample, &scene.law, index, progress)?;
+    let (prepared, packing) = prepared::<D>(scene, sample, &scene.law, index, progress)?;
     measure(scene, sample, (prepared, packing), &scene.law, index, progress)
 }
 
 /// The packing of a sample with its summary.
-pub(crate) fn prepared(
+pub(crate) fn prepared<const D: usize>(
     scene: &Scene,
     sample: &Sample,
     law: &dyn PairLaw,
     index: usize,
     progress: &dyn Progress,
-) -> Result<(Packing<2>, PackingSummary), RunError> {
+) -> Result<(Packing<D>, PackingSummary), RunError> {
     let relaxer = &scene.preparation.relaxer;
     let trace = &mut Watch { progress, sample: index, stage: "preparation", limit: relaxer.limit().value() };
     packing_of(scene, sample, law, trace)
 }
 
 /// Inflates a packing and computes all observables.
-pub(crate) fn measure(
+pub(crate) fn measure<const D: usize>(
     scene: &Scene,
     sample: &Sample,
-    (prepared, packing): (Packing<2>, PackingSummary),
+    (prepared, packing): (Packing<D>, PackingSummary),
     law: &dyn PairLaw,
     index: usize,
     progress: &dyn Progress,
@@ -148,14 +157,23 @@ pub(crate) fn measure(
     };
     let response = Response::of(subject(&inflated, law, verdict)?, observables);
     #[cfg(feature = "linear")]
-    let plastic_part = observables.plastic_part.map(|settings| {
-        let summary = plastic_summary::of(&inflated, &scene.inflation, law, settings.ring_width);
-        summary.map_err(|error| error.with_labels(inflated.before.packing.get().labels())).into()
-    });
+    let (plastic_part, plastic_field) = match observables.plastic_part {
+        Some(settings) => match plastic_summary::of(&inflated, &scene.inflation, law, settings.ring_width) {
+            Ok((summary, field)) => (Some(Measurement::Measured(summary)), Some(field)),
+            Err(error) => {
+                let reason = error.with_labels(inflated.before.packing.get().labels()).to_string();
+                (Some(Measurement::Refused(reason)), None)
+            }
+        },
+        None => (None, None),
+    };
     #[cfg(feature = "linear")]
-    let protocol = observables.protocol.filter(|settings| takes(scene, sample, settings)).map(|settings| {
+    let protocol = observables.protocol.filter(|settings| takes(scene, sample, settings)).and_then(|settings| {
         let trace = &mut watch("protocols", &sample.relaxer);
-        protocol_of(scene, sample, (&inflated, &response.verdict), law, &settings, trace).map(Box::new).into()
+        // A scene of spheres has no protocols.
+        let in_plane = (&inflated as &dyn Any).downcast_ref::<Inflated<2>>()?;
+        let compared = protocol_of(scene, sample, (in_plane, &response.verdict), law, &settings, trace);
+        Some(compared.map(Box::new).into())
     });
     let phase_frequency = phase_frequency(scene, sample, &packing, &response);
     Ok(SampleResult {
@@ -167,9 +185,13 @@ pub(crate) fn measure(
         plastic_part,
         #[cfg(feature = "linear")]
         protocol,
-        cycle_field: DisplacementField::of_cycle(&inflated),
-        inflated,
-        prepared,
+        states: States::of(StatesOf {
+            cycle_field: DisplacementField::of_cycle(&inflated),
+            #[cfg(feature = "linear")]
+            plastic_field,
+            inflated,
+            prepared,
+        }),
     })
 }
 
@@ -180,6 +202,10 @@ fn phase_frequency(
     packing: &PackingSummary,
     response: &Response,
 ) -> Option<PhaseFrequency> {
+    // The ensembles are of disks.
+    if scene.dimension != 2 {
+        return None;
+    }
     let relaxer = sample.relaxer.description();
     let conditions = Conditions {
         law: scene.law.name(),
@@ -192,12 +218,12 @@ fn phase_frequency(
 }
 
 /// An inflation as the input of the observables.
-fn subject<'a>(
-    inflated: &'a Inflated<2>,
+fn subject<'a, const D: usize>(
+    inflated: &'a Inflated<D>,
     law: &dyn PairLaw,
     verdict: RestVerdict,
-) -> Result<Subject<'a>, PackingError> {
-    let state = |rest: &'a Rest<2>| State::new(rest.packing.get(), law);
+) -> Result<Subject<'a, D>, PackingError> {
+    let state = |rest: &'a Rest<D>| State::new(rest.packing.get(), law);
     Ok(Subject {
         verdict,
         field: DisplacementField::of_inflation(inflated),
@@ -210,8 +236,12 @@ fn subject<'a>(
 }
 
 /// Whether the states of an inflation are at rest, including the forces from sites if there are any.
-fn verdict(scene: &Scene, inflated: &Inflated<2>, law: &dyn PairLaw) -> Result<RestVerdict, PackingError> {
-    fn state<'a>(rest: &'a Rest<2>, law: &dyn PairLaw) -> Result<State<'a, 2>, PackingError> {
+fn verdict<const D: usize>(
+    scene: &Scene,
+    inflated: &Inflated<D>,
+    law: &dyn PairLaw,
+) -> Result<RestVerdict, PackingError> {
+    fn state<'a, const D: usize>(rest: &'a Rest<D>, law: &dyn PairLaw) -> Result<State<'a, D>, PackingError> {
         State::new(rest.packing.get(), law)
     }
     let law = &*scene.inflation.law_with_sites(law);
@@ -256,12 +286,12 @@ fn protocol_of(
 }
 
 /// The packing of a sample at rest, prepared or read.
-pub(crate) fn packing_of(
+pub(crate) fn packing_of<const D: usize>(
     scene: &Scene,
     sample: &Sample,
     law: &dyn PairLaw,
     trace: &mut dyn Trace,
-) -> Result<(Packing<2>, PackingSummary), RunError> {
+) -> Result<(Packing<D>, PackingSummary), RunError> {
     let target = match &sample.source {
         Source::File(path) => return packing_from((path, None), scene, law, trace),
         Source::FileAtPressure { file, pressure } => return packing_from((file, Some(*pressure)), scene, law, trace),
@@ -275,14 +305,17 @@ pub(crate) fn packing_of(
         tolerance: scene.preparation.pressure_tolerance,
         seed: sample.seed,
     };
-    let prepared = prepare_with::<2>(&preparation, law, &scene.preparation.relaxer, trace)?;
+    let prepared = prepare_with::<D>(&preparation, law, &scene.preparation.relaxer, trace)?;
     let quench_packing_fraction = Some(prepared.quench_packing_fraction);
     let (packing, summary) = prepared_summary(prepared, law)?;
     Ok((packing, PackingSummary { quench_packing_fraction, ..summary }))
 }
 
 /// The packing at rest and its summary.
-fn prepared_summary(prepared: Prepared<2>, law: &dyn PairLaw) -> Result<(Packing<2>, PackingSummary), RunError> {
+fn prepared_summary<const D: usize>(
+    prepared: Prepared<D>,
+    law: &dyn PairLaw,
+) -> Result<(Packing<D>, PackingSummary), RunError> {
     let rest = RestSummary {
         criterion: prepared.criterion,
         relative_residual: prepared.residual.relative(),
@@ -297,12 +330,12 @@ fn prepared_summary(prepared: Prepared<2>, law: &dyn PairLaw) -> Result<(Packing
 }
 
 /// A packing from a file, relaxed if it is not at rest, or brought to a pressure. The verdict on the file is kept.
-fn packing_from(
+fn packing_from<const D: usize>(
     (path, pressure): (&Path, Option<f64>),
     scene: &Scene,
     law: &dyn PairLaw,
     trace: &mut dyn Trace,
-) -> Result<(Packing<2>, PackingSummary), RunError> {
+) -> Result<(Packing<D>, PackingSummary), RunError> {
     let named = |source| RunError::PackingOfFile { path: path.into(), source };
     let read = read_packing(path)?;
     let as_read = {
@@ -333,13 +366,17 @@ fn packing_from(
     Ok((packing, summary))
 }
 
-fn packing_summary(packing: &Packing<2>, law: &dyn PairLaw, rest: RestSummary) -> Result<PackingSummary, RunError> {
+fn packing_summary<const D: usize>(
+    packing: &Packing<D>,
+    law: &dyn PairLaw,
+    rest: RestSummary,
+) -> Result<PackingSummary, RunError> {
     let network = ContactNetwork::new(packing, law)?;
     let volume = packing.domain().volume().ok_or(InflationError::NotPeriodic)?;
     let jammed = rest.criterion != Criterion::Unjammed;
     Ok(PackingSummary {
         disk_count: packing.len(),
-        box_sides: packing.domain().lengths().ok_or(InflationError::NotPeriodic)?,
+        box_sides: packing.domain().lengths().ok_or(InflationError::NotPeriodic)?.to_vec(),
         packing_fraction: packing.packing_fraction().ok_or(InflationError::NotPeriodic)?,
         quench_packing_fraction: None,
         as_read: None,
@@ -354,11 +391,15 @@ fn packing_summary(packing: &Packing<2>, law: &dyn PairLaw, rest: RestSummary) -
     })
 }
 
-fn summary(inflated: &Inflated<2>, law: &dyn PairLaw, inflation: &Inflation) -> Result<InflationSummary, PackingError> {
-    let certificate = |rest: &Rest<2>| {
+fn summary<const D: usize>(
+    inflated: &Inflated<D>,
+    law: &dyn PairLaw,
+    inflation: &Inflation,
+) -> Result<InflationSummary, PackingError> {
+    let certificate = |rest: &Rest<D>| {
         Certificate::of(rest.packing.get(), inflation.law_with_sites(law).as_ref(), Some(rest.criterion))
     };
-    let state = |rest: &Rest<2>| -> Result<StateSummary, PackingError> {
+    let state = |rest: &Rest<D>| -> Result<StateSummary, PackingError> {
         Ok(StateSummary {
             pressure: rest.pressure,
             energy: rest.energy,

@@ -1,5 +1,6 @@
 //! Summary of the plastic part of a sample.
 
+use crate::displacement::DisplacementField;
 use crate::inflation::{Boundary, Inflated, Inflation};
 use crate::law::pair_law::PairLaw;
 use crate::linear::contact_changes::pressure_change;
@@ -10,13 +11,13 @@ use crate::packing::ball_volume;
 use crate::plastic::PlasticPart;
 use crate::run::PlasticSummary;
 
-/// Relative to the linear response of the state before, with the sites of the scene if it has any.
-pub(super) fn of(
-    inflated: &Inflated<2>,
+/// The summary and d − d_0 u of each disk, relative to the linear response of the state before, with the sites of the scene if it has any.
+pub(super) fn of<const D: usize>(
+    inflated: &Inflated<D>,
     inflation: &Inflation,
     law: &dyn PairLaw,
     ring_width: f64,
-) -> Result<PlasticSummary, LinearError> {
+) -> Result<(PlasticSummary, DisplacementField<D>), LinearError> {
     let law = &*inflation.law_with_sites(law);
     let (before, centre) = (inflated.before.packing.get(), inflated.centre);
     let response = LinearResponse::of_inflation(before, centre, law, Prestress::Included)?;
@@ -27,21 +28,21 @@ pub(super) fn of(
     let openings = changes.iter().filter_map(|change| change.opens_at().filter(|_| increase > 0.0));
     let per_increase = match inflation.boundary {
         Boundary::HeldRim { .. } => {
-            pressure_change::<2>(&changes, ball_volume::<2>(inflated.outer_radius), |disk| disk > centre)
+            pressure_change::<D>(&changes, ball_volume::<D>(inflated.outer_radius), |disk| disk > centre)
         }
         Boundary::Periodic => {
-            pressure_change::<2>(&changes, before.domain().volume().unwrap_or(f64::INFINITY), |_| false)
+            pressure_change::<D>(&changes, before.domain().volume().unwrap_or(f64::INFINITY), |_| false)
         }
     };
-    Ok(PlasticSummary {
+    let summary = PlasticSummary {
         norm: plastic.norm,
         share: plastic.share,
         participation_ratio: plastic.participation_ratio,
         radial_profile: RadialProfile::of(&plastic.field, ring_width),
-        field: plastic.field,
         first_opening: openings.reduce(f64::min),
         linear_pressure_change: increase * per_increase,
         negative_eigenvalue_count: response.negative_eigenvalue_count,
         backward_error: response.backward_error,
-    })
+    };
+    Ok((summary, plastic.field))
 }

@@ -1,5 +1,7 @@
 //! [`Report`]: all numbers of a run, with units, as plain data.
 
+use std::any::Any;
+
 use serde::Serialize;
 
 use crate::certificate::Certificate;
@@ -16,6 +18,7 @@ use crate::relax::{Cost, Criterion};
 use crate::response::Measurement;
 use crate::response::{PhaseFrequency, Response};
 use crate::scene::Scene;
+use crate::vector::{larger, norm};
 use crate::verdict::RestVerdict;
 
 /// The results of a run.
@@ -78,15 +81,63 @@ pub struct SampleResult {
     #[cfg(feature = "linear")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub protocol: Option<Measurement<Box<ProtocolSensitivity>>>,
-    /// The displacement that remains after the deflation.
-    #[serde(skip)]
-    pub cycle_field: Option<DisplacementField<2>>,
     /// The states.
     #[serde(skip)]
-    pub inflated: Inflated<2>,
+    pub states: States,
+}
+
+/// The states of a sample.
+#[derive(Debug, Clone)]
+pub enum States {
+    /// Disks in the plane.
+    Plane(Box<StatesOf<2>>),
+    /// Spheres in space.
+    Space(Box<StatesOf<3>>),
+}
+
+/// The states of a sample in D dimensions.
+#[derive(Debug, Clone)]
+pub struct StatesOf<const D: usize> {
     /// The packing.
-    #[serde(skip)]
-    pub prepared: Packing<2>,
+    pub prepared: Packing<D>,
+    /// Its states before and after the inflation, and after the deflation.
+    pub inflated: Inflated<D>,
+    /// The displacement that remains after the deflation.
+    pub cycle_field: Option<DisplacementField<D>>,
+    /// d − d_0 u of each disk, if the plastic part was requested and there is a linear response.
+    #[cfg(feature = "linear")]
+    pub plastic_field: Option<DisplacementField<D>>,
+}
+
+impl States {
+    /// Wraps the states of a sample in two or three dimensions.
+    pub(crate) fn of<const D: usize>(states: StatesOf<D>) -> Self {
+        const { assert!(D == 2 || D == 3, "a packing has two or three dimensions") };
+        let states: Box<dyn Any> = Box::new(states);
+        match states.downcast() {
+            Ok(plane) => States::Plane(plane),
+            Err(space) => States::Space(space.downcast().expect("three dimensions if not two")),
+        }
+    }
+
+    /// Radii of the packing before the inflation.
+    pub fn radii(&self) -> &[f64] {
+        match self {
+            States::Plane(states) => states.inflated.before.packing.get().radii(),
+            States::Space(states) => states.inflated.before.packing.get().radii(),
+        }
+    }
+
+    /// The largest displacement of a disk that counts, from before the inflation to after the deflation \[length\].
+    pub fn largest_cycle_displacement(&self) -> Option<f64> {
+        fn largest<const D: usize>(field: &DisplacementField<D>) -> f64 {
+            field.counted().map(|disk| norm(disk.displacement)).fold(0.0, larger)
+        }
+        match self {
+            States::Plane(states) => states.cycle_field.as_ref().map(largest),
+            States::Space(states) => states.cycle_field.as_ref().map(largest),
+        }
+    }
 }
 
 /// Summary of the plastic part: the difference between the response and the linear one.
@@ -99,9 +150,6 @@ pub struct PlasticSummary {
     pub share: f64,
     /// Participation ratio, 1 if all disks move equally \[1\].
     pub participation_ratio: f64,
-    /// d − d_0 u of each disk.
-    #[serde(skip)]
-    pub field: DisplacementField<2>,
     /// Mean radial part in rings.
     pub radial_profile: RadialProfile,
     /// d_0 at which the linear response opens its first contact; absent if it opens none \[length\].
@@ -121,7 +169,7 @@ pub struct PackingSummary {
     /// Number of disks.
     pub disk_count: usize,
     /// Sides of the box \[length\].
-    pub box_sides: [f64; 2],
+    pub box_sides: Vec<f64>,
     /// Packing fraction \[1\].
     pub packing_fraction: f64,
     /// Packing fraction at which random points were quenched; absent for a packing from a file \[1\].

@@ -101,6 +101,12 @@ pub enum SceneError {
         /// The problem, with field and value.
         reason: String,
     },
+    /// An observable of disks is requested for spheres.
+    #[error("observables.{observable}: with dimension = 3 there is no angle in the plane; remove it")]
+    OfThePlane {
+        /// The observable.
+        observable: &'static str,
+    },
     /// An observable needs another one.
     #[error("observables.{observable} needs observables.{needed}")]
     ObservableMissing {
@@ -125,6 +131,10 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] with the field and the value.
     pub fn check(&self) -> Result<(), SceneError> {
+        within("dimension", self.dimension as f64, "2 or 3", matches!(self.dimension, 2 | 3))?;
+        if let Some(observable) = self.observables.of_the_plane().filter(|_| self.dimension == 3) {
+            return Err(SceneError::OfThePlane { observable });
+        }
         self.law.check()?;
         DISK_INDEX.check("disk_count", self.disk_count, BYTES_A_DISK)?;
         self.mixture.check(self.disk_count).map_err(SceneError::Mixture)?;

@@ -16,6 +16,8 @@ use crate::verdict::VerdictSettings;
 /// A file may contain a [`ProtocolChoice`] as `protocol`: it sets the relaxer of every sample without one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Scene {
+    /// Dimension of space: 2 for disks, 3 for spheres.
+    pub dimension: usize,
     /// Number of disks in the box.
     pub disk_count: usize,
     /// The contact law.
@@ -77,6 +79,7 @@ impl Default for Scene {
             Sample { name: name.into(), seed, source, relaxer }
         };
         Scene {
+            dimension: 2,
             disk_count: 5548,
             law: LawChoice::default(),
             mixture: Mixture::default(),

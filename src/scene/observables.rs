@@ -123,6 +123,37 @@ impl Observables {
         self
     }
 
+    /// The observables of disks (2) or spheres (3): those with angles in the plane are of disks only.
+    pub fn of_dimension(dimension: usize) -> Self {
+        if dimension != 3 {
+            return Observables::default();
+        }
+        Observables {
+            angular_profiles: None,
+            angular_correlation: None,
+            #[cfg(feature = "fit")]
+            spectrum_fit: None,
+            radial_dependence: None,
+            multipoles: None,
+            #[cfg(feature = "fit")]
+            elastic_modes: None,
+            ..Observables::default()
+        }
+    }
+
+    /// The first of the observables that are of disks only.
+    pub(crate) fn of_the_plane(&self) -> Option<&'static str> {
+        let all = [
+            ("angular_profiles", self.angular_profiles.is_some()),
+            ("angular_correlation", self.angular_correlation.is_some()),
+            ("radial_dependence", self.radial_dependence.is_some()),
+            ("multipoles", self.multipoles.is_some()),
+            #[cfg(feature = "linear")]
+            ("protocol", self.protocol.is_some()),
+        ];
+        all.into_iter().find(|(_, has)| *has).map(|(name, _)| name)
+    }
+
     /// No observables.
     pub fn none() -> Self {
         Observables {

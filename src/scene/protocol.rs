@@ -79,9 +79,14 @@ impl ProtocolChoice {
         }
     }
 
-    /// The relaxer of a packing from this source: FIRE for one quenched below jamming.
+    /// The relaxer of a packing of disks from this source: FIRE for one quenched below jamming.
     pub fn relaxer_of(self, source: &Source) -> RelaxerChoice {
-        if source.is_below_jamming() { RelaxerChoice::Fire(Fire::default()) } else { self.relaxer() }
+        self.relaxer_in(2, source)
+    }
+
+    /// The same in two or three dimensions.
+    pub fn relaxer_in(self, dimension: usize, source: &Source) -> RelaxerChoice {
+        if source.is_below_jamming(dimension) { RelaxerChoice::Fire(Fire::default()) } else { self.relaxer() }
     }
 
     /// The protocol with this relaxer after the inflation, if there is one.

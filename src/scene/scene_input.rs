@@ -16,13 +16,14 @@ use crate::verdict::VerdictSettings;
 #[derive(Deserialize)]
 #[serde(rename = "Scene", deny_unknown_fields, default)]
 pub(super) struct Written {
-    protocol: ProtocolChoice,
+    dimension: usize,
+    protocol: Option<ProtocolChoice>,
     disk_count: usize,
     law: LawChoice,
     mixture: Mixture,
     preparation: PreparationSettings,
     inflation: Inflation,
-    observables: Observables,
+    observables: Option<Observables>,
     verdict: VerdictSettings,
     sample: Option<Vec<WrittenSample>>,
 }
@@ -45,16 +46,16 @@ fn first_seed() -> u64 {
 impl Default for Written {
     /// The built-in scene.
     fn default() -> Self {
-        let Scene { disk_count, law, mixture, preparation, inflation, observables, verdict, .. } = Scene::default();
-        let (protocol, sample) = (ProtocolChoice::default(), None);
-        Written { protocol, disk_count, law, mixture, preparation, inflation, observables, verdict, sample }
+        let Scene { dimension, disk_count, law, mixture, preparation, inflation, verdict, .. } = Scene::default();
+        let (protocol, observables, sample) = (None, None, None);
+        Written { dimension, protocol, disk_count, law, mixture, preparation, inflation, observables, verdict, sample }
     }
 }
 
 impl WrittenSample {
-    fn complete(self, protocol: ProtocolChoice) -> Sample {
+    fn complete(self, protocol: ProtocolChoice, dimension: usize) -> Sample {
         let WrittenSample { name, seed, source, relaxer } = self;
-        Sample { relaxer: relaxer.unwrap_or_else(|| protocol.relaxer_of(&source)), name, seed, source }
+        Sample { relaxer: relaxer.unwrap_or_else(|| protocol.relaxer_in(dimension, &source)), name, seed, source }
     }
 }
 
@@ -73,16 +74,18 @@ pub(crate) fn without_samples<'de, R: Deserializer<'de>>(reader: R) -> Result<Sc
 
 impl From<Written> for Scene {
     fn from(written: Written) -> Self {
-        let Written { protocol, disk_count, law, mixture, preparation, inflation, observables, verdict, sample } =
-            written;
+        let Written { dimension, disk_count, law, mixture, preparation, inflation, verdict, .. } = written;
+        let (protocol, sample) = (written.protocol.unwrap_or_default(), written.sample);
+        let observables = written.observables.unwrap_or_else(|| Observables::of_dimension(dimension));
         let sample = match sample {
-            Some(sample) => sample.into_iter().map(|sample| sample.complete(protocol)).collect(),
+            Some(sample) => sample.into_iter().map(|sample| sample.complete(protocol, dimension)).collect(),
             None => {
-                let by_protocol = |sample: Sample| Sample { relaxer: protocol.relaxer_of(&sample.source), ..sample };
+                let by_protocol =
+                    |sample: Sample| Sample { relaxer: protocol.relaxer_in(dimension, &sample.source), ..sample };
                 Scene::default().sample.into_iter().map(by_protocol).collect()
             }
         };
-        Scene { disk_count, law, mixture, preparation, inflation, observables, verdict, sample }
+        Scene { dimension, disk_count, law, mixture, preparation, inflation, observables, verdict, sample }
     }
 }
 

@@ -62,13 +62,14 @@ impl From<Source> for Fields {
     }
 }
 
-/// φ_J. Below it FIRE relaxes: viscoelastic damping vanishes with the overlaps, so a packing without contacts would
-/// never stop. Source: O'Hern, Langer, Liu, Nagel (2002), Phys. Rev. Lett. 88, 075507.
-const JAMMING: f64 = 0.842;
+/// φ_J of disks and of spheres. Below it FIRE relaxes: viscoelastic damping vanishes with the overlaps, so a packing without contacts would
+/// never stop. Source: O'Hern, Langer, Liu, Nagel (2002), Phys. Rev. Lett. 88, 075507; for spheres (2003), Phys. Rev. E 68, 011306.
+const JAMMING: [f64; 2] = [0.842, 0.648];
 
 impl Source {
-    /// Whether random points are quenched below φ_J.
-    pub fn is_below_jamming(&self) -> bool {
-        matches!(self, Source::PackingFraction(fraction) if *fraction < JAMMING)
+    /// Whether random points in two or three dimensions are quenched below φ_J.
+    pub fn is_below_jamming(&self, dimension: usize) -> bool {
+        let jamming = JAMMING[usize::from(dimension == 3)];
+        matches!(self, Source::PackingFraction(fraction) if *fraction < jamming)
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::observe::angular::{AngularCorrelation, PowerSpectrum, RingOutcome};
 use crate::observe::fluctuations::Fluctuations;
-use crate::response::Response;
+use crate::response::{Detail, Response};
 use crate::scene::Scene;
 
 /// Stride of the angles kept of a correlation function: two degrees apart is enough for a figure.
@@ -54,7 +54,10 @@ pub(super) fn curves(scene: &Scene, response: &Response) -> BTreeMap<String, Vec
         });
         put("stretching_fluctuation".into(), stretching.collect());
         let width = scene.observables.isostatic_length.map_or(1.0, |settings| settings.ring_width);
-        let rings = Fluctuations::of_radial(&response.field, width).rings;
+        let rings = match &response.detail {
+            Detail::Plane(detail) => Fluctuations::of_radial(&detail.field, width).rings,
+            Detail::Space(detail) => Fluctuations::of_radial(&detail.field, width).rings,
+        };
         put("radial_fluctuation".into(), rings.iter().map(|ring| [ring.radius, ring.fluctuation]).collect());
     }
     all

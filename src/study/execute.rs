@@ -182,7 +182,7 @@ fn run_task(task: &Task, time_limit: Option<f64>) -> Vec<Record> {
     let (law, deadline) = (&task.law, &deadline);
     let scenes = task.scenes();
     let Some(first) = scenes.first() else { return Vec::new() };
-    let prepared = run::prepared(first, &first.sample[0], law, 0, deadline);
+    let prepared = run::prepared::<2>(first, &first.sample[0], law, 0, deadline);
     let record = |scene: &Scene| match &prepared {
         Ok((packing, summary)) => {
             let made = (packing.clone(), summary.clone());

@@ -158,7 +158,7 @@ impl Task {
     /// packings; unjammed ones, with p = 1 here, take a tenth and less.
     /// long, and unjammed packings, for which p = 1 is taken, take a tenth and less.
     pub fn expected_seconds(&self) -> f64 {
-        let mobile = mobile_count(self.disk_count, self.boundary());
+        let mobile = mobile_count(self.disk_count, self.boundary(), 2);
         let pressure = match self.target {
             Target::Pressure(pressure) => pressure,
             Target::ReducedPressure(reduced) => reduced / libm::pow(mobile, self.law.exponent() - 1.0),

@@ -45,7 +45,7 @@ impl Cell {
 
     /// N, the number of disks in the circle by area, or of the whole periodic box.
     pub fn mobile_count(&self) -> f64 {
-        mobile_count(self.disk_count, self.boundary)
+        mobile_count(self.disk_count, self.boundary, 2)
     }
 }
 
@@ -228,7 +228,7 @@ impl Numbers {
         }
         if let Some(multipoles) = response.multipoles.as_ref().and_then(|it| it.measured()) {
             // The ring nearest to half of the outer radius.
-            let half = 0.5 * response.field.outer_radius;
+            let half = 0.5 * response.detail.radii()[1];
             let fitted = multipoles.rings.iter().filter_map(|ring| match &ring.fit {
                 MultipoleFit::Fitted { radial, .. } => Some((ring.radius, radial.shares?)),
                 _ => None,

@@ -1,9 +1,11 @@
 //! The tables of a response, one file per table.
 
 use crate::observe::angular::RingOutcome;
+use crate::observe::bond_changes::BondChanges;
+use crate::observe::contact_changes::ContactChanges;
 use crate::observe::multipoles::MultipoleFit;
 use crate::report::csv::{Table, angular_profiles, radial_profile};
-use crate::response::Response;
+use crate::response::{Detail, Response};
 
 /// One file of a response.
 pub(crate) struct ResponseFile {
@@ -57,13 +59,20 @@ const ALL: [ResponseFile; 9] = [
         text: multipoles,
     },
     ResponseFile { ending: "contact_changes.csv", has: |it| it.contact_changes.is_some(), text: contact_changes },
-    ResponseFile { ending: "bond_changes.csv", has: |it| it.bond_changes.is_some(), text: bond_changes },
+    ResponseFile { ending: "bond_changes.csv", has: has_bonds, text: bond_changes },
     ResponseFile {
         ending: "isostatic_length.csv",
         has: |it| it.isostatic_length.as_ref().is_some_and(|it| it.measured().is_some()),
         text: isostatic_length,
     },
 ];
+
+fn has_bonds(response: &Response) -> bool {
+    match &response.detail {
+        Detail::Plane(detail) => detail.bond_changes.is_some(),
+        Detail::Space(detail) => detail.bond_changes.is_some(),
+    }
+}
 
 fn ring(response: &Response) -> Option<&crate::response::RingResponse> {
     response.angular_correlation.as_ref()?.measured()
@@ -153,45 +162,54 @@ fn multipoles(response: &Response) -> Option<String> {
     Some(table.text())
 }
 
+/// Names and units of the columns of a midpoint.
+const MIDPOINT: [(&str, &str); 3] = [("x", "length"), ("y", "length"), ("z", "length")];
+
 /// Contacts made (1) and broken (−1): one row per contact. Disks are given by their labels, the ids of the packing files; midpoints are
 /// relative to the inflated disk.
 fn contact_changes(response: &Response) -> Option<String> {
-    let mut table = Table::new(&[
-        ("change", "1"),
-        ("first", "1"),
-        ("second", "1"),
-        ("x", "length"),
-        ("y", "length"),
-        ("distance", "length"),
-    ]);
-    let changes = &response.contact_changes.as_ref()?.changes;
-    for (change, contacts) in [(1.0, &changes.made), (-1.0, &changes.broken)] {
-        for contact in contacts {
-            let [x, y] = contact.midpoint;
-            let [first, second] = response.labels_of([contact.first, contact.second]);
-            table.mixed(&[&change, &first, &second, &x, &y, &contact.distance]);
+    fn text<const D: usize>(response: &Response, changes: &ContactChanges<D>) -> String {
+        let mut columns = vec![("change", "1"), ("first", "1"), ("second", "1")];
+        columns.extend(&MIDPOINT[..D]);
+        columns.push(("distance", "length"));
+        let mut table = Table::new(&columns);
+        for (change, contacts) in [(1.0, &changes.made), (-1.0, &changes.broken)] {
+            for contact in contacts {
+                let [first, second] = response.labels_of([contact.first, contact.second]);
+                let mut row: Vec<&dyn std::fmt::Display> = vec![&change, &first, &second];
+                row.extend(contact.midpoint.iter().map(|value| value as &dyn std::fmt::Display));
+                row.push(&contact.distance);
+                table.mixed(&row);
+            }
         }
+        table.text()
     }
-    Some(table.text())
+    match &response.detail {
+        Detail::Plane(detail) => Some(text(response, detail.contact_changes.as_ref()?)),
+        Detail::Space(detail) => Some(text(response, detail.contact_changes.as_ref()?)),
+    }
 }
 
 /// Bonds: one row per contact, with disks and midpoints as for the contact changes.
 fn bond_changes(response: &Response) -> Option<String> {
-    let mut table = Table::new(&[
-        ("first", "1"),
-        ("second", "1"),
-        ("x", "length"),
-        ("y", "length"),
-        ("distance", "length"),
-        ("parallel_displacement", "length"),
-        ("length_change", "length"),
-    ]);
-    for bond in &response.bond_changes.as_ref()?.bonds {
-        let [x, y] = bond.midpoint;
-        let [first, second] = response.labels_of([bond.first, bond.second]);
-        table.mixed(&[&first, &second, &x, &y, &bond.distance, &bond.parallel, &bond.length_change]);
+    fn text<const D: usize>(response: &Response, changes: &BondChanges<D>) -> String {
+        let mut columns = vec![("first", "1"), ("second", "1")];
+        columns.extend(&MIDPOINT[..D]);
+        columns.extend([("distance", "length"), ("parallel_displacement", "length"), ("length_change", "length")]);
+        let mut table = Table::new(&columns);
+        for bond in &changes.bonds {
+            let [first, second] = response.labels_of([bond.first, bond.second]);
+            let mut row: Vec<&dyn std::fmt::Display> = vec![&first, &second];
+            row.extend(bond.midpoint.iter().map(|value| value as &dyn std::fmt::Display));
+            row.extend([&bond.distance, &bond.parallel, &bond.length_change].map(|it| it as &dyn std::fmt::Display));
+            table.mixed(&row);
+        }
+        table.text()
     }
-    Some(table.text())
+    match &response.detail {
+        Detail::Plane(detail) => Some(text(response, detail.bond_changes.as_ref()?)),
+        Detail::Space(detail) => Some(text(response, detail.bond_changes.as_ref()?)),
+    }
 }
 
 /// The curve from which ℓ_iso is read: one row per ring.

@@ -26,7 +26,7 @@ pub fn radial_figure(name: &str, response: &Response, profile: &RadialProfile) -
     let range = fitted_range(response);
     let curves: Vec<Curve> = curves(response).into_iter().filter(|curve| distinct(response, curve)).collect();
     let fitted = |radius: f64| range.is_none_or(|[from, to]| from <= radius && radius <= to);
-    let outer_radius = response.field.outer_radius;
+    let [_, outer_radius] = response.detail.radii();
     let y_range = y_range(profile, &curves, outer_radius);
     let chart = Chart {
         title: format!("{name}: radial profile"),
@@ -131,7 +131,7 @@ fn draw_curve(
     response: &Response,
     [low, high]: [f64; 2],
 ) -> Drawn {
-    let (inner, outer) = (response.field.inner_radius, response.field.outer_radius);
+    let [inner, outer] = response.detail.radii();
     let [red, green, blue] = colour(curve);
     let style = RGBColor(red, green, blue).stroke_width(2 * SCALE);
     let point = |i: usize| {

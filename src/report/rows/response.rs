@@ -176,7 +176,7 @@ fn fitted(rows: &mut Rows<'_, Response>) {
 
 /// Modes of d_r in the ring nearest to half the outer radius.
 fn half_way(response: &Response) -> Option<&ComponentModes> {
-    let half = 0.5 * response.field.outer_radius;
+    let half = 0.5 * response.detail.radii()[1];
     let rings = response.multipoles.as_ref()?.measured()?.rings.iter();
     let fitted = rings.filter_map(|ring| match &ring.fit {
         MultipoleFit::Fitted { radial, .. } => Some((ring.radius, radial)),
@@ -273,7 +273,7 @@ fn fit(responses: Vec<Option<&Response>>) -> Section {
         curve::fit_of(it)?.screened.filter(|fit| fit.wavenumber.standard_error < 10.0 * fit.wavenumber.value)
     };
     let first_pole = |it: &Response| {
-        let annulus = crate::reference::Annulus::new(it.field.inner_radius, it.field.outer_radius).ok()?;
+        let annulus = crate::reference::Annulus::new(it.detail.radii()[0], it.detail.radii()[1]).ok()?;
         Some(crate::reference::poles::pole::<2>(annulus, 1))
     };
     let rms = |chi_squared: f64, rings: usize| significant((chi_squared / rings as f64).sqrt(), 3);

@@ -91,8 +91,7 @@ pub(super) fn inflation(report: &Report, samples: &[SampleReport], times: Times)
         Some(significant(deflated.pressure - it.inflation.before.pressure, 4))
     })
     .add("largest |d| after deflation [length]", |it| {
-        let left = it.cycle_field.as_ref()?.counted().map(|disk| crate::vector::norm(disk.displacement));
-        Some(significant(left.fold(0.0, crate::vector::larger), 3))
+        it.states.largest_cycle_displacement().map(|left| significant(left, 3))
     });
     rows.section("Inflation")
 }
