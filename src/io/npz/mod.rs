@@ -156,7 +156,7 @@ impl Reader<'_> {
             None => None,
         };
         let is_single = centres.is_single;
-        let warnings = is_single.then(|| ReadWarning::SinglePrecision { array: centres.name }).into_iter().collect();
+        let warnings = is_single.then_some(ReadWarning::SinglePrecision { array: centres.name }).into_iter().collect();
         Ok(Parts { domain, positions, corrections, radii, labels, held, sites, warnings })
     }
 
