@@ -24,6 +24,14 @@ pub enum ReadWarning {
         /// Line of the box.
         line: usize,
     },
+    /// The centres of a NumPy archive have single precision.
+    #[error(
+        "array {array}: the centres have single precision (f4), so distances have errors of 1e-7 of the coordinates; relax the packing, or save them as f8"
+    )]
+    SinglePrecision {
+        /// The array.
+        array: String,
+    },
     /// A LAMMPS box has walls or free sides.
     #[error(
         "line {line}: ITEM: BOX BOUNDS is `{flags}`: the packing lies in the open plane, and walls are not in the file; disks at a wall are not balanced, so give an outer radius R within the walls"

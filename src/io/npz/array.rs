@@ -32,6 +32,8 @@ pub(super) struct Array {
     pub name: String,
     pub shape: Vec<usize>,
     pub values: Values,
+    /// Whether the values were stored in single precision.
+    pub is_single: bool,
 }
 
 impl Array {
@@ -73,7 +75,7 @@ impl Array {
         if is_fortran && shape.len() > 1 {
             values = values.in_c_order(&shape);
         }
-        Ok(Array { name: name.into(), shape, values })
+        Ok(Array { name: name.into(), shape, values, is_single: dtype == "<f4" })
     }
 
     /// The bytes of an array.

@@ -122,6 +122,6 @@ impl Array {
             Values::Flags(values) => Values::Flags(part(&values, frame, count)),
             Values::Text(text) => Values::Text(text),
         };
-        Array { name: self.name, shape, values }
+        Array { name: self.name, shape, values, is_single: self.is_single }
     }
 }

@@ -32,6 +32,7 @@ use crate::io::contents::Contents;
 use crate::io::frame::Frame;
 use crate::io::plane::FLATNESS;
 use crate::io::read_error::{ReadError, spacing};
+use crate::io::read_warning::ReadWarning;
 use crate::io::source::FARTHEST;
 use crate::packing::{Domain, LARGEST_RADIUS, Packing, SMALLEST_RADIUS};
 use crate::vector::{Vector, larger};
@@ -69,7 +70,7 @@ pub(super) fn parse<const D: usize>(path: &Path, bytes: &[u8], frame: Frame) -> 
     if let Some(sites) = parts.sites {
         packing = packing.with_sites(sites).map_err(of_packing)?;
     }
-    Ok(Contents { properties: arrays.properties(), ..Contents::from(packing) })
+    Ok(Contents { packing, properties: arrays.properties(), warnings: parts.warnings })
 }
 
 /// Number of frames.
@@ -104,6 +105,7 @@ struct Parts<const D: usize> {
     labels: Option<Vec<u64>>,
     held: Vec<bool>,
     sites: Option<Vec<(Vector<D>, Vector<D>)>>,
+    warnings: Vec<ReadWarning>,
 }
 
 /// One frame of the arrays.
@@ -153,7 +155,9 @@ impl Reader<'_> {
             }
             None => None,
         };
-        Ok(Parts { domain, positions, corrections, radii, labels, held, sites })
+        let is_single = centres.is_single;
+        let warnings = is_single.then_some(ReadWarning::SinglePrecision { array: centres.name }).into_iter().collect();
+        Ok(Parts { domain, positions, corrections, radii, labels, held, sites, warnings })
     }
 
     /// The radii, or half the diameters.

@@ -28,7 +28,8 @@ use crate::packing::{Domain, Packing};
 /// ```
 /// use jamscope::io::{read_packing, write_npz};
 /// let packing = read_packing::<2>("fixtures/packings/hertz_N1000_p100.xyz")?;
-/// let path = tempfile::tempdir()?.keep().join("packing.npz");
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("packing.npz");
 /// write_npz(&path, &packing, &[], &[("law", "hertzian")])?;
 /// assert_eq!(read_packing::<2>(&path)?, packing);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

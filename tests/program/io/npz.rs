@@ -3,7 +3,9 @@
 use std::fs;
 use std::io::Write;
 
-use jamscope::io::{Column, Frame, WriteError, frame_count, read_contents, read_frame, read_packing, write_npz};
+use jamscope::io::{
+    Column, Frame, ReadWarning, WriteError, frame_count, read_contents, read_frame, read_packing, write_npz,
+};
 use jamscope::packing::{Domain, Packing};
 
 use super::refusals::assert_refused;
@@ -68,7 +70,7 @@ fn two_disks(name: &str, dtype: &str, shape: &str, data: &[u8]) -> Vec<u8> {
 #[test]
 fn an_archive_of_numpy_is_the_packing_to_the_bit() {
     let plain = read_contents::<2>(fixture("formats/plain.npz"), Frame::Last).expect("an archive");
-    assert_eq!(plain.packing, dumped());
+    assert_eq!((plain.packing, plain.warnings), (dumped(), Vec::new()));
     let properties = [("law", "hertzian"), ("stiffness", "10000.0"), ("steps", "12")];
     assert_eq!(plain.properties, properties.map(|(key, value)| (key.to_string(), value.to_string())));
 }
@@ -88,7 +90,9 @@ fn compressed_arrays_in_fortran_order_and_frames_are_read() {
 
 #[test]
 fn single_precision_a_height_and_a_matrix_are_read() {
-    let single = read_packing::<2>(fixture("formats/single.npz")).expect("an archive");
+    let contents = read_contents::<2>(fixture("formats/single.npz"), Frame::Last).expect("an archive");
+    assert_eq!(contents.warnings, [ReadWarning::SinglePrecision { array: "pos".into() }]);
+    let single = contents.packing;
     let narrow = |value: &f64| f64::from(*value as f32);
     assert_eq!(single.radii(), dumped().radii().iter().map(narrow).collect::<Vec<_>>());
     assert_eq!(
