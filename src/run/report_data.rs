@@ -120,6 +120,14 @@ impl States {
         }
     }
 
+    /// The states in the plane.
+    pub fn plane(&self) -> Option<&StatesOf<2>> {
+        match self {
+            States::Plane(states) => Some(states),
+            States::Space(_) => None,
+        }
+    }
+
     /// Radii of the packing before the inflation.
     pub fn radii(&self) -> &[f64] {
         match self {

@@ -57,7 +57,7 @@ fn analysed(pair: Pair) -> Analysis {
 
 /// States of a result, as packings.
 fn states(result: &SampleResult) -> [Packing<2>; 3] {
-    let inflated = &result.inflated;
+    let inflated = &result.states.plane().expect("of the plane").inflated;
     let deflated = inflated.deflated.as_ref().expect("deflated");
     [&inflated.before, &inflated.after, deflated].map(|rest| rest.packing.get().clone())
 }
@@ -66,7 +66,10 @@ fn states(result: &SampleResult) -> [Packing<2>; 3] {
 fn agree(analysis: &Analysis, result: &SampleResult) {
     let json = |response| serde_json::to_value(response).expect("serialisable");
     assert_eq!(json(&analysis.response), json(&result.response));
-    assert_eq!(analysis.response.field, result.response.field);
+    assert_eq!(
+        analysis.response.detail.plane().expect("of the plane").field,
+        result.response.detail.plane().expect("of the plane").field
+    );
     let (summary, inflation) = (&analysis.before, &result.inflation.before);
     assert_eq!((summary.pressure, summary.energy), (inflation.pressure, inflation.energy));
     assert_eq!((summary.contact_count, summary.rattler_count), (inflation.contact_count, inflation.rattler_count));
@@ -102,7 +105,11 @@ fn overlaps_of_rounding_are_no_contacts() {
     let scene = Scene { disk_count: 600, sample: vec![sample(1), sample(2)], ..Scene::default() };
     for sample in run(&scene, &()).expect("the scene makes sense").samples {
         let SampleOutcome::Done(result) = &sample.result else { panic!("unjammed packings come to rest") };
-        let [before, after] = [&result.inflated.before, &result.inflated.after].map(|rest| rest.packing.get().clone());
+        let [before, after] = [
+            &result.states.plane().expect("of the plane").inflated.before,
+            &result.states.plane().expect("of the plane").inflated.after,
+        ]
+        .map(|rest| rest.packing.get().clone());
         let settings = PairSettings { outer_radius: Some(result.inflation.outer_radius), ..PairSettings::default() };
         let analysis = analysed(Pair::new(before, &after, None, &settings).expect("one experiment"));
         assert_eq!((analysis.before.pressure, analysis.after.pressure, analysis.pressure_change), (0.0, 0.0, 0.0));
@@ -157,9 +164,12 @@ fn disks_that_left_the_box_are_where_they_went() {
         .and_then(|packing| packing.with_corrections(after.corrections().to_vec()))
         .expect("valid");
     let pair = Pair::new(before, &wrapped, None, &PairSettings::default()).expect("one experiment");
-    let field = &analysed(pair).response.field;
+    let analysed = analysed(pair);
+    let field = &analysed.response.detail.plane().expect("of the plane").field;
     // A coordinate up to three sides away is rounded to half an ulp of 2⁷, 7·10⁻¹⁵, on the way there; the way back is exact.
-    for (ours, theirs) in field.disks.iter().zip(&result(periodic()).response.field.disks) {
+    for (ours, theirs) in
+        field.disks.iter().zip(&result(periodic()).response.detail.plane().expect("of the plane").field.disks)
+    {
         let away = [0, 1].map(|axis| ours.displacement[axis] - theirs.displacement[axis]);
         assert!(norm(away) < 2e-14, "disk {} is {:e} off", ours.disk, norm(away));
     }
@@ -173,7 +183,16 @@ fn a_radius_holds_the_disks_beyond_it() {
     let pair = Pair::new(before, &after, None, &settings).expect("one experiment");
     assert!(matches!(pair.boundary, Boundary::HeldRim { .. }) && pair.outer_radius == 8.0);
     let analysis = analysed(pair);
-    let farthest = analysis.response.field.disks.iter().map(|disk| disk.distance).fold(0.0, larger);
+    let farthest = analysis
+        .response
+        .detail
+        .plane()
+        .expect("of the plane")
+        .field
+        .disks
+        .iter()
+        .map(|disk| disk.distance)
+        .fold(0.0, larger);
     // 600 disks fill 26 × 26: a circle of radius 8 has π 64/26² = 0.3 of them.
     assert!(farthest < 8.0 && analysis.mobile_count > 130 && analysis.mobile_count < 230, "{}", analysis.mobile_count);
 }
@@ -185,7 +204,7 @@ fn what_does_not_fit_together_is_named() {
         Pair::new(before.clone(), after, None, &settings).map(|_| ()).expect_err("it does not fit")
     };
     let plain = PairSettings::default();
-    let centre = result(periodic()).inflated.centre;
+    let centre = result(periodic()).states.plane().expect("of the plane").inflated.centre;
     let label = before.labels()[centre];
     assert_eq!(new(&before, &before, plain), AnalysisError::NoCentre);
     let other = after.clone().with_radius((centre + 1) % 600, 0.61).expect("positive");

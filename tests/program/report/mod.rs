@@ -343,14 +343,24 @@ fn packings_are_read_back_to_the_same_bits() {
     for sample in ["loose", "dense"] {
         let result = result(sample);
         let path = |ending: &str| folder.path().join(format!("{sample}.{ending}"));
-        check_same(&read_packing(path("packing.xyz")).expect("readable"), &result.prepared);
-        check_same(&read_packing(path("before.xyz")).expect("readable"), result.inflated.before.packing.get());
-        let after = result.inflated.after.packing.get();
+        check_same(
+            &read_packing(path("packing.xyz")).expect("readable"),
+            &result.states.plane().expect("of the plane").prepared,
+        );
+        check_same(
+            &read_packing(path("before.xyz")).expect("readable"),
+            result.states.plane().expect("of the plane").inflated.before.packing.get(),
+        );
+        let after = result.states.plane().expect("of the plane").inflated.after.packing.get();
         check_same(&read_packing(path("displacement.xyz")).expect("readable"), after);
-        check_field(&path("displacement.xyz"), &result.response.field);
-        let deflated = result.inflated.deflated.as_ref().expect("deflated").packing.get();
+        check_field(&path("displacement.xyz"), &result.response.detail.plane().expect("of the plane").field);
+        let deflated =
+            result.states.plane().expect("of the plane").inflated.deflated.as_ref().expect("deflated").packing.get();
         check_same(&read_packing(path("deflated.xyz")).expect("readable"), deflated);
-        check_field(&path("deflated.xyz"), result.cycle_field.as_ref().expect("deflated"));
+        check_field(
+            &path("deflated.xyz"),
+            result.states.plane().expect("of the plane").cycle_field.as_ref().expect("deflated"),
+        );
     }
 }
 

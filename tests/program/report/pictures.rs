@@ -61,9 +61,14 @@ fn check_text(text: &str) {
 
 /// The map of a sample.
 fn map(name: &str, result: &SampleResult, boundary: Boundary) -> Figure {
-    let radii = result.inflated.before.packing.get().radii();
-    let frame = MapFrame::new(boundary, result.response.field.outer_radius, result.packing.box_sides, 0.7);
-    heat_map(name, &result.response.field, radii, &frame)
+    let radii = result.states.plane().expect("of the plane").inflated.before.packing.get().radii();
+    let frame = MapFrame::new(
+        boundary,
+        result.response.detail.plane().expect("of the plane").field.outer_radius,
+        [result.packing.box_sides[0], result.packing.box_sides[1]],
+        0.7,
+    );
+    heat_map(name, &result.response.detail.plane().expect("of the plane").field, radii, &frame)
 }
 
 #[test]
@@ -99,9 +104,14 @@ fn the_map_shows_every_mobile_disk() {
     let result = result("dense");
     let svg = map("dense", result, Boundary::default()).to_svg();
     let disks = svg.matches("h0").count();
-    assert_eq!(disks, result.response.field.disks.len() + 1, "one stroke a disk, and the inflated one");
+    assert_eq!(
+        disks,
+        result.response.detail.plane().expect("of the plane").field.disks.len() + 1,
+        "one stroke a disk, and the inflated one"
+    );
     let grey = svg.split("<path ").find(|path| path.starts_with("stroke=\"#c4c8cc\""));
-    let rattlers = result.response.field.disks.iter().filter(|disk| !disk.counted).count();
+    let rattlers =
+        result.response.detail.plane().expect("of the plane").field.disks.iter().filter(|disk| !disk.counted).count();
     assert_eq!(grey.is_some(), rattlers > 0);
 }
 
