@@ -16,12 +16,19 @@ pub(crate) struct Curve {
     #[cfg_attr(not(feature = "plot"), allow(dead_code, reason = "figures draw it in another way"))]
     pub decided: bool,
     solution: Box<dyn RadialSolution>,
+    /// D − 1.
+    power: i32,
+}
+
+/// D − 1: r^(D−1) d_r is constant in an incompressible medium without a rim.
+pub(crate) fn power(response: &Response) -> i32 {
+    response.detail.dimension() as i32 - 1
 }
 
 impl Curve {
-    /// r·d_r at distance `radius` \[length²\], NaN outside the annulus.
+    /// r^(D−1) d_r at distance `radius` \[length^D\], NaN outside the annulus.
     pub(crate) fn rescaled(&self, radius: f64) -> f64 {
-        radius * self.solution.value(radius)
+        radius.powi(self.power) * self.solution.value(radius)
     }
 }
 
@@ -38,19 +45,30 @@ pub(crate) fn curves(response: &Response) -> Vec<Curve> {
     let Ok(annulus) = Annulus::new(response.detail.radii()[0], response.detail.radii()[1]) else {
         return Vec::new();
     };
-    let elastic = Elastic::<2>::new(annulus, fit.elastic.amplitude.value).ok().map(|solution| Curve {
+    match response.detail.dimension() {
+        3 => curves_of::<3>(fit, annulus),
+        _ => curves_of::<2>(fit, annulus),
+    }
+}
+
+#[cfg(feature = "fit")]
+fn curves_of<const D: usize>(fit: &ProfileFit, annulus: Annulus) -> Vec<Curve> {
+    let power = D as i32 - 1;
+    let elastic = Elastic::<D>::new(annulus, fit.elastic.amplitude.value).ok().map(|solution| Curve {
         name: "elastic",
         decided: fit.decision == Decision::Elastic,
         solution: Box::new(solution),
+        power,
     });
     // At a pole, to rounding, there is no finite solution and no curve.
     let screened = fit
         .screened
-        .and_then(|fit| Screened::<2>::new(annulus, fit.amplitude.value, fit.wavenumber.value).ok())
+        .and_then(|fit| Screened::<D>::new(annulus, fit.amplitude.value, fit.wavenumber.value).ok())
         .map(|solution| Curve {
             name: "screened",
             decided: fit.decision == Decision::Screened,
             solution: Box::new(solution),
+            power,
         });
     elastic.into_iter().chain(screened).collect()
 }

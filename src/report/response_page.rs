@@ -13,6 +13,8 @@ use crate::report::figures::map::MapFrame;
 use crate::report::figures::multipoles::{Component, ModeCurve, multipole_figure};
 use crate::report::figures::radial::radial_figure;
 use crate::report::figures::radial_dependence::radial_dependence_figure;
+use crate::report::figures::shell_map::shell_map;
+use crate::report::figures::slice_map::slice_map;
 use crate::report::figures::spectrum::{SpectrumCurve, SpectrumPoints, spectrum_figure};
 use crate::report::figures::{Figure, FigureError};
 use crate::report::number::significant;
@@ -20,6 +22,9 @@ use crate::response::{Response, RingResponse};
 
 /// Highest mode drawn: isotropic, dipole, quadrupole, and one more.
 const HIGHEST_MODE: usize = 3;
+
+/// The shell of the map of spheres, r/R.
+const SHELL: f64 = 0.5;
 
 /// All figures of a response; `radii` are those of the packing before the inflation.
 pub(crate) fn figures(
@@ -31,6 +36,10 @@ pub(crate) fn figures(
 ) -> Result<Vec<Figure>, FigureError> {
     let mut figures = Vec::new();
     let plane = response.detail.plane();
+    if let Some(detail) = response.detail.space().filter(|_| heat) {
+        figures.push(slice_map(name, &detail.field, radii, frame));
+        figures.push(shell_map(name, &detail.field, radii, SHELL));
+    }
     if let Some(detail) = plane.filter(|_| heat) {
         figures.push(heat_map(name, &detail.field, radii, frame));
     }
@@ -152,7 +161,13 @@ fn critical(relative: &[f64]) -> SpectrumCurve<'_> {
 pub(crate) fn legend(responses: &[&Response], heat: bool) -> String {
     let any = |has: fn(&Response) -> bool| responses.iter().any(|it| has(it));
     let mut text = String::new();
-    if heat {
+    let is_space = responses.iter().any(|it| it.detail.space().is_some());
+    if heat && is_space {
+        text.push_str(
+            "The slice shows r²·d<sub>r</sub> of the spheres that a plane through the inflated one cuts, the oval map d<sub>r</sub> of the spheres of \
+             a shell in all directions. Orange spheres move outwards, purple spheres inwards; grey spheres are rattlers. ",
+        );
+    } else if heat {
         text.push_str(
             "The map shows r·d<sub>r</sub>, the radial displacement of each disk times its distance from the centre, \
              divided by a value that 98 % of the disks do not exceed. Orange disks move outwards, purple disks inwards; grey disks are rattlers. ",

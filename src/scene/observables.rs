@@ -129,6 +129,8 @@ impl Observables {
             return Observables::default();
         }
         Observables {
+            // A shell of half a diameter at r = 5 contains 100 spheres.
+            radial_profile: Some(RadialProfileSettings { ring_width: 0.5 }),
             angular_profiles: None,
             angular_correlation: None,
             #[cfg(feature = "fit")]

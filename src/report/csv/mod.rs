@@ -7,7 +7,7 @@ pub(crate) mod response;
 pub(crate) mod transition;
 
 use crate::observe::{AngularProfile, RadialProfile};
-use crate::report::curve::{curves, fitted_range};
+use crate::report::curve::{curves, fitted_range, power};
 use crate::response::Response;
 use crate::strain::ShearState;
 
@@ -57,25 +57,27 @@ impl Table {
 /// A radial profile with the fitted solutions.
 ///
 /// # Shape
-/// One row per ring. `fitted` is 1 for rings used in the fit; `elastic` and `screened` are the fitted solutions r·d_r
+/// One row per ring. `fitted` is 1 for rings used in the fit; `elastic` and `screened` are the fitted solutions r^(D−1) d_r
 /// at the mean radius of the ring. These columns exist only if there was a fit, `screened` only if there is such a
 /// solution.
 pub fn radial_profile(response: &Response, profile: &RadialProfile) -> String {
+    let power = power(response);
+    let unit = if power == 2 { "length^3" } else { "length^2" };
     let mut table = Table::new(&[
         ("radius", "length"),
         ("disk_count", "1"),
         ("radial_displacement", "length"),
         ("spread", "length"),
         ("standard_error", "length"),
-        ("rescaled_displacement", "length^2"),
-        ("rescaled_standard_error", "length^2"),
+        ("rescaled_displacement", unit),
+        ("rescaled_standard_error", unit),
     ]);
     let (curves, range) = (curves(response), fitted_range(response));
     if range.is_some() {
         table.column("fitted", "1");
     }
     for curve in &curves {
-        table.column(curve.name, "length^2");
+        table.column(curve.name, unit);
     }
     for ring in &profile.rings {
         let mut row = vec![
@@ -84,8 +86,8 @@ pub fn radial_profile(response: &Response, profile: &RadialProfile) -> String {
             ring.mean,
             ring.spread,
             ring.standard_error,
-            ring.radius * ring.mean,
-            ring.radius * ring.standard_error,
+            ring.radius.powi(power) * ring.mean,
+            ring.radius.powi(power) * ring.standard_error,
         ];
         row.extend(range.map(|[from, to]| f64::from(u8::from(from <= ring.radius && ring.radius <= to))));
         row.extend(curves.iter().map(|curve| curve.rescaled(ring.radius)));

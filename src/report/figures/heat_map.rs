@@ -2,15 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use crate::displacement::DisplacementField;
+use crate::displacement::{DisplacementField, Moved};
 use crate::report::figures::layer::{Group, Segment};
 use crate::report::figures::map::{MapFrame, Range, colour_bar, level, map_label};
 use crate::report::figures::palette::diverging;
 use crate::report::figures::{Figure, RESCALED, escaped};
 use crate::report::number::significant;
+use crate::vector::Vector;
 
 /// Colours on either side of zero.
-const LEVELS: i32 = 32;
+pub(crate) const LEVELS: i32 = 32;
 
 /// Colour of disks that do not count.
 const RATTLER: [u8; 3] = [0xC4, 0xC8, 0xCC];
@@ -27,8 +28,13 @@ const RATTLER: [u8; 3] = [0xC4, 0xC8, 0xCC];
 /// If there are fewer radii than disks.
 pub fn heat_map(name: &str, field: &DisplacementField<2>, radii: &[f64], frame: &MapFrame) -> Figure {
     let range = Range::of(field.counted().map(|disk| disk.distance * disk.radial));
+    let spot = |disk: &Moved<2>| Spot {
+        place: disk.position,
+        diameter: 2.0 * radii[disk.disk],
+        value: disk.counted.then_some(disk.distance * disk.radial),
+    };
     let elements = [
-        disks(frame, field, radii, range.shown),
+        spots(frame, field.disks.iter().map(spot), range.shown, Some(field.inner_radius)),
         frame.boundary(),
         frame.scale_bar(),
         colour_bar(diverging, LEVELS),
@@ -51,20 +57,30 @@ pub fn heat_map(name: &str, field: &DisplacementField<2>, radii: &[f64], frame: 
     }
 }
 
-/// All mobile disks and the inflated one, in a group with its origin at the centre.
-fn disks(frame: &MapFrame, field: &DisplacementField<2>, radii: &[f64], full: f64) -> String {
+/// A disk of a map.
+pub(crate) struct Spot {
+    /// Its place relative to the centre of the map \[length\].
+    pub place: Vector<2>,
+    /// Its diameter \[length\].
+    pub diameter: f64,
+    /// Its value; none for a disk that does not count.
+    pub value: Option<f64>,
+}
+
+/// Disks coloured by their values, full at ±`full`, and last the inflated one, in a group with its origin at the centre.
+pub(crate) fn spots(frame: &MapFrame, all: impl Iterator<Item = Spot>, full: f64, inflated: Option<f64>) -> String {
     // Colour level, then width: few groups, in a fixed order.
     let mut groups: BTreeMap<(Option<i32>, i64), Vec<Segment>> = BTreeMap::new();
-    for disk in &field.disks {
-        let level = disk.counted.then(|| level(disk.distance * disk.radial, full, LEVELS));
-        let points = groups.entry((level, frame.tenths(2.0 * radii[disk.disk]))).or_default();
-        points.push([frame.place(disk.position); 2]);
+    for spot in all {
+        let level = spot.value.map(|value| level(value, full, LEVELS));
+        let points = groups.entry((level, frame.tenths(spot.diameter))).or_default();
+        points.push([frame.place(spot.place); 2]);
     }
     let group = |((level, width), points): ((Option<i32>, i64), Vec<_>)| {
         let colour = level.map_or(RATTLER, |level| diverging(f64::from(level) / f64::from(LEVELS)));
         Group::new(colour, width, points)
     };
     let mut groups: Vec<Group> = groups.into_iter().map(group).collect();
-    groups.push(Group::new([0; 3], frame.tenths(2.0 * field.inner_radius), vec![[[0; 2]; 2]]));
+    groups.extend(inflated.map(|radius| Group::new([0; 3], frame.tenths(2.0 * radius), vec![[[0; 2]; 2]])));
     frame.layer(groups)
 }

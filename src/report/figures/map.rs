@@ -63,6 +63,13 @@ impl MapFrame {
         )
     }
 
+    /// An ellipse around the centre with these half axes.
+    pub(crate) fn ellipse(&self, half_axes: [f64; 2]) -> String {
+        let [x, y] = half_axes.map(|half| 0.1 * self.zoom * half);
+        let (cx, cy) = (LEFT + 0.5 * SIDE, TOP + 0.5 * SIDE);
+        format!("<ellipse cx=\"{cx}\" cy=\"{cy}\" rx=\"{x:.1}\" ry=\"{y:.1}\" fill=\"none\" stroke=\"{INK}\"/>\n")
+    }
+
     pub(crate) fn boundary(&self) -> String {
         let [x, y] = self.half_sides.map(|half| 0.1 * self.zoom * half);
         match self.boundary {

@@ -24,6 +24,8 @@ pub(crate) mod palette;
 pub(crate) mod plot;
 pub mod radial;
 pub mod radial_dependence;
+pub mod shell_map;
+pub mod slice_map;
 pub mod spectrum;
 
 /// Height of every figure \[px\].
@@ -96,6 +98,10 @@ impl Figure {
 
 /// r·d_r as SVG text with a subscript.
 pub(crate) const RESCALED: &str = "r·d<tspan dy=\"3\" font-size=\"10\">r</tspan><tspan dy=\"-3\">\u{200B}</tspan>";
+
+/// r²·d_r, for spheres.
+pub(crate) const RESCALED_IN_SPACE: &str =
+    "r²·d<tspan dy=\"3\" font-size=\"10\">r</tspan><tspan dy=\"-3\">\u{200B}</tspan>";
 
 /// d_0^eff as SVG text.
 #[cfg(feature = "fit")]

@@ -3,12 +3,12 @@
 use plotters::prelude::*;
 
 use crate::observe::RadialProfile;
-use crate::report::curve::{Curve, curves, fitted_range};
+use crate::report::curve::{Curve, curves, fitted_range, power};
 #[cfg(feature = "fit")]
 use crate::report::figures::AMPLITUDE;
 use crate::report::figures::chart::{Axes, Chart, Drawn, Entry, LegendLine, SCALE, Scaling, Sign};
 use crate::report::figures::palette::{BLUE, VERMILLION};
-use crate::report::figures::{Figure, FigureError, RESCALED};
+use crate::report::figures::{Figure, FigureError, RESCALED, RESCALED_IN_SPACE};
 use crate::response::Response;
 
 /// Number of points of a fitted curve: two pixels apart.
@@ -27,19 +27,25 @@ pub fn radial_figure(name: &str, response: &Response, profile: &RadialProfile) -
     let curves: Vec<Curve> = curves(response).into_iter().filter(|curve| distinct(response, curve)).collect();
     let fitted = |radius: f64| range.is_none_or(|[from, to]| from <= radius && radius <= to);
     let [_, outer_radius] = response.detail.radii();
-    let y_range = y_range(profile, &curves, outer_radius);
+    let power = power(response);
+    let y_range = y_range(profile, &curves, outer_radius, power);
+    // r·d_r, or r²·d_r of spheres.
+    let (words, label, unit) = match power {
+        2 => ("r²·d_r", RESCALED_IN_SPACE, "length³"),
+        _ => ("r·d_r", RESCALED, "length²"),
+    };
     let chart = Chart {
         title: format!("{name}: radial profile"),
         description: format!(
-            "Mean rescaled radial displacement r·d_r of {} rings with standard errors against the distance r from the \
+            "Mean rescaled radial displacement {words} of {} rings with standard errors against the distance r from the \
              inflated disk{}",
             profile.rings.len(),
             if curves.is_empty() { "" } else { ", and the fitted solutions" }
         ),
         x_label: "r (length)",
         x_range: [0.0, 1.02 * outer_radius],
-        y_label: RESCALED,
-        y_unit: "length²",
+        y_label: label,
+        y_unit: unit,
         y_range,
         legend: legend(response, &curves),
     };
@@ -47,14 +53,14 @@ pub fn radial_figure(name: &str, response: &Response, profile: &RadialProfile) -
         for curve in curves.iter().filter(|curve| !curve.decided).chain(curves.iter().filter(|curve| curve.decided)) {
             draw_curve(axes, scaling, curve, response, y_range)?;
         }
-        draw_rings(axes, scaling, profile, fitted)
+        draw_rings(axes, scaling, (profile, power), fitted)
     })
 }
 
 /// Range that contains all rings with their errors, zero, and the selected solution.
-fn y_range(profile: &RadialProfile, curves: &[Curve], outer_radius: f64) -> [f64; 2] {
+fn y_range(profile: &RadialProfile, curves: &[Curve], outer_radius: f64, power: i32) -> [f64; 2] {
     let rings = profile.rings.iter().flat_map(|ring| {
-        [ring.mean - ring.standard_error, ring.mean + ring.standard_error].map(|value| ring.radius * value)
+        [ring.mean - ring.standard_error, ring.mean + ring.standard_error].map(|value| ring.radius.powi(power) * value)
     });
     let first = profile.rings.first().map_or(outer_radius, |ring| ring.radius);
     let decided = curves.iter().filter(|curve| curve.decided).flat_map(|curve| {
@@ -154,12 +160,12 @@ fn draw_curve(
 fn draw_rings(
     axes: &mut Axes<'_, '_>,
     scaling: Scaling,
-    profile: &RadialProfile,
+    (profile, power): (&RadialProfile, i32),
     fitted: impl Fn(f64) -> bool,
 ) -> Drawn {
     let [red, green, blue] = MEASURED;
     let ink = RGBColor(red, green, blue);
-    let value = |radius: f64, displacement: f64| scaling.apply(radius * displacement);
+    let value = |radius: f64, displacement: f64| scaling.apply(radius.powi(power) * displacement);
     let drawable = || profile.rings.iter().filter(|ring| (ring.radius * ring.mean * ring.standard_error).is_finite());
     axes.draw_series(drawable().map(|ring| {
         let ends = [ring.mean - ring.standard_error, ring.mean + ring.standard_error];

@@ -66,7 +66,7 @@ pub(crate) fn sections(report: &Report, samples: &[SampleReport], times: Times) 
     all.extend(response::sections(responses));
     all.push(phase_frequency::section(samples));
     #[cfg(feature = "linear")]
-    all.extend([states::plastic(samples), crate::report::protocol::section(samples)]);
+    all.extend([states::plastic(report, samples), crate::report::protocol::section(samples)]);
     all.retain(|section| !section.rows.is_empty());
     all
 }

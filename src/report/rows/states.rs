@@ -13,7 +13,11 @@ use crate::run::{Report, RestSummary, SampleReport, SampleResult};
 
 pub(super) fn packing(report: &Report, samples: &[SampleReport]) -> Section {
     let mut rows = Rows::of_samples(samples);
+    let unit = pressure_unit(report);
     let (inside, radius) = match report.scene.inflation.boundary {
+        Boundary::HeldRim { .. } if report.scene.dimension == 3 => {
+            ("spheres within the shell, N", "radius of the shell, R [length]")
+        }
         Boundary::HeldRim { .. } => ("disks in the circle, N", "radius of the circle, R [length]"),
         Boundary::Periodic => ("mobile disks, N", "half the shortest side, R [length]"),
     };
@@ -25,7 +29,7 @@ pub(super) fn packing(report: &Report, samples: &[SampleReport]) -> Section {
         .add("packing fraction at the quench", |it| {
             it.packing.quench_packing_fraction.map(|value| significant(value, 5))
         })
-        .add("pressure, p [force/length]", |it| Some(significant(it.packing.pressure, 5)))
+        .add(format!("pressure, p [{unit}]"), |it| Some(significant(it.packing.pressure, 5)))
         .add("coordination of the backbone, Z", |it| {
             let backbone = it.packing.rattler_count < it.packing.disk_count;
             backbone.then(|| significant(it.packing.coordination, 4))
@@ -60,7 +64,7 @@ pub(super) fn inflation(report: &Report, samples: &[SampleReport], times: Times)
         settings(report, &sample.name).map(|sample| sample.relaxer.name().into())
     };
     let exponent = pressure_exponent(report.scene.law.exponent());
-    let coupling = report.scene.inflation.on_site_coupling;
+    let (coupling, unit) = (report.scene.inflation.on_site_coupling, pressure_unit(report));
     rows.add("on-site coupling, Γ [force/length]", |_| coupling.map(|value| significant(value, 5)));
     rows.add("relaxer", relaxer)
         .add("at rest by", |it| Some(criterion(&it.inflation.after.rest).into()))
@@ -83,10 +87,10 @@ pub(super) fn inflation(report: &Report, samples: &[SampleReport], times: Times)
     rows.add("rattlers before, after", |it| {
         Some(format!("{}, {}", count(it.inflation.before.rattler_count), count(it.inflation.after.rattler_count)))
     })
-    .add("pressure before, p [force/length]", |it| Some(significant(it.inflation.before.pressure, 5)))
-    .add("pressure change, Δp [force/length]", |it| Some(significant(it.inflation.pressure_change, 4)))
-    .add(scaled_label(exponent), |it| it.inflation.scaled_pressure_change.map(|value| significant(value, 4)))
-    .add("Δp after deflation [force/length]", |it| {
+    .add(format!("pressure before, p [{unit}]"), |it| Some(significant(it.inflation.before.pressure, 5)))
+    .add(format!("pressure change, Δp [{unit}]"), |it| Some(significant(it.inflation.pressure_change, 4)))
+    .add(scaled_label(exponent, unit), |it| it.inflation.scaled_pressure_change.map(|value| significant(value, 4)))
+    .add(format!("Δp after deflation [{unit}]"), |it| {
         let deflated = it.inflation.deflated.as_ref()?;
         Some(significant(deflated.pressure - it.inflation.before.pressure, 4))
     })
@@ -136,7 +140,7 @@ fn negative(certificate: &Certificate) -> Option<String> {
 }
 
 #[cfg(feature = "linear")]
-pub(super) fn plastic(samples: &[SampleReport]) -> Section {
+pub(super) fn plastic(report: &Report, samples: &[SampleReport]) -> Section {
     use crate::response::Measurement;
     use crate::run::PlasticSummary;
 
@@ -152,18 +156,25 @@ pub(super) fn plastic(samples: &[SampleReport]) -> Section {
         Measurement::Refused(_) => Some("none".into()),
     })
     .add("linear: contact opens at d_0 [length]", |it| measured(it)?.first_opening.map(|at| significant(at, 3)))
-    .add("linear: Δp [force/length]", |it| Some(significant(measured(it)?.linear_pressure_change, 4)))
+    .add(format!("linear: Δp [{}]", pressure_unit(report)), |it| {
+        Some(significant(measured(it)?.linear_pressure_change, 4))
+    })
     .add("plastic share, |d − d_0 u|/|d|", |it| measured(it).map(|plastic| significant(plastic.share, 3)))
     .add("plastic participation ratio", |it| measured(it).map(|plastic| significant(plastic.participation_ratio, 3)));
     rows.section("Plastic part")
 }
 
-fn scaled_label(exponent: f64) -> String {
+fn scaled_label(exponent: f64, unit: &str) -> String {
     if exponent == 1.0 / 3.0 {
-        "Δp/p^(1/3) [(force/length)^(2/3)]".into()
+        format!("Δp/p^(1/3) [({unit})^(2/3)]")
     } else {
-        format!("Δp/p^{0} [(force/length)^{1}]", significant(exponent, 3), significant(1.0 - exponent, 3))
+        format!("Δp/p^{0} [({unit})^{1}]", significant(exponent, 3), significant(1.0 - exponent, 3))
     }
+}
+
+/// Unit of a pressure.
+fn pressure_unit(report: &Report) -> &'static str {
+    if report.scene.dimension == 3 { "force/length^2" } else { "force/length" }
 }
 
 /// Number of factorisations, if the relaxer made any.
