@@ -16,7 +16,8 @@ use crate::verdict::VerdictSettings;
 /// A file may contain a [`ProtocolChoice`] as `protocol`: it sets the relaxer of every sample without one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Scene {
-    /// Dimension of space: 2 for disks, 3 for spheres.
+    /// Dimension of space: 2 for disks, 3 for spheres. Written if it is not 2, so that the hash of an earlier scene is the same.
+    #[serde(skip_serializing_if = "is_plane")]
     pub dimension: usize,
     /// Number of disks in the box.
     pub disk_count: usize,
@@ -34,6 +35,16 @@ pub struct Scene {
     pub verdict: VerdictSettings,
     /// The packings.
     pub sample: Vec<Sample>,
+}
+
+/// Whether a dimension is that of the plane.
+pub(crate) fn is_plane(dimension: &usize) -> bool {
+    *dimension == 2
+}
+
+/// The dimension of files that give none.
+pub(crate) fn plane() -> usize {
+    2
 }
 
 /// The preparation of packings.

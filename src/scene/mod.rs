@@ -19,6 +19,7 @@ pub(crate) mod toml_text;
 
 pub use check::SceneError;
 pub use definition::{PreparationSettings, Sample, Scene};
+pub(crate) use definition::{is_plane, plane};
 pub use finite_numbers::NotWritable;
 pub use observables::{
     AngularCorrelationSettings, AngularProfileSettings, BondChangeSettings, ContactChangeSettings,

@@ -179,10 +179,17 @@ impl Progress for Deadline {
 fn run_task(task: &Task, time_limit: Option<f64>) -> Vec<Record> {
     let allowed = time_limit.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
     let deadline = Deadline(allowed.and_then(|allowed| Instant::now().checked_add(allowed)));
-    let (law, deadline) = (&task.law, &deadline);
+    let deadline = &deadline;
     let scenes = task.scenes();
-    let Some(first) = scenes.first() else { return Vec::new() };
-    let prepared = run::prepared::<2>(first, &first.sample[0], law, 0, deadline);
+    match scenes.first().map(|scene| scene.dimension) {
+        Some(3) => records::<3>(task, &scenes, deadline),
+        _ => records::<2>(task, &scenes, deadline),
+    }
+}
+
+fn records<const D: usize>(task: &Task, scenes: &[Scene], deadline: &Deadline) -> Vec<Record> {
+    let (law, Some(first)) = (&task.law, scenes.first()) else { return Vec::new() };
+    let prepared = run::prepared::<D>(first, &first.sample[0], law, 0, deadline);
     let record = |scene: &Scene| match &prepared {
         Ok((packing, summary)) => {
             let made = (packing.clone(), summary.clone());

@@ -197,6 +197,7 @@ mod tests {
         let scene = &task.scenes()[0];
         let sample = &scene.sample[0];
         let cell = Cell {
+            dimension: scene.dimension,
             law: scene.law,
             disk_count: scene.disk_count,
             target: task.target,

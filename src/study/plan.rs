@@ -9,7 +9,7 @@ use crate::inflation::Boundary;
 use crate::law::choice::LawChoice;
 use crate::memory::{Memory, TooLarge};
 use crate::scene::Scene;
-use crate::scene::reduced_pressure::mobile_count;
+use crate::scene::reduced_pressure::{exponent_of_size, mobile_count};
 use crate::study::settings::{Study, StudyError, Target};
 
 /// One packing and its inflations.
@@ -158,10 +158,12 @@ impl Task {
     /// packings; unjammed ones, with p = 1 here, take a tenth and less.
     /// long, and unjammed packings, for which p = 1 is taken, take a tenth and less.
     pub fn expected_seconds(&self) -> f64 {
-        let mobile = mobile_count(self.disk_count, self.boundary(), 2);
+        let mobile = mobile_count(self.disk_count, self.boundary(), self.study.scene.dimension);
         let pressure = match self.target {
             Target::Pressure(pressure) => pressure,
-            Target::ReducedPressure(reduced) => reduced / libm::pow(mobile, self.law.exponent() - 1.0),
+            Target::ReducedPressure(reduced) => {
+                reduced / libm::pow(mobile, exponent_of_size(&self.law, self.study.scene.dimension))
+            }
             Target::PackingFraction(_) => 1.0,
         };
         let size = libm::pow(self.disk_count as f64, 1.5);

@@ -16,6 +16,7 @@ use crate::response::{PhaseDecision, Response};
 use crate::run::{RunError, SampleResult};
 use crate::scene::Scene;
 use crate::scene::reduced_pressure::{mobile_count, reduction};
+use crate::scene::{is_plane, plane};
 use crate::study::curves::curves;
 use crate::study::plan::Task;
 use crate::study::settings::Target;
@@ -23,6 +24,9 @@ use crate::study::settings::Target;
 /// The settings of samples that differ only in the seed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
+    /// Dimension of space. Written if it is not 2.
+    #[serde(default = "plane", skip_serializing_if = "is_plane")]
+    pub dimension: usize,
     /// The contact law.
     pub law: LawChoice,
     /// Disks in the box.
@@ -45,7 +49,7 @@ impl Cell {
 
     /// N, the number of disks in the circle by area, or of the whole periodic box.
     pub fn mobile_count(&self) -> f64 {
-        mobile_count(self.disk_count, self.boundary, 2)
+        mobile_count(self.disk_count, self.boundary, self.dimension)
     }
 }
 
@@ -132,8 +136,15 @@ impl Record {
         let sample = &scene.sample[0];
         let (disk_count, increase) = (scene.disk_count, scene.inflation.increase);
         let boundary = scene.inflation.boundary;
-        let cell =
-            Cell { law: scene.law, disk_count, target: task.target, increase, relaxer: sample.relaxer, boundary };
+        let cell = Cell {
+            dimension: scene.dimension,
+            law: scene.law,
+            disk_count,
+            target: task.target,
+            increase,
+            relaxer: sample.relaxer,
+            boundary,
+        };
         let outcome = match result {
             Ok(result) => RecordOutcome::Done {
                 phase: result.response.phase,

@@ -224,6 +224,7 @@ mod tests {
     #[test]
     fn a_sample_without_its_excess_has_no_row() {
         let mut cell = CellSamples::new(crate::study::Cell {
+            dimension: 2,
             law: Default::default(),
             disk_count: 100,
             target: crate::study::Target::Pressure(1.0),

@@ -323,7 +323,9 @@ impl Study {
         }
         let protocol = ProtocolChoice::default();
         match target {
-            Target::PackingFraction(fraction) => vec![protocol.relaxer_of(&Source::PackingFraction(fraction))],
+            Target::PackingFraction(fraction) => {
+                vec![protocol.relaxer_in(self.scene.dimension, &Source::PackingFraction(fraction))]
+            }
             Target::Pressure(_) | Target::ReducedPressure(_) => vec![protocol.relaxer()],
         }
     }

@@ -302,6 +302,7 @@ mod tests {
     fn cell_of(seed: u64, count: usize, pressure: f64, unit: f64) -> (SeriesPoint, CellSamples) {
         let mut generator = Pcg64::seed_from_u64(seed);
         let cell = Cell {
+            dimension: 2,
             law: Default::default(),
             disk_count: 100,
             target: Target::Pressure(pressure),

@@ -25,6 +25,7 @@ const RATIO: f64 = 0.48;
 
 fn cell(disk_count: usize, target: Target, increase: f64) -> Cell {
     Cell {
+        dimension: 2,
         law: LawChoice::Hertzian(Hertzian::default()),
         disk_count,
         target,
