@@ -34,6 +34,7 @@ mod preparation;
 mod protocol;
 mod relax;
 #[cfg(feature = "linear")]
+mod spheres;
 mod stability;
 mod strain;
 mod tilted;
