@@ -5,7 +5,7 @@
 //! S(ℓ) = P_ℓ/P_1        Σ_ℓ (2ℓ+1) P_ℓ + ρ = V
 //! ```
 //!
-//! P_ℓ is the mean power of the 2ℓ+1 harmonics of degree ℓ: 4π P_ℓ is the C_ℓ of the literature, and S(ℓ) = C_ℓ/C_1.
+//! P_ℓ is the mean power of the 2ℓ+1 harmonics √(2ℓ+1) R_ℓm, of mean square 1, of degree ℓ: 4π P_ℓ is the C_ℓ of the literature, and S(ℓ) = C_ℓ/C_1.
 //! In a ring P_f is the power of both modes of frequency f, and S(f) its ratio, so that the variance is Σ P_f. The
 //! variance per degree, (2ℓ+1) P_ℓ, is therefore what compares with S(f): if S(ℓ) ∼ ℓ^(−s), it falls as ℓ^(1−s). The
 //! values of an isotropic field along one great circle have S(f) ∼ f^(1−s) too.
@@ -107,6 +107,10 @@ pub struct ShellSpectrum {
 /// A negative ρ up to this share of Σ (2ℓ+1) P_ℓ counts as 0 in a correlation function, as in a ring \[1\].
 const NOISE: f64 = 0.05;
 
+/// A power that answers to a change of another by more than this has lost half of its digits: the directions do not
+/// separate the degrees.
+const LARGEST_RESPONSE: f64 = 1e8;
+
 impl ShellSpectrum {
     /// The spectrum of a shell.
     ///
@@ -156,8 +160,11 @@ impl ShellSpectrum {
         let mut squares = vec![0.0; degree_limit];
         for measured in 1..=degree_limit {
             let error = self.standard_errors[measured];
-            let response = solved(&|degree| if degree == measured { error } else { 0.0 }, 0.0)?;
-            squares.iter_mut().zip(&response).for_each(|(square, change)| *square += change * change);
+            let response = solved(&|degree| if degree == measured { 1.0 } else { 0.0 }, 0.0)?;
+            if !response.iter().all(|change| change.abs() <= LARGEST_RESPONSE) {
+                return Err(ShellError::NotSeparable { disk_count, degree_limit });
+            }
+            squares.iter_mut().zip(&response).for_each(|(square, change)| *square += (error * change).powi(2));
         }
         self.power[1..].copy_from_slice(&found[..degree_limit]);
         self.unresolved = found[degree_limit];

@@ -1,7 +1,8 @@
 //! [`gaussian_shells`]: synthetic shells with a known spectrum.
 //!
 //! ```text
-//! d_r(n) = Σ_(ℓ=1)^H √S(ℓ) Σ_m ξ_ℓm R_ℓm(n) + noise        ξ normal, of variance 1        ⟨d_r d_r'⟩ = Σ (2ℓ+1) S(ℓ) P_ℓ(n·n')
+//! d_r(n) = Σ_(ℓ=1)^H √((2ℓ+1) S(ℓ)) Σ_m ξ_ℓm R_ℓm(n) + noise        ξ normal, of variance 1
+//! ⟨d_r d_r'⟩ = Σ (2ℓ+1) S(ℓ) P_ℓ(n·n')        √(2ℓ+1) R_ℓm has the mean square 1
 //! ```
 
 use std::f64::consts::PI;
@@ -68,7 +69,8 @@ pub fn gaussian_shells(
 ) -> Result<Vec<SyntheticShell>, ShellError> {
     let highest = settings.highest_degree;
     at_most(MOST_DEGREES).check("highest_degree", highest, 16.0 * highest as f64)?;
-    let strength = |degree: usize| if degree == 0 { 0.0 } else { spectrum(degree as f64).sqrt() };
+    let strength =
+        |degree: usize| if degree == 0 { 0.0 } else { ((2 * degree + 1) as f64 * spectrum(degree as f64)).sqrt() };
     let strengths: Vec<f64> = (0..=highest).map(strength).collect();
     let mut random = Pcg64::seed_from_u64(settings.seed);
     let mut shells = Vec::with_capacity(count);
@@ -86,7 +88,9 @@ pub fn gaussian_shells(
                 values.push(field + settings.noise * normal_pair(&mut random)[0]);
             }
         });
-        let power = amplitudes.power().iter().enumerate().map(|(degree, p)| p / (2 * degree + 1) as f64).collect();
+        let modes = |degree: usize| (2 * degree + 1) as f64;
+        let power = amplitudes.power().iter().enumerate();
+        let power = power.map(|(degree, p)| p / (modes(degree) * modes(degree))).collect();
         shells.push(SyntheticShell { shell: ShellSample::new(&directions, &values)?, power });
     }
     Ok(shells)

@@ -81,8 +81,8 @@ fn a_dipole_has_the_cosine_and_its_angles() {
     let made = gaussian_shells(&settings, 1, |_| 1.0).expect("sound").remove(0);
     let found = correlation(&made.shell, 36);
     // Pairs at one angle average over directions to 1/√(number of spheres) at worst; bins are 5° wide, with curvature
-    // (0.087)²/24.
-    for (angle, value) in found.angles.iter().zip(&found.values).skip(1) {
+    // (0.087)²/24. Neighbours of this lattice are 5° apart, so that the first bin has pairs near the poles only.
+    for (angle, value) in found.angles.iter().zip(&found.values).skip(2) {
         assert!((value - angle.cos()).abs() < 0.03, "{angle}: {value}");
     }
     assert!((found.anticorrelation.expect("pairs").value - 1.0).abs() < 0.01);
@@ -132,13 +132,13 @@ fn the_mean_over_fields_is_the_correlation_of_the_spectrum() {
 
 #[test]
 fn the_cap_tells_g_at_pi_better_than_the_last_bin() {
-    let settings = SyntheticSettings { disk_count: 300, highest_degree: 5, noise: 1.0, seed: 31, ..Default::default() };
+    let settings = SyntheticSettings { disk_count: 300, highest_degree: 5, noise: 3.0, seed: 31, ..Default::default() };
     let made = gaussian_shells(&settings, 200, |l| l.powf(-2.0)).expect("sound");
     let square = |error: &dyn Fn(&ShellCorrelation) -> f64| -> f64 {
         made.iter()
             .map(|made| {
                 let truth: f64 = (1..=5).map(|l| -(-1f64).powi(l) * (2 * l + 1) as f64 * made.power[l as usize]).sum();
-                let total: f64 = (1..=5).map(|l| (2 * l + 1) as f64 * made.power[l]).sum::<f64>() + 1.0;
+                let total: f64 = (1..=5).map(|l| (2 * l + 1) as f64 * made.power[l]).sum::<f64>() + 9.0;
                 (error(&correlation(&made.shell, 36)) - truth / total).powi(2)
             })
             .sum()

@@ -202,7 +202,8 @@ fn the_shell_of_a_field_holds_the_spheres_of_its_radii_that_count() {
     // A dipole: all power at ℓ = 1, with leakage removed to the error of a few hundred directions, √(2/3)/√n.
     let relative = found.spectrum.normalised().expect("power");
     assert!(relative[2..].iter().all(|power| power.abs() < 0.05), "{relative:?}");
-    assert!((found.correlation.anticorrelation.expect("pairs").value - 1.0).abs() < 0.05);
+    // z² scatters by 0.9 of its mean, and some 200 spheres have an opposite one in the cap.
+    assert!((found.correlation.anticorrelation.expect("pairs").value - 1.0).abs() < 0.2);
     let text = serde_json::to_string(&found).expect("plain data");
     assert_eq!(serde_json::from_str::<ShellAnalysis>(&text).expect("the same"), found);
     assert_eq!(
