@@ -32,6 +32,9 @@ const DEPENDENCE_UP_TO: usize = 32;
 /// Range of ρ N_f over Σ K S, in decades above and below 1.
 const NOISE_DECADES: f64 = 8.0;
 
+/// Range of A below its best value without noise.
+const AMPLITUDE_DECADES: f64 = 4.0;
+
 /// The expected powers at irregular places, for a spectrum of unit amplitude and for independent values.
 pub(super) trait ExpectedPower {
     /// Expected powers of a spectrum known at the sources.
@@ -74,6 +77,8 @@ pub(super) struct Ring {
     pub half_modes: Vec<f64>,
     /// m over the number of independent powers with the same scatter, for S ∝ f^(−1.5).
     pub dependence: f64,
+    /// ρ over the variance, if it is measured and not a parameter.
+    pub measured_noise: Option<f64>,
     /// Expected powers from f = 1 on.
     pub window: Box<dyn ExpectedPower>,
     /// ln g of every source.
@@ -181,7 +186,7 @@ impl Ring {
         };
         let half_modes = vec![1.0; power.len()];
         let window = Box::new(RingWindow { window, sources });
-        Ok(Ring { lowest, power, half_modes, dependence, window, logarithms })
+        Ok(Ring { lowest, power, half_modes, dependence, measured_noise: None, window, logarithms })
     }
 
     /// Half the number of modes.
@@ -195,6 +200,9 @@ impl Ring {
         let (expected, white) = (&expected[self.lowest - 1..], &self.window.white()[self.lowest - 1..]);
         let at = |ratio: f64| self.at(expected, white, ratio);
         let without = at(0.0);
+        if let Some(noise) = self.measured_noise {
+            return self.with_noise(expected, white, without, noise.max(0.0));
+        }
         if noise == SingleDiskNoise::None {
             return without;
         }
@@ -204,6 +212,20 @@ impl Ring {
         let high = libm::log(ratios().fold(0.0, larger)) + NOISE_DECADES;
         let found = at(libm::exp(golden(low, high, 1e-4, &|log| at(libm::exp(log)).deviance)));
         if found.deviance < without.deviance { found } else { without }
+    }
+
+    /// E = A e + ρ N with a given ρ and the best A; `without` is the best for ρ = 0.
+    fn with_noise(&self, expected: &[f64], white: &[f64], without: Best, noise: f64) -> Best {
+        let terms = |amplitude: f64| {
+            let powers = self.power.iter().zip(&self.half_modes);
+            expected.iter().zip(white).zip(powers).map(move |((e, w), (p, h))| (amplitude * e + noise * w, *p, *h))
+        };
+        let deviance = |amplitude: f64| 2.0 * terms(amplitude).map(|(e, p, h)| h * (libm::log(e) + p / e)).sum::<f64>();
+        let highest = libm::log(without.amplitude);
+        let low = highest - AMPLITUDE_DECADES * std::f64::consts::LN_10;
+        let amplitude = libm::exp(golden(low, highest + 1.0, 1e-7, &|log| deviance(libm::exp(log))));
+        let scatter = terms(amplitude).map(|(e, p, h)| h * (p / e - 1.0).powi(2)).sum();
+        Best { deviance: deviance(amplitude), amplitude, noise, scatter }
     }
 
     /// E = A (e + ratio N), with the best A.

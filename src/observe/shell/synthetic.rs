@@ -89,8 +89,8 @@ pub fn gaussian_shells(
             }
         });
         let modes = |degree: usize| (2 * degree + 1) as f64;
-        let power = amplitudes.power().iter().enumerate();
-        let power = power.map(|(degree, p)| p / (modes(degree) * modes(degree))).collect();
+        let power = amplitudes.power();
+        let power = power.iter().enumerate().map(|(degree, p)| p / (modes(degree) * modes(degree))).collect();
         shells.push(SyntheticShell { shell: ShellSample::new(&directions, &values)?, power });
     }
     Ok(shells)

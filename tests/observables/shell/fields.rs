@@ -37,11 +37,15 @@ fn the_mean_over_fields_is_the_spectrum_at_every_degree() {
                 let exact = spectrum(degree as f64);
                 assert!((power - exact).abs() < 4.0 * error, "{seed}, {degree}: {power} ± {error}, {exact}");
                 assert!(error < 0.06 * (exact + 0.05), "{seed}, {degree}: {error}");
-                // The stated error of one shell is the scatter: 400 samples tell it to 3.5 %, for P_1 with its three
-                // modes to 7 %; that of one sample varies with its power.
+                // The stated error of one shell against the scatter, which 400 samples tell to 3.5 %, for P_1 with its three
+                // modes to 7 %. Its mean square is (1 + 2/(2ℓ+1)) of the square of its mean. What other degrees leak is not in it.
                 let (square, _) = mean(&found, |sample| sample.standard_errors[degree].powi(2));
                 let ratio = square.sqrt() / (error * 20.0);
-                assert!((0.8..1.5).contains(&ratio), "{seed}, {degree}: stated over found {ratio}");
+                println!(
+                    "{seed}, {degree}: {:.2} standard errors off, stated error over scatter {ratio:.2}",
+                    (power - exact) / error
+                );
+                assert!((0.65..1.7).contains(&ratio), "{seed}, {degree}: stated over found {ratio}");
             }
             let (noise, error) = mean(&found, |sample| sample.unresolved);
             assert!((noise - 0.25).abs() < 4.0 * error, "{seed}: ρ = {noise} ± {error}");
