@@ -87,5 +87,31 @@ fn fits(criterion: &mut Criterion) {
 #[cfg(not(feature = "fit"))]
 fn fits(_: &mut Criterion) {}
 
-criterion_group!(benches, sums, estimators, fits);
+/// Shells of spheres: spectrum, correlation of all pairs, fit of a slope.
+fn shells(criterion: &mut Criterion) {
+    use jamscope::observe::shell::synthetic::{SyntheticSettings, gaussian_shells};
+    use jamscope::observe::shell::{ShellCorrelation, ShellCorrelationSettings, ShellSpectrum, ShellSpectrumSettings};
+    let mut group = criterion.benchmark_group("angular/shells");
+    group.sample_size(10);
+    for disk_count in [500, 5000] {
+        let settings = SyntheticSettings { disk_count, ..SyntheticSettings::default() };
+        let shell = gaussian_shells(&settings, 1, |l| l.powf(-2.5)).expect("enough spheres").remove(0).shell;
+        group.bench_function(BenchmarkId::new("spectrum", disk_count), |bencher| {
+            bencher.iter(|| ShellSpectrum::of(&shell, &ShellSpectrumSettings::default()));
+        });
+        group.bench_function(BenchmarkId::new("correlation", disk_count), |bencher| {
+            bencher.iter(|| ShellCorrelation::of(&shell, &ShellCorrelationSettings::default()));
+        });
+        #[cfg(feature = "fit")]
+        {
+            use jamscope::fit::angular::{ShellFitSettings, fit_shell_slope};
+            group.bench_function(BenchmarkId::new("slope", disk_count), |bencher| {
+                bencher.iter(|| fit_shell_slope(std::slice::from_ref(&shell), &ShellFitSettings::default()));
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, sums, estimators, fits, shells);
 criterion_main!(benches);

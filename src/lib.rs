@@ -68,7 +68,7 @@
 //! | [`lattice`] | lattices with known continuum response | [`Lattice`](lattice::Lattice) |
 //! | [`displacement`] | displacements of all disks | [`DisplacementField`] |
 //! | `plastic` (feature `linear`) | the part of a response beyond the linear one, and where it begins | `plastic::PlasticPart` |
-//! | [`observe`] | radial and angular profile, angular modes, spectrum and correlation, contact forces and changes, penetration and isostatic length | [`RadialProfile`], [`AngularCorrelation`](observe::angular::AngularCorrelation) |
+//! | [`observe`] | radial and angular profile, angular modes, spectrum and correlation of a ring or a shell, contact forces and changes, penetration and isostatic length | [`RadialProfile`], [`AngularCorrelation`](observe::angular::AngularCorrelation) |
 //! | [`reference`](mod@reference) | exact solutions, elastic and screened | [`Annulus`] |
 //! | `fit` (feature `fit`) | a profile against both solutions, with errors and a decision; slope and crossover of an angular spectrum; crossings, powers and collapses of ensembles | `fit::profile::fit_radial_profile`, `fit::angular::fit_slope`, `fit::ensemble` |
 //! | `protocol` (feature `linear`) | whether relaxers end in the same minimum | `protocol::ProtocolSensitivity` |
@@ -248,6 +248,9 @@ mod book {
     mod observe_power_spectrum {}
     #[doc = include_str!("../book/src/observe/angular_correlation.md")]
     mod observe_angular_correlation {}
+    #[cfg(feature = "fit")]
+    #[doc = include_str!("../book/src/observe/shell.md")]
+    mod observe_shell {}
     #[doc = include_str!("../book/src/observe/angular_study.md")]
     mod observe_angular_study {}
     #[doc = include_str!("../book/src/reference.md")]

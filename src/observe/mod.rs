@@ -12,6 +12,7 @@ pub mod multipoles;
 pub mod penetration_length;
 pub mod pressure_change;
 pub mod radial_profile;
+pub mod shell;
 pub mod state;
 
 pub use angular_profile::AngularProfile;
@@ -25,4 +26,5 @@ pub use multipoles::Multipoles;
 pub use penetration_length::PenetrationLength;
 pub use pressure_change::PressureChange;
 pub use radial_profile::{RadialProfile, Ring};
+pub use shell::ShellAnalysis;
 pub use state::State;

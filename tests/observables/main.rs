@@ -8,6 +8,7 @@ mod ensemble_fits;
 #[cfg(feature = "fit")]
 mod fit;
 mod response_observables;
+mod shell;
 
 #[path = "../scenes/lammps_inflated.rs"]
 mod lammps_inflated;

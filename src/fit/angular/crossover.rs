@@ -44,16 +44,7 @@ impl CrossoverSettings {
     /// Checks the settings, independently of the rings.
     pub(crate) fn check(&self) -> Result<(), SpectrumFitError> {
         self.window.check()?;
-        let factor = self.angle_factor;
-        if !(factor > 0.0 && factor.is_finite()) {
-            return Err(SpectrumFitError::SettingOutOfRange { setting: "angle_factor", value: factor });
-        }
-        match self.exponent {
-            ExponentChoice::Fixed(value) if !(value > 0.0 && value <= 100.0) => {
-                Err(SpectrumFitError::SettingOutOfRange { setting: "exponent", value })
-            }
-            _ => Ok(()),
-        }
+        self.exponent.check(self.angle_factor)
     }
 }
 
@@ -65,6 +56,21 @@ pub enum ExponentChoice {
     Fixed(f64),
     /// The best exponent from 0.5 to 6.
     Free,
+}
+
+impl ExponentChoice {
+    /// Checks the exponent, and the factor of the angle.
+    pub(super) fn check(self, angle_factor: f64) -> Result<(), SpectrumFitError> {
+        if !(angle_factor > 0.0 && angle_factor.is_finite()) {
+            return Err(SpectrumFitError::SettingOutOfRange { setting: "angle_factor", value: angle_factor });
+        }
+        match self {
+            ExponentChoice::Fixed(value) if !(value > 0.0 && value <= 100.0) => {
+                Err(SpectrumFitError::SettingOutOfRange { setting: "exponent", value })
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 /// A Lorentzian fitted to the spectra of rings.
@@ -150,10 +156,15 @@ impl CrossoverOutcome {
 pub fn fit_crossover(rings: &[RingSample], settings: &CrossoverSettings) -> Result<CrossoverFit, SpectrumFitError> {
     settings.check()?;
     let powers = Powers::of(rings, &settings.window)?;
+    Ok(crossover_of(&powers, settings.exponent, settings.angle_factor))
+}
+
+/// The crossover of the powers of rings or shells; θ† = `angle_factor`/f†.
+pub(super) fn crossover_of(powers: &Powers, exponent: ExponentChoice, angle_factor: f64) -> CrossoverFit {
     let [_, highest] = powers.window();
     let deviance = |shape: Shape| powers.best(|logarithm| shape.at(logarithm)).deviance;
     // The best exponent at a given crossover, and −2 ln L there.
-    let profile = |crossover: Crossover| match settings.exponent {
+    let profile = |crossover: Crossover| match exponent {
         ExponentChoice::Fixed(exponent) => (exponent, deviance(Shape { crossover, exponent })),
         ExponentChoice::Free => {
             let at = |exponent: f64| deviance(Shape { crossover, exponent });
@@ -168,12 +179,12 @@ pub fn fit_crossover(rings: &[RingSample], settings: &CrossoverSettings) -> Resu
     let inside = GridMinimum::of(&grid, &values, &between);
     let found = CrossoverMinimum::of(inside, [at(Crossover::Zero), at(Crossover::Infinite)], powers.rise());
     let crossover = found.best();
-    let (exponent, _) = profile(crossover);
-    let best = powers.best(|logarithm| Shape { crossover, exponent }.at(logarithm));
-    let parameter_count = if settings.exponent == ExponentChoice::Free { 2 } else { 1 };
-    Ok(CrossoverFit {
-        outcome: found.outcome(settings.angle_factor),
-        exponent,
+    let (fitted, _) = profile(crossover);
+    let best = powers.best(|logarithm| Shape { crossover, exponent: fitted }.at(logarithm));
+    let parameter_count = if exponent == ExponentChoice::Free { 2 } else { 1 };
+    CrossoverFit {
+        outcome: found.outcome(angle_factor),
+        exponent: fitted,
         window: powers.window(),
         power_count: powers.count(),
         scale_free_rise: found.scale_free_rise,
@@ -181,7 +192,7 @@ pub fn fit_crossover(rings: &[RingSample], settings: &CrossoverSettings) -> Resu
         rise: powers.rise(),
         noise: best.noise,
         dispersion: powers.dispersion(best, parameter_count),
-    })
+    }
 }
 
 /// The logarithms of f† to base 2 at which −2 ln L is computed first, ascending.

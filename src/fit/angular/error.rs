@@ -1,6 +1,7 @@
 //! [`SpectrumFitError`]: why a spectrum could not be fitted.
 
 use crate::observe::angular::AngularError;
+use crate::observe::shell::ShellError;
 
 /// Minimum number of powers for a fit.
 pub const LEAST_POWER_COUNT: usize = 3;
@@ -53,4 +54,7 @@ pub enum SpectrumFitError {
     /// The spectrum could not be computed.
     #[error("the spectrum: {0}")]
     Spectrum(#[from] AngularError),
+    /// The spectrum of a shell could not be computed.
+    #[error("the spectrum: {0}")]
+    Shell(#[from] ShellError),
 }

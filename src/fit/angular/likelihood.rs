@@ -1,4 +1,8 @@
-//! Whittle's likelihood of the powers of rings, maximised over amplitudes and noise.
+//! Whittle's likelihood of the powers of rings and shells, maximised over amplitudes and noise.
+//!
+//! ```text
+//! −2 ln L = 2 Σ_f h_f (ln E_f + P_f/E_f)        h: half the number of modes of a power, 1 in a ring, ℓ + ½ in a shell
+//! ```
 
 use crate::fit::angular::error::{LEAST_POWER_COUNT, SpectrumFitError};
 use crate::fit::angular::window::{HighestFrequency, SingleDiskNoise, SpectrumWindowSettings};
@@ -28,22 +32,57 @@ const DEPENDENCE_UP_TO: usize = 32;
 /// Range of ρ N_f over Σ K S, in decades above and below 1.
 const NOISE_DECADES: f64 = 8.0;
 
-/// The powers of several rings.
+/// Range of A below its best value without noise.
+const AMPLITUDE_DECADES: f64 = 4.0;
+
+/// The expected powers at irregular places, for a spectrum of unit amplitude and for independent values.
+pub(super) trait ExpectedPower {
+    /// Expected powers of a spectrum known at the sources.
+    fn expected(&self, spectrum: &[f64]) -> Vec<f64>;
+
+    /// Expected powers of independent values of variance 1.
+    fn white(&self) -> &[f64];
+}
+
+/// The window of a ring, and the frequencies at which a spectrum must be known.
+struct RingWindow {
+    window: SpectralWindow,
+    sources: Vec<Source>,
+}
+
+impl ExpectedPower for RingWindow {
+    fn expected(&self, spectrum: &[f64]) -> Vec<f64> {
+        self.window.expected_from(&self.sources, spectrum)
+    }
+
+    fn white(&self) -> &[f64] {
+        self.window.white()
+    }
+}
+
+/// The powers of several rings or shells.
 pub(super) struct Powers {
     rings: Vec<Ring>,
     noise: SingleDiskNoise,
     highest: usize,
 }
 
-struct Ring {
-    lowest: usize,
-    power: Vec<f64>,
+/// The powers of one ring or shell.
+pub(super) struct Ring {
+    /// Lowest f fitted.
+    pub lowest: usize,
+    /// P_f over the variance, from the lowest f on.
+    pub power: Vec<f64>,
+    /// Half the number of modes of every power: P_f/E_f has the variance 1/h.
+    pub half_modes: Vec<f64>,
     /// m over the number of independent powers with the same scatter, for S ∝ f^(−1.5).
-    dependence: f64,
-    window: SpectralWindow,
-    sources: Vec<Source>,
+    pub dependence: f64,
+    /// ρ over the variance, if it is measured and not a parameter.
+    pub measured_noise: Option<f64>,
+    /// Expected powers from f = 1 on.
+    pub window: Box<dyn ExpectedPower>,
     /// ln g of every source.
-    logarithms: Vec<f64>,
+    pub logarithms: Vec<f64>,
 }
 
 /// −2 ln L up to a constant, and the best parameters of the first ring.
@@ -52,7 +91,7 @@ pub(super) struct Best {
     pub deviance: f64,
     pub amplitude: f64,
     pub noise: f64,
-    /// Σ (P/E − 1)² over all rings.
+    /// Σ h (P/E − 1)² over all rings.
     pub scatter: f64,
 }
 
@@ -64,9 +103,13 @@ impl Powers {
         }
         let found: Result<Vec<Ring>, _> =
             rings.iter().enumerate().map(|(index, ring)| Ring::of(index, ring, settings)).collect();
-        let found = found?;
-        let highest = found.iter().map(|ring| ring.lowest + ring.power.len() - 1).max().unwrap_or(1);
-        Ok(Powers { rings: found, noise: settings.noise, highest })
+        Ok(Self::of_measured(found?, settings.noise))
+    }
+
+    /// The powers of measured rings or shells, at least one.
+    pub(super) fn of_measured(rings: Vec<Ring>, noise: SingleDiskNoise) -> Self {
+        let highest = rings.iter().map(|ring| ring.lowest + ring.power.len() - 1).max().unwrap_or(1);
+        Powers { rings, noise, highest }
     }
 
     /// Number of powers.
@@ -81,8 +124,8 @@ impl Powers {
 
     /// Rise of −2 ln L at the ends of an interval, with the correction for few powers.
     pub(super) fn rise(&self) -> f64 {
-        let count = self.count() as f64;
-        let scatter: f64 = self.rings.iter().map(|ring| ring.power.len() as f64 * ring.dependence).sum();
+        let count: f64 = self.rings.iter().map(Ring::half_count).sum();
+        let scatter: f64 = self.rings.iter().map(|ring| ring.half_count() * ring.dependence).sum();
         RISE * (1.0 + SMALL_COUNT * scatter / (count * count))
     }
 
@@ -100,7 +143,7 @@ impl Powers {
         total
     }
 
-    /// Σ (P/E − 1)² per degree of freedom: 1 if the model is correct.
+    /// Σ h (P/E − 1)² per degree of freedom: 1 if the model is correct.
     pub(super) fn dispersion(&self, best: Best, parameter_count: usize) -> f64 {
         let noises = if self.noise == SingleDiskNoise::Fitted { self.rings.len() } else { 0 };
         let freedom = self.count() as f64 - (self.rings.len() + parameter_count + noises) as f64;
@@ -141,15 +184,25 @@ impl Ring {
         } else {
             1.0
         };
-        Ok(Ring { lowest, power, dependence, window, sources, logarithms })
+        let half_modes = vec![1.0; power.len()];
+        let window = Box::new(RingWindow { window, sources });
+        Ok(Ring { lowest, power, half_modes, dependence, measured_noise: None, window, logarithms })
+    }
+
+    /// Half the number of modes.
+    fn half_count(&self) -> f64 {
+        self.half_modes.iter().sum()
     }
 
     fn best(&self, shape: impl Fn(f64) -> f64, noise: SingleDiskNoise) -> Best {
         let shapes: Vec<f64> = self.logarithms.iter().map(|&logarithm| shape(logarithm)).collect();
-        let expected = self.window.expected_from(&self.sources, &shapes);
+        let expected = self.window.expected(&shapes);
         let (expected, white) = (&expected[self.lowest - 1..], &self.window.white()[self.lowest - 1..]);
         let at = |ratio: f64| self.at(expected, white, ratio);
         let without = at(0.0);
+        if let Some(noise) = self.measured_noise {
+            return self.with_noise(expected, white, without, noise.max(0.0));
+        }
         if noise == SingleDiskNoise::None {
             return without;
         }
@@ -161,13 +214,28 @@ impl Ring {
         if found.deviance < without.deviance { found } else { without }
     }
 
+    /// E = A e + ρ N with a given ρ and the best A; `without` is the best for ρ = 0.
+    fn with_noise(&self, expected: &[f64], white: &[f64], without: Best, noise: f64) -> Best {
+        let terms = |amplitude: f64| {
+            let powers = self.power.iter().zip(&self.half_modes);
+            expected.iter().zip(white).zip(powers).map(move |((e, w), (p, h))| (amplitude * e + noise * w, *p, *h))
+        };
+        let deviance = |amplitude: f64| 2.0 * terms(amplitude).map(|(e, p, h)| h * (libm::log(e) + p / e)).sum::<f64>();
+        let highest = libm::log(without.amplitude);
+        let low = highest - AMPLITUDE_DECADES * std::f64::consts::LN_10;
+        let amplitude = libm::exp(golden(low, highest + 1.0, 1e-7, &|log| deviance(libm::exp(log))));
+        let scatter = terms(amplitude).map(|(e, p, h)| h * (p / e - 1.0).powi(2)).sum();
+        Best { deviance: deviance(amplitude), amplitude, noise, scatter }
+    }
+
     /// E = A (e + ratio N), with the best A.
     fn at(&self, expected: &[f64], white: &[f64], ratio: f64) -> Best {
-        let count = self.power.len() as f64;
-        let terms = || expected.iter().zip(white).zip(&self.power).map(|((e, w), p)| (e + ratio * w, *p));
-        let amplitude = terms().map(|(e, p)| p / e).sum::<f64>() / count;
-        let logarithms: f64 = terms().map(|(e, _)| libm::log(e)).sum();
-        let scatter = terms().map(|(e, p)| (p / (amplitude * e) - 1.0).powi(2)).sum();
+        let count = self.half_count();
+        let powers = || self.power.iter().zip(&self.half_modes);
+        let terms = || expected.iter().zip(white).zip(powers()).map(|((e, w), (p, h))| (e + ratio * w, *p, *h));
+        let amplitude = terms().map(|(e, p, h)| h * (p / e)).sum::<f64>() / count;
+        let logarithms: f64 = terms().map(|(e, _, h)| h * libm::log(e)).sum();
+        let scatter = terms().map(|(e, p, h)| h * (p / (amplitude * e) - 1.0).powi(2)).sum();
         let deviance = 2.0 * (logarithms + count * libm::log(amplitude));
         Best { deviance, amplitude, noise: ratio * amplitude, scatter }
     }

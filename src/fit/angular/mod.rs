@@ -22,6 +22,8 @@
 //! same scatter: at few irregular angles the leakage of low frequencies is common to all
 //! ([`dependence`](crate::observe::angular::dependence)). The standard error is a fourth of the interval.
 //!
+//! For shells of spheres, [`fit_shell_slope`] and [`fit_shell_crossover`] use the same likelihood with 2ℓ+1 modes per power.
+//!
 //! Source: Whittle (1953), Ark. Mat. 2, 423; Sykulski et al. (2019), Biometrika 106, 251; Lawley (1956), Biometrika 43,
 //! 295.
 
@@ -29,6 +31,7 @@ mod crossover;
 mod error;
 mod interval;
 mod likelihood;
+mod shell;
 mod slope;
 mod window;
 
@@ -36,5 +39,6 @@ pub(in crate::fit) use crossover::{Crossover, CrossoverMinimum, Shape, octaves};
 pub use crossover::{CrossoverFit, CrossoverOutcome, CrossoverSettings, ExponentChoice, fit_crossover};
 pub use error::{LEAST_POWER_COUNT, SpectrumFitError};
 pub use interval::Interval;
+pub use shell::{ShellCrossoverSettings, ShellFitSettings, fit_shell_crossover, fit_shell_slope};
 pub use slope::{SlopeFit, SlopeOutcome, fit_slope};
 pub use window::{HighestFrequency, SingleDiskNoise, SpectrumWindowSettings};

@@ -61,7 +61,11 @@ pub enum SlopeOutcome {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn fit_slope(rings: &[RingSample], settings: &SpectrumWindowSettings) -> Result<SlopeFit, SpectrumFitError> {
-    let powers = Powers::of(rings, settings)?;
+    Ok(slope_of(&Powers::of(rings, settings)?))
+}
+
+/// The slope of the powers of rings or shells.
+pub(super) fn slope_of(powers: &Powers) -> SlopeFit {
     let at = |exponent: f64| powers.best(|logarithm| libm::exp(-exponent * logarithm));
     let grid: Vec<f64> = (0..=STEPS).map(|step| FIRST + STEP * f64::from(step)).collect();
     let found = minimum(&grid, powers.rise(), &|exponent| at(exponent).deviance);
@@ -72,7 +76,7 @@ pub fn fit_slope(rings: &[RingSample], settings: &SpectrumWindowSettings) -> Res
         _ => SlopeOutcome::Undetermined,
     };
     let best = at(found.at);
-    Ok(SlopeFit {
+    SlopeFit {
         outcome,
         exponent,
         window: powers.window(),
@@ -80,5 +84,5 @@ pub fn fit_slope(rings: &[RingSample], settings: &SpectrumWindowSettings) -> Res
         amplitude: best.amplitude,
         noise: best.noise,
         dispersion: powers.dispersion(best, 1),
-    })
+    }
 }

@@ -4,10 +4,11 @@
 //! x = r ΔZ, or r √ΔZ        y = (h_∥(r)/h_0) xⁿ        ℓ_iso: the smallest r at which y rises to a threshold        C: x at ℓ_iso
 //! ```
 //!
-//! n is the power of the [`Tail`] that makes y constant beyond ℓ_iso. In an elastic medium a growing disk causes a
-//! strain 1/r². In the study that disk is also held at its position. The force that holds it causes a strain 1/r
-//! ([`PointForce`](crate::reference::angular_modes::point_force::PointForce)), which dominates beyond any ℓ_iso; see
-//! the book. h_0 makes h_∥ dimensionless, see [`Normalisation`]. The threshold is a given value or a share of the
+//! n is the power of the [`Tail`] that makes y constant beyond ℓ_iso. In an elastic medium of D dimensions a growing
+//! disk causes a strain 1/r^D. In the study that disk is also held at its position. The force that holds it causes a
+//! strain 1/r^(D−1) ([`PointForce`](crate::reference::angular_modes::point_force::PointForce) for D = 2), which
+//! dominates beyond any ℓ_iso; see the book. So h_∥ r^(D−1) ΔZ^(D−1) is level far away in the geometry of the study,
+//! and h_∥ r^D ΔZ^D around a free disk. h_0 makes h_∥ dimensionless, see [`Normalisation`]. The threshold is a given value or a share of the
 //! plateau, see [`IsostaticRule`]; for x see [`Scale`]. Between two rings y is interpolated linearly.
 //!
 //! # Source
@@ -76,7 +77,7 @@ pub struct IsostaticLength {
     /// h_0, if there is a curve \[length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<f64>,
-    /// n: 1 or 2.
+    /// n: 1, 2 or 3.
     #[serde(default)]
     pub tail: Tail,
     /// The factor in x.

@@ -22,23 +22,40 @@ pub enum Normalisation {
     Length,
 }
 
-/// How h_∥ falls beyond ℓ_iso.
+/// How h_∥ falls beyond ℓ_iso, in a continuum of D dimensions.
+///
+/// A growing disk that is free is a force dipole: u ∼ r^(1−D), strain ∼ r^(−D). The force that holds a disk at its
+/// position is a point force: u ∼ r^(2−D) (ln r for D = 2), strain ∼ r^(1−D), which dominates far away.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Tail {
-    /// As 1/r: the inflated disk is held at its position by a force.
+    /// As 1/r: in two dimensions the inflated disk is held at its position by a force.
     #[default]
     InverseDistance,
-    /// As 1/r²: the inflated disk is free, as in the periodic box, and its contact forces add up to zero.
+    /// As 1/r²: in two dimensions the inflated disk is free, as in the periodic box, and its contact forces add up to
+    /// zero; in three dimensions it is held.
     InverseSquare,
+    /// As 1/r³: in three dimensions the inflated sphere is free.
+    InverseCube,
 }
 
 impl Tail {
+    /// The tail around a disk held at its position in D = 2 or 3 dimensions, r^(1−D).
+    pub fn of_held<const D: usize>() -> Self {
+        if D == 2 { Tail::InverseDistance } else { Tail::InverseSquare }
+    }
+
+    /// The tail around a free disk in D = 2 or 3 dimensions, r^(−D).
+    pub fn of_free<const D: usize>() -> Self {
+        if D == 2 { Tail::InverseSquare } else { Tail::InverseCube }
+    }
+
     /// The power of 1/r.
     pub fn power(self) -> i32 {
         match self {
             Tail::InverseDistance => 1,
             Tail::InverseSquare => 2,
+            Tail::InverseCube => 3,
         }
     }
 }
@@ -118,6 +135,18 @@ impl Default for IsostaticSettings {
             scale: Scale::default(),
             rule: IsostaticRule::Threshold(1.3),
         }
+    }
+}
+
+impl IsostaticSettings {
+    /// The settings for a disk held at its position in D = 2 or 3 dimensions; for D = 2 the default.
+    ///
+    /// y = (h_∥/h_0)(r ΔZ)^(D−1). The threshold 1.3 of the study is that of D = 2. None is known for D = 3, where y has
+    /// another factor r ΔZ. There ℓ_iso is read at a share 0.8 of the plateau between 0.4 and 0.7 R.
+    pub fn of_held<const D: usize>() -> Self {
+        let plateau = IsostaticRule::Plateau { from: 0.4, to: 0.7, share: 0.8 };
+        let settings = IsostaticSettings { tail: Tail::of_held::<D>(), ..IsostaticSettings::default() };
+        if D == 2 { settings } else { IsostaticSettings { rule: plateau, ..settings } }
     }
 }
 

@@ -40,6 +40,8 @@ fn up(tail: Tail, scale: Scale) -> &'static str {
         (Tail::InverseDistance, Scale::RootExcess) => fluctuation_times!("r √ΔZ"),
         (Tail::InverseSquare, Scale::Excess) => fluctuation_times!("(r ΔZ)²"),
         (Tail::InverseSquare, Scale::RootExcess) => fluctuation_times!("r² ΔZ"),
+        (Tail::InverseCube, Scale::Excess) => fluctuation_times!("(r ΔZ)³"),
+        (Tail::InverseCube, Scale::RootExcess) => fluctuation_times!("(r √ΔZ)³"),
     }
 }
 

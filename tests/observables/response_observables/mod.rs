@@ -10,6 +10,7 @@ mod isostatic;
 mod lammps;
 mod multipoles;
 mod penetration;
+mod spheres;
 
 use jamscope::displacement::{DisplacementField, MeasuredOn, Moved};
 use jamscope::packing::{Domain, Packing};
