@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::observe::isostatic::IsostaticOutcome;
+use crate::observe::shell::ShellAnalysis;
 use crate::report::figures::angular::angular_figure;
 use crate::report::figures::bond_map::bond_map;
 use crate::report::figures::contact_map::contact_map;
@@ -16,9 +17,9 @@ use crate::report::figures::radial_dependence::radial_dependence_figure;
 use crate::report::figures::shell_map::shell_map;
 use crate::report::figures::slice_map::slice_map;
 use crate::report::figures::spectrum::{SpectrumCurve, SpectrumPoints, spectrum_figure};
-use crate::report::figures::{Figure, FigureError};
+use crate::report::figures::{Around, Figure, FigureError};
 use crate::report::number::significant;
-use crate::response::{Response, RingResponse};
+use crate::response::{Response, RingResponse, ShellResponse};
 
 /// Highest mode drawn: isotropic, dipole, quadrupole, and one more.
 const HIGHEST_MODE: usize = 3;
@@ -51,6 +52,9 @@ pub(crate) fn figures(
     }
     if let Some(ring) = response.angular_correlation.as_ref().and_then(|it| it.measured()) {
         figures.extend(of_ring(name, ring)?);
+    }
+    if let Some(shell) = response.shell_correlation.as_ref().and_then(|it| it.measured()) {
+        figures.extend(of_shell(name, shell)?);
     }
     if let Some(rings) = response.radial_dependence.as_ref().and_then(|it| it.measured()) {
         // Without a measured ring there is nothing to draw.
@@ -108,11 +112,41 @@ fn of_ring(name: &str, ring: &RingResponse) -> Result<Vec<Figure>, FigureError> 
         values: correlation.values.clone(),
         standard_errors: Vec::new(),
     };
-    let mut figures = vec![correlation_figure(name, &[curve], threshold.map(|crossing| crossing.threshold))?];
+    let mut figures =
+        vec![correlation_figure(name, Around::Ring, &[curve], threshold.map(|crossing| crossing.threshold))?];
     if let Some(relative) = ring.spectrum.normalised() {
         let label = format!("r/R = {}, {} disks", significant(ring.relative_radius, 3), ring.spectrum.disk_count);
         let points = SpectrumPoints { label, values: relative[1..].to_vec(), standard_errors: Vec::new() };
-        figures.extend(spectrum_figure(name, &[points], &fitted(ring, &relative)));
+        figures.extend(spectrum_figure(name, Around::Ring, &[points], &fitted(ring, &relative)));
+    }
+    Ok(figures)
+}
+
+/// G(γ) and S(ℓ) of a shell of spheres.
+fn of_shell(name: &str, shell: &ShellResponse) -> Result<Vec<Figure>, FigureError> {
+    let ShellAnalysis { relative_radius, disk_count, spectrum, correlation, .. } = &shell.analysis;
+    let at = format!("r/R = {}, {disk_count} spheres", significant(*relative_radius, 3));
+    let threshold = correlation.crossings.first();
+    let mut label = at.clone();
+    if let Some(anticorrelation) = &correlation.anticorrelation {
+        label += &format!(", G* = {}", significant(anticorrelation.value, 2));
+    }
+    if let Some(angle) = threshold.and_then(|crossing| crossing.outcome.angle()) {
+        label += &format!(", γ* = {}π", significant(angle / PI, 2));
+    }
+    let curve = CorrelationCurve {
+        label,
+        angles: &correlation.angles,
+        values: correlation.values.clone(),
+        standard_errors: correlation.standard_errors.clone(),
+    };
+    let threshold = threshold.map(|crossing| crossing.threshold);
+    let mut figures = vec![correlation_figure(name, Around::Shell, &[curve], threshold)?];
+    if let Some(relative) = spectrum.normalised() {
+        let scale = spectrum.power[1];
+        let errors = spectrum.standard_errors[1..].iter().map(|error| error / scale).collect();
+        let points = SpectrumPoints { label: at, values: relative[1..].to_vec(), standard_errors: errors };
+        figures.extend(spectrum_figure(name, Around::Shell, &[points], &[]));
     }
     Ok(figures)
 }
@@ -189,6 +223,12 @@ pub(crate) fn legend(responses: &[&Response], heat: bool) -> String {
         text.push_str(
             "G(θ) and S(f) are the correlation and the power spectrum of d<sub>r</sub> around a ring; the correlation angle θ* \
              is where G crosses the dashed line. ",
+        );
+    }
+    if any(|it| it.shell_correlation.is_some()) {
+        text.push_str(
+            "G(γ) and S(ℓ) are the correlation over the great-circle angle γ and the power of the spherical harmonics of degree ℓ of \
+             d<sub>r</sub> on a shell, with standard errors. ",
         );
     }
     if any(|it| it.multipoles.is_some()) {

@@ -74,3 +74,8 @@ impl Detail {
 pub(super) fn in_plane<const D: usize>(field: &DisplacementField<D>) -> Option<&DisplacementField<2>> {
     (field as &dyn Any).downcast_ref()
 }
+
+/// The field as one of spheres, if it is.
+pub(super) fn in_space<const D: usize>(field: &DisplacementField<D>) -> Option<&DisplacementField<3>> {
+    (field as &dyn Any).downcast_ref()
+}

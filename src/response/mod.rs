@@ -8,6 +8,7 @@ mod calibration;
 mod contacts;
 mod detail;
 mod phase;
+mod shell;
 
 use std::fmt::Display;
 
@@ -19,6 +20,7 @@ pub use calibration::{
 pub use contacts::{ContactChangeCounts, ContactSummary, CycleCounts};
 pub use detail::{Detail, DetailOf};
 pub use phase::{Evidence, Phase, PhaseDecision, PhaseOutcome};
+pub use shell::ShellResponse;
 
 use crate::displacement::{DisplacementField, MeasuredOn};
 #[cfg(feature = "fit")]
@@ -37,7 +39,7 @@ use crate::observe::state::State;
 use crate::observe::{AngularProfile, Multipoles, RadialProfile};
 #[cfg(feature = "fit")]
 use crate::reference::{Annulus, poles::pole};
-use crate::response::detail::in_plane;
+use crate::response::detail::{in_plane, in_space};
 use crate::response::phase::{by_contact_changes, by_pressure_change};
 use crate::scene::{AngularCorrelationSettings, Observables};
 use crate::verdict::RestVerdict;
@@ -126,6 +128,9 @@ pub struct Response {
     /// Spectrum and correlation in rings from the inflated disk to the rim.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radial_dependence: Option<Measurement<Vec<RingAnalysis>>>,
+    /// Spectrum and correlation of one shell of spheres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shell_correlation: Option<Measurement<ShellResponse>>,
     /// Angular modes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub multipoles: Option<Measurement<Multipoles>>,
@@ -213,6 +218,11 @@ impl Response {
                 .as_ref()
                 .zip(plane)
                 .map(|(settings, field)| radial_dependence(field, settings).into()),
+            shell_correlation: observables
+                .shell_correlation
+                .as_ref()
+                .zip(in_space(&field))
+                .map(|(settings, field)| ShellResponse::of(field, settings, observables, no_fit.as_deref()).into()),
             #[cfg(feature = "fit")]
             elastic_modes: observables.elastic_modes.zip(multipoles.as_ref().and_then(Measurement::measured)).map(
                 |(settings, modes)| match &no_fit {

@@ -107,6 +107,12 @@ pub enum SceneError {
         /// The observable.
         observable: &'static str,
     },
+    /// An observable of spheres is requested for disks.
+    #[error("observables.{observable}: is of spheres; set dimension = 3 or remove it")]
+    OfSpace {
+        /// The observable.
+        observable: &'static str,
+    },
     /// An observable needs another one.
     #[error("observables.{observable} needs observables.{needed}")]
     ObservableMissing {
@@ -134,6 +140,9 @@ impl Scene {
         within("dimension", self.dimension as f64, "2 or 3", matches!(self.dimension, 2 | 3))?;
         if let Some(observable) = self.observables.of_the_plane().filter(|_| self.dimension == 3) {
             return Err(SceneError::OfThePlane { observable });
+        }
+        if let Some(observable) = self.observables.of_space().filter(|_| self.dimension == 2) {
+            return Err(SceneError::OfSpace { observable });
         }
         self.law.check()?;
         DISK_INDEX.check("disk_count", self.disk_count, BYTES_A_DISK)?;
@@ -224,6 +233,16 @@ impl Observables {
             positive("observables.angular_correlation.ring.half_width", angular.ring.half_width)?;
             let checked = angular.spectrum.check().and_then(|()| angular.correlation.check());
             checked.map_err(|error| wrong("angular_correlation", error.to_string()))?;
+        }
+        if let Some(shell) = &self.shell_correlation {
+            relative_radius("observables.shell_correlation.relative_radius", shell.relative_radius)?;
+            positive("observables.shell_correlation.half_width", shell.half_width)?;
+            shell.shell.check().map_err(|error| wrong("shell_correlation", error.to_string()))?;
+        }
+        #[cfg(feature = "fit")]
+        if self.shell_fit.is_some() && self.shell_correlation.is_none() {
+            let (observable, needed) = ("shell_fit", "shell_correlation");
+            return Err(SceneError::ObservableMissing { observable, needed });
         }
         #[cfg(feature = "fit")]
         if let Some(fit) = &self.spectrum_fit {

@@ -23,12 +23,12 @@ pub(crate) use definition::{is_plane, plane};
 pub use finite_numbers::NotWritable;
 pub use observables::{
     AngularCorrelationSettings, AngularProfileSettings, BondChangeSettings, ContactChangeSettings,
-    DisplacementFieldSettings, Observables, RadialProfileSettings,
+    DisplacementFieldSettings, Observables, RadialProfileSettings, ShellCorrelationSettings,
 };
 #[cfg(feature = "linear")]
 pub use observables::{PlasticPartSettings, ProtocolSettings};
 #[cfg(feature = "fit")]
-pub use observables::{ProfileFitSettings, SpectrumFitSettings};
+pub use observables::{ProfileFitSettings, ShellFitSettings, SpectrumFitSettings};
 pub use protocol::ProtocolChoice;
 pub use source::Source;
 #[cfg(feature = "cli")]

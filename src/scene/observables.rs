@@ -11,6 +11,7 @@ use crate::observe::bond_changes::BondSet;
 use crate::observe::isostatic::IsostaticSettings;
 use crate::observe::multipoles::MultipoleSettings;
 use crate::observe::penetration_length::PenetrationSettings;
+use crate::observe::shell::{SHELL_HALF_WIDTH, SHELL_RADIUS, ShellSettings};
 
 /// The observables; absent ones are not computed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -36,6 +37,13 @@ pub struct Observables {
     #[cfg(feature = "fit")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spectrum_fit: Option<SpectrumFitSettings>,
+    /// Angular correlation and power spectrum of the radial displacement in one shell of spheres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shell_correlation: Option<ShellCorrelationSettings>,
+    /// Slope and crossover of that spectrum.
+    #[cfg(feature = "fit")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shell_fit: Option<ShellFitSettings>,
     /// Correlation and spectrum in rings from the inflated disk to the rim.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radial_dependence: Option<RadialDependenceSettings>,
@@ -79,6 +87,9 @@ impl Default for Observables {
             angular_correlation: Some(AngularCorrelationSettings::default()),
             #[cfg(feature = "fit")]
             spectrum_fit: Some(SpectrumFitSettings::default()),
+            shell_correlation: None,
+            #[cfg(feature = "fit")]
+            shell_fit: None,
             radial_dependence: Some(RadialDependenceSettings::default()),
             multipoles: Some(MultipoleSettings::default()),
             #[cfg(feature = "fit")]
@@ -135,10 +146,14 @@ impl Observables {
             angular_correlation: None,
             #[cfg(feature = "fit")]
             spectrum_fit: None,
+            shell_correlation: Some(ShellCorrelationSettings::default()),
+            #[cfg(feature = "fit")]
+            shell_fit: Some(ShellFitSettings::default()),
             radial_dependence: None,
             multipoles: None,
             #[cfg(feature = "fit")]
             elastic_modes: None,
+            isostatic_length: Some(IsostaticSettings::of_held::<3>()),
             ..Observables::default()
         }
     }
@@ -156,6 +171,15 @@ impl Observables {
         all.into_iter().find(|(_, has)| *has).map(|(name, _)| name)
     }
 
+    /// The first of the observables that are of spheres only.
+    pub(crate) fn of_space(&self) -> Option<&'static str> {
+        #[cfg(feature = "fit")]
+        if self.shell_fit.is_some() {
+            return Some("shell_fit");
+        }
+        self.shell_correlation.as_ref().map(|_| "shell_correlation")
+    }
+
     /// No observables.
     pub fn none() -> Self {
         Observables {
@@ -167,6 +191,9 @@ impl Observables {
             angular_correlation: None,
             #[cfg(feature = "fit")]
             spectrum_fit: None,
+            shell_correlation: None,
+            #[cfg(feature = "fit")]
+            shell_fit: None,
             radial_dependence: None,
             multipoles: None,
             #[cfg(feature = "fit")]
@@ -227,6 +254,40 @@ pub struct AngularCorrelationSettings {
     pub spectrum: SpectrumSettings,
     /// G(θ).
     pub correlation: CorrelationSettings,
+}
+
+/// Settings of correlation and spectrum in one shell of spheres.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ShellCorrelationSettings {
+    /// Middle of the shell, r̂ = r/R \[1\].
+    pub relative_radius: f64,
+    /// Half its width over R \[1\].
+    pub half_width: f64,
+    /// S(ℓ) and G(γ).
+    pub shell: ShellSettings,
+}
+
+impl Default for ShellCorrelationSettings {
+    /// The ring of the study as a shell.
+    fn default() -> Self {
+        ShellCorrelationSettings {
+            relative_radius: SHELL_RADIUS,
+            half_width: SHELL_HALF_WIDTH,
+            shell: ShellSettings::default(),
+        }
+    }
+}
+
+/// Settings of the fits to the spectrum of a shell.
+#[cfg(feature = "fit")]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ShellFitSettings {
+    /// The powers used for the slope.
+    pub slope: crate::fit::angular::ShellFitSettings,
+    /// The fit of ℓ†.
+    pub crossover: crate::fit::angular::ShellCrossoverSettings,
 }
 
 /// Settings of the fits to a spectrum.

@@ -237,6 +237,14 @@ impl Numbers {
                 self.maybe(format!("correlation_angle_at_{}", crossing.threshold), crossing.outcome.angle());
             }
         }
+        if let Some(shell) = response.shell_correlation.as_ref().and_then(|it| it.measured()) {
+            let of = &shell.analysis;
+            self.maybe("anticorrelation", of.correlation.anticorrelation.map(|it| it.value));
+            self.put("ring_disk_count", of.disk_count as f64);
+            for crossing in &of.correlation.crossings {
+                self.maybe(format!("correlation_angle_at_{}", crossing.threshold), crossing.outcome.angle());
+            }
+        }
         if let Some(multipoles) = response.multipoles.as_ref().and_then(|it| it.measured()) {
             // The ring nearest to half of the outer radius.
             let half = 0.5 * response.detail.radii()[1];
@@ -284,12 +292,16 @@ impl Numbers {
             self.put("decided_elastic", f64::from(u8::from(fit.decision == Decision::Elastic)));
         }
         let ring = response.angular_correlation.as_ref().and_then(|it| it.measured());
-        if let Some(slope) = ring.and_then(|ring| ring.slope.as_ref()?.measured())
+        let shell = response.shell_correlation.as_ref().and_then(|it| it.measured());
+        let slope = ring.and_then(|ring| ring.slope.as_ref()).or(shell.and_then(|shell| shell.slope.as_ref()));
+        let crossover = ring.and_then(|ring| ring.crossover.as_ref());
+        let crossover = crossover.or(shell.and_then(|shell| shell.crossover.as_ref()));
+        if let Some(slope) = slope.and_then(|it| it.measured())
             && slope.outcome != SlopeOutcome::Undetermined
         {
             self.put("spectrum_slope", slope.exponent.best);
         }
-        if let Some(crossover) = ring.and_then(|ring| ring.crossover.as_ref()?.measured()) {
+        if let Some(crossover) = crossover.and_then(|it| it.measured()) {
             match crossover.outcome {
                 CrossoverOutcome::Found { crossover, angle } => {
                     self.put("crossover", crossover.best);

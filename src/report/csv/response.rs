@@ -4,6 +4,7 @@ use crate::observe::angular::RingOutcome;
 use crate::observe::bond_changes::BondChanges;
 use crate::observe::contact_changes::ContactChanges;
 use crate::observe::multipoles::MultipoleFit;
+use crate::observe::shell::ShellAnalysis;
 use crate::report::csv::{Table, angular_profiles, radial_profile};
 use crate::response::{Detail, Response};
 
@@ -27,7 +28,7 @@ pub(crate) fn every_ending() -> impl Iterator<Item = &'static str> {
     ALL.iter().map(|file| file.ending)
 }
 
-const ALL: [ResponseFile; 9] = [
+const ALL: [ResponseFile; 11] = [
     ResponseFile {
         ending: "radial_profile.csv",
         has: |it| it.radial_profile.is_some(),
@@ -47,6 +48,16 @@ const ALL: [ResponseFile; 9] = [
         ending: "power_spectrum.csv",
         has: |it| ring(it).is_some(),
         text: |it| ring(it).map(power_spectrum),
+    },
+    ResponseFile {
+        ending: "shell_correlation.csv",
+        has: |it| shell(it).is_some(),
+        text: |it| shell(it).map(shell_correlation),
+    },
+    ResponseFile {
+        ending: "shell_spectrum.csv",
+        has: |it| shell(it).is_some(),
+        text: |it| shell(it).map(shell_spectrum),
     },
     ResponseFile {
         ending: "radial_dependence.csv",
@@ -76,6 +87,30 @@ fn has_bonds(response: &Response) -> bool {
 
 fn ring(response: &Response) -> Option<&crate::response::RingResponse> {
     response.angular_correlation.as_ref()?.measured()
+}
+
+fn shell(response: &Response) -> Option<&ShellAnalysis> {
+    Some(&response.shell_correlation.as_ref()?.measured()?.analysis)
+}
+
+/// G(γ) of spheres: one row per bin of angles.
+fn shell_correlation(shell: &ShellAnalysis) -> String {
+    let mut table = Table::new(&[("angle", "rad"), ("correlation", "1"), ("standard_error", "1"), ("pair_count", "1")]);
+    let of = &shell.correlation;
+    for (place, &angle) in of.angles.iter().enumerate() {
+        table.row([angle, of.values[place], of.standard_errors[place], of.pair_counts[place] as f64]);
+    }
+    table.text()
+}
+
+/// S(ℓ) of spheres: one row per degree from 1.
+fn shell_spectrum(shell: &ShellAnalysis) -> String {
+    let mut table = Table::new(&[("degree", "1"), ("power", "length^2"), ("standard_error", "length^2")]);
+    let of = &shell.spectrum;
+    for degree in 1..of.power.len() {
+        table.row([degree as f64, of.power[degree], of.standard_errors[degree]]);
+    }
+    table.text()
 }
 
 /// G(θ): one row per angle.

@@ -6,7 +6,7 @@ use plotters::prelude::*;
 
 use crate::report::figures::chart::{Chart, Entry, LegendLine, SCALE, Sign};
 use crate::report::figures::palette::SEQUENCE;
-use crate::report::figures::{Figure, FigureError};
+use crate::report::figures::{Around, Figure, FigureError};
 
 /// One curve.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,9 +29,14 @@ pub struct CorrelationCurve<'a> {
 /// No curve with a finite number.
 pub fn correlation_figure(
     name: &str,
+    around: Around,
     curves: &[CorrelationCurve<'_>],
     threshold: Option<f64>,
 ) -> Result<Figure, FigureError> {
+    let (x_label, y_label) = match around {
+        Around::Ring => ("θ/π", "G(θ)"),
+        Around::Shell => ("γ/π", "G(γ)"),
+    };
     let colour = |index: usize| SEQUENCE[index % SEQUENCE.len()];
     let legend = curves.iter().enumerate().map(|(index, curve)| {
         let sign = Sign::Line { colour: colour(index), dashed: false };
@@ -41,10 +46,13 @@ pub fn correlation_figure(
     let lowest = lowest.fold(f64::INFINITY, f64::min);
     let chart = Chart {
         title: format!("{name}: angular correlation"),
-        description: format!("Angular correlation G of the radial displacement against θ/π, {} curves", curves.len()),
-        x_label: "θ/π",
+        description: format!(
+            "Angular correlation G of the radial displacement against {x_label}, {} curves",
+            curves.len()
+        ),
+        x_label,
         x_range: [0.0, 1.0],
-        y_label: "G(θ)",
+        y_label,
         y_unit: "1",
         y_range: [(lowest - 0.1).min(-0.3), 1.05],
         legend: legend.collect(),

@@ -56,6 +56,15 @@ pub enum FigureError {
     },
 }
 
+/// Where an angular figure is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Around {
+    /// A ring of disks: angle θ, frequency f.
+    Ring,
+    /// A shell of spheres: great-circle angle γ, degree ℓ.
+    Shell,
+}
+
 /// A picture with its title and a description for readers who cannot see it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {

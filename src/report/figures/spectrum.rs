@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::report::figures::log_axes::{Axis, BOTTOM, FONT_SIZE, LEFT, LogAxis, RIGHT, TOP, axes};
 use crate::report::figures::palette::{SEQUENCE, hexadecimal};
-use crate::report::figures::{Figure, INK};
+use crate::report::figures::{Around, Figure, INK};
 
 /// One spectrum.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,7 +37,16 @@ const CURVE_POINTS: usize = 60;
 const DECADES: f64 = 1e-5;
 
 /// Spectra as points, one colour each, and curves: the first solid, the others dashed. None if no power is positive.
-pub fn spectrum_figure(name: &str, spectra: &[SpectrumPoints], curves: &[SpectrumCurve<'_>]) -> Option<Figure> {
+pub fn spectrum_figure(
+    name: &str,
+    around: Around,
+    spectra: &[SpectrumPoints],
+    curves: &[SpectrumCurve<'_>],
+) -> Option<Figure> {
+    let (symbol, label, words) = match around {
+        Around::Ring => ("f", "S(f) / S(1)", "a ring against the angular frequency f"),
+        Around::Shell => ("ℓ", "S(ℓ) / S(1)", "a shell against the degree ℓ"),
+    };
     let highest = spectra.iter().map(|spectrum| spectrum.values.len()).max().filter(|&count| count > 1)?;
     let positive =
         || spectra.iter().flat_map(|it| &it.values).copied().filter(|&value| value > 0.0 && value.is_finite());
@@ -45,7 +54,7 @@ pub fn spectrum_figure(name: &str, spectra: &[SpectrumPoints], curves: &[Spectru
     let smallest = positive().fold(largest, f64::min).max(DECADES * largest);
     let x_axis = Axis::Log(LogAxis::between(0.9, 1.1 * highest as f64, [LEFT, RIGHT]));
     let y_axis = Axis::Log(LogAxis::between(0.5 * smallest, 2.0 * largest, [BOTTOM, TOP]));
-    let mut svg = axes(&x_axis, &y_axis, "f", "S(f) / S(1)");
+    let mut svg = axes(&x_axis, &y_axis, symbol, label);
     let lines = spectra.len() + curves.len();
     // The last line of the legend is just above the axes.
     let row = |index: usize| TOP - 6.0 - (lines as f64 - 0.5 - index as f64) * LEGEND_LINE;
@@ -87,7 +96,7 @@ pub fn spectrum_figure(name: &str, spectra: &[SpectrumPoints], curves: &[Spectru
     Some(Figure {
         title: format!("{name}: angular power spectrum"),
         description: format!(
-            "Power of the radial displacement in a ring against the angular frequency f from 1 to {highest}, both logarithmic, \
+            "Power of the radial displacement in {words} from 1 to {highest}, both logarithmic, \
              with {} curves",
             curves.len()
         ),

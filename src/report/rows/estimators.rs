@@ -31,6 +31,16 @@ fn of(response: &Response) -> Vec<String> {
     all.extend(of_fits(response));
     let ring = response.angular_correlation.as_ref().and_then(|it| it.measured());
     all.extend(ring.into_iter().flat_map(|ring| of_ring(&ring.spectrum.estimator, &ring.correlation.estimator)));
+    if response.shell_correlation.as_ref().is_some_and(|it| it.measured().is_some()) {
+        all.extend([
+            "S(ℓ): squares of harmonic sums over the spheres of a shell, mean over 2ℓ+1 orders, leakage between degrees and the noise of single \
+             spheres removed. Single powers of this estimator may be negative."
+                .into(),
+            "G(γ): all pairs of spheres in bins of their great-circle angle; G* from the pairs near γ = π; γ* interpolated linearly between bins; \
+             standard errors by the jackknife."
+                .into(),
+        ]);
+    }
     let rings = response.radial_dependence.as_ref().and_then(|it| it.measured());
     all.extend(rings.into_iter().flatten().flat_map(|ring| match &ring.outcome {
         RingOutcome::Measured { spectrum, correlation } => {

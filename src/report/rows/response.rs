@@ -1,21 +1,23 @@
 //! The rows of a response.
 
+use std::f64::consts::PI;
+
 use crate::displacement::MeasuredOn;
 #[cfg(feature = "fit")]
-use crate::fit::angular::{CrossoverOutcome, SlopeOutcome};
+use crate::fit::angular::{CrossoverOutcome, SlopeFit, SlopeOutcome};
 use crate::observe::angular::CrossingOutcome;
 use crate::observe::isostatic::{IsostaticLength, IsostaticOutcome, Scale};
 use crate::observe::multipoles::{ComponentModes, MultipoleFit};
 use crate::observe::penetration_length::Penetration;
 #[cfg(feature = "fit")]
 use crate::report::curve;
-use crate::report::number::{count, significant};
+use crate::report::number::{count, significant, with_error};
 use crate::report::rows::estimators::negative_powers;
 use crate::report::rows::refused_of;
 use crate::report::rows::section::{Rows, Section};
 #[cfg(feature = "fit")]
 use crate::response::Measurement;
-use crate::response::{Phase, PhaseOutcome, Response, RingResponse};
+use crate::response::{Phase, PhaseOutcome, Response, RingResponse, ShellResponse};
 
 /// All sections of these responses; some may have no rows.
 pub(crate) fn sections(responses: Vec<Option<&Response>>) -> Vec<Section> {
@@ -25,6 +27,7 @@ pub(crate) fn sections(responses: Vec<Option<&Response>>) -> Vec<Section> {
         fit(responses.clone()),
         penetration(responses.clone()),
         angular(responses.clone()),
+        shell(responses.clone()),
         multipoles(responses.clone()),
         contacts(responses.clone()),
         isostatic(responses),
@@ -42,6 +45,11 @@ pub(crate) fn refusals(response: &Response) -> Vec<(&'static str, &str)> {
         ("no slope of the spectrum", ring(response).and_then(|ring| refused_of(&ring.slope))),
         #[cfg(feature = "fit")]
         ("no crossover of the spectrum", ring(response).and_then(|ring| refused_of(&ring.crossover))),
+        ("no correlation on a shell", refused_of(&response.shell_correlation)),
+        #[cfg(feature = "fit")]
+        ("no slope of the spectrum", shell_of(response).and_then(|shell| refused_of(&shell.slope))),
+        #[cfg(feature = "fit")]
+        ("no crossover of the spectrum", shell_of(response).and_then(|shell| refused_of(&shell.crossover))),
         ("no radial dependence", refused_of(&response.radial_dependence)),
         ("no angular modes", refused_of(&response.multipoles)),
         #[cfg(feature = "fit")]
@@ -129,7 +137,7 @@ fn angular(responses: Vec<Option<&Response>>) -> Section {
         rows.add(format!("θ*/π, G = {}", significant(threshold, 2)), |it| {
             let crossings = &ring(it)?.correlation.crossings;
             Some(match crossings.iter().find(|crossing| crossing.threshold == threshold)?.outcome {
-                CrossingOutcome::At { angle } => significant(angle / std::f64::consts::PI, 3),
+                CrossingOutcome::At { angle } => significant(angle / PI, 3),
                 CrossingOutcome::Never { .. } => "never".into(),
                 CrossingOutcome::NoCorrelation => "no variance".into(),
                 CrossingOutcome::OutOfRange { farthest } => format!("none: G {}", significant(farthest, 2)),
@@ -137,18 +145,75 @@ fn angular(responses: Vec<Option<&Response>>) -> Section {
         });
     }
     #[cfg(feature = "fit")]
-    fitted(&mut rows);
+    fitted(
+        &mut rows,
+        |it| ring(it)?.slope.as_ref()?.measured().copied(),
+        |it| ring(it)?.crossover.as_ref()?.measured().map(|fit| fit.outcome),
+        ["slope of S(f) ∝ f^(−s), s", "range of f fitted", "crossover, f†", "θ†/π = k/(π f†)"],
+    );
     rows.section("Angular correlation of d_r")
 }
 
-#[cfg(feature = "fit")]
-fn fitted(rows: &mut Rows<'_, Response>) {
-    use crate::report::number::with_error;
+fn shell_of(response: &Response) -> Option<&ShellResponse> {
+    response.shell_correlation.as_ref()?.measured()
+}
 
-    let slope = |it: &Response| ring(it)?.slope.as_ref()?.measured().copied();
-    let crossover = |it: &Response| ring(it)?.crossover.as_ref()?.measured().map(|fit| fit.outcome);
+fn shell(responses: Vec<Option<&Response>>) -> Section {
+    let of = |it: &'_ Response| shell_of(it).map(|shell| shell.analysis.clone());
+    let mut thresholds: Vec<f64> = Vec::new();
+    let shells = responses.iter().flatten().filter_map(|it| shell_of(it));
+    for crossing in shells.flat_map(|shell| &shell.analysis.correlation.crossings) {
+        if !thresholds.contains(&crossing.threshold) {
+            thresholds.push(crossing.threshold);
+        }
+    }
+    let mut rows = Rows::new(responses);
+    rows.add("shell, r/R", |it| Some(significant(of(it)?.relative_radius, 3)))
+        .add("spheres in the shell", |it| Some(count(of(it)?.disk_count)))
+        .add("negative S(ℓ), number of ℓ", |it| {
+            let spectrum = of(it)?.spectrum;
+            (spectrum.negative_count > 0).then(|| format!("{} of {}", spectrum.negative_count, spectrum.degree_limit()))
+        })
+        .add("G* = −G(π)", |it| {
+            let found = of(it)?.correlation.anticorrelation?;
+            Some(match found.standard_error {
+                Some(error) => with_error(found.value, error),
+                None => significant(found.value, 3),
+            })
+        });
+    for threshold in thresholds {
+        rows.add(format!("γ*/π, G = {}", significant(threshold, 2)), |it| {
+            let crossings = of(it)?.correlation.crossings;
+            let crossing = *crossings.iter().find(|crossing| crossing.threshold == threshold)?;
+            Some(match (crossing.outcome, crossing.standard_error) {
+                (CrossingOutcome::At { angle }, Some(error)) => with_error(angle / PI, error / PI),
+                (CrossingOutcome::At { angle }, None) => significant(angle / PI, 3),
+                (CrossingOutcome::Never { .. }, _) => "never".into(),
+                (CrossingOutcome::NoCorrelation, _) => "no variance".into(),
+                (CrossingOutcome::OutOfRange { farthest }, _) => format!("none: G {}", significant(farthest, 2)),
+            })
+        });
+    }
+    #[cfg(feature = "fit")]
+    fitted(
+        &mut rows,
+        |it| shell_of(it)?.slope.as_ref()?.measured().copied(),
+        |it| shell_of(it)?.crossover.as_ref()?.measured().map(|fit| fit.outcome),
+        ["slope of S(ℓ) ∝ ℓ^(−s), s", "range of ℓ fitted", "crossover, ℓ†", "γ†/π = k/(π ℓ†)"],
+    );
+    rows.section("Correlation of d_r on a shell")
+}
+
+/// Rows of slope and crossover, with these labels.
+#[cfg(feature = "fit")]
+fn fitted(
+    rows: &mut Rows<'_, Response>,
+    slope: impl Fn(&Response) -> Option<SlopeFit>,
+    crossover: impl Fn(&Response) -> Option<CrossoverOutcome>,
+    [of_slope, of_window, of_crossover, of_angle]: [&str; 4],
+) {
     let window = |[from, to]: [usize; 2]| format!("{from} … {to}");
-    rows.add("slope of S(f) ∝ f^(−s), s", |it| {
+    rows.add(of_slope, |it| {
         let fit = slope(it)?;
         let estimate = fit.exponent.estimate().map(|it| with_error(it.value, it.standard_error));
         Some(match fit.outcome {
@@ -156,8 +221,8 @@ fn fitted(rows: &mut Rows<'_, Response>) {
             _ => estimate.unwrap_or_else(|| significant(fit.exponent.best, 3)),
         })
     })
-    .add("range of f fitted", |it| slope(it).map(|fit| window(fit.window)))
-    .add("crossover, f†", |it| {
+    .add(of_window, |it| slope(it).map(|fit| window(fit.window)))
+    .add(of_crossover, |it| {
         Some(match crossover(it)? {
             CrossoverOutcome::Found { crossover, .. } => match crossover.estimate() {
                 Some(estimate) => with_error(estimate.value, estimate.standard_error),
@@ -168,8 +233,8 @@ fn fitted(rows: &mut Rows<'_, Response>) {
             CrossoverOutcome::Undetermined => "not determined".into(),
         })
     })
-    .add("θ†/π = k/(π f†)", |it| match crossover(it)? {
-        CrossoverOutcome::Found { angle, .. } => Some(significant(angle.best / std::f64::consts::PI, 3)),
+    .add(of_angle, |it| match crossover(it)? {
+        CrossoverOutcome::Found { angle, .. } => Some(significant(angle.best / PI, 3)),
         _ => None,
     });
 }
@@ -199,8 +264,6 @@ fn multipoles(responses: Vec<Option<&Response>>) -> Section {
 
 #[cfg(feature = "fit")]
 fn elastic_modes(rows: &mut Rows<'_, Response>) {
-    use crate::report::number::with_error;
-
     let fit = |it: &Response| it.elastic_modes.as_ref()?.measured().cloned();
     for (mode, label) in ["n = 0, share described by elasticity", "n = 1, share described", "n = 2, share described"]
         .into_iter()
@@ -265,8 +328,6 @@ fn isostatic(responses: Vec<Option<&Response>>) -> Section {
 
 #[cfg(feature = "fit")]
 fn fit(responses: Vec<Option<&Response>>) -> Section {
-    use crate::report::number::with_error;
-
     let mut rows = Rows::new(responses);
     // A κ without significance means the elastic solution.
     let screened = |it: &Response| {
