@@ -272,7 +272,9 @@ fn every_column_of_a_table_is_in_the_book_and_the_reverse() {
         done(folder.path(), arguments);
     }
     let mut found = BTreeSet::new();
-    for (place, has_units) in [("all", true), ("protocol", true), ("precision", true), ("study", false), ("shear", true)] {
+    for (place, has_units) in
+        [("all", true), ("protocol", true), ("precision", true), ("study", false), ("shear", true)]
+    {
         for entry in std::fs::read_dir(folder.path().join(place)).expect("a folder") {
             let path = entry.expect("an entry").path();
             if path.extension().is_some_and(|extension| extension == "csv") {

@@ -10,7 +10,7 @@ const LONGEST_FILE: usize = 450;
 const LONG: [&str; 1] = ["reference::bessel::modified_tables"];
 
 /// Names of files that are standard terms of physics, mathematics, numerical computing or programming.
-const STANDARD: [&str; 156] = [
+const STANDARD: [&str; 157] = [
     "analyse",
     "angular",
     "archive",
@@ -41,6 +41,7 @@ const STANDARD: [&str; 156] = [
     "decompress",
     "definition",
     "descent",
+    "dimension",
     "displacement",
     "divergence",
     "dynamics",
