@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // d_0^eff [length] of both solutions, κ [1 / length] of the screened one, and which of them describes the profile.
     let annulus = Annulus::new(field.inner_radius, field.outer_radius)?;
-    let fit = fit_radial_profile(&profile, annulus, &ProfileFitSettings::default())?;
+    let fit = fit_radial_profile::<2>(&profile, annulus, &ProfileFitSettings::default())?;
     let elastic = fit.elastic.amplitude;
     println!("elastic:  d_0^eff = {:.4} ± {:.4}", elastic.value, elastic.standard_error);
     if let Some(screened) = fit.screened {

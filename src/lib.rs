@@ -255,6 +255,8 @@ mod book {
     mod observe_angular_study {}
     #[doc = include_str!("../book/src/reference.md")]
     mod reference {}
+    #[doc = include_str!("../book/src/reference/spherical_modes.md")]
+    mod reference_spherical_modes {}
     #[doc = include_str!("../book/src/reference/angular_modes.md")]
     mod reference_angular_modes {}
     #[doc = include_str!("../book/src/reference/lorentzian.md")]

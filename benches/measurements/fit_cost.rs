@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 std::fs::write(folder.join(format!("{argument}_{seed}.csv")), text)?;
             }
             let begin = Instant::now();
-            let fit = fit_radial_profile(&profile, annulus, &ProfileFitSettings::default())?;
+            let fit = fit_radial_profile::<2>(&profile, annulus, &ProfileFitSettings::default())?;
             seconds += begin.elapsed().as_secs_f64();
             let close = |fit: &jamscope::fit::profile::ScreenedFit| {
                 (fit.wavenumber.value - wavenumber).abs() <= 5.0 * fit.wavenumber.standard_error

@@ -1,10 +1,12 @@
 //! Fits of measured profiles and spectra to exact solutions, with errors and decisions.
 //!
-//! Start from [`profile::fit_radial_profile`]: one radial profile against the elastic and the screened solution; from
+//! Start from [`profile::fit_radial_profile`]: one radial profile against the elastic and the screened solution, in
+//! two or three dimensions; from
 //! [`angular::fit_slope`] and [`angular::fit_crossover`]: angular power spectra; or from [`modes::fit_elastic_modes`]:
 //! angular modes against the elastic ones. For ensembles see [`ensemble`].
 
 pub mod angular;
+mod dimension;
 pub mod ensemble;
 mod incomplete_beta;
 pub mod modes;

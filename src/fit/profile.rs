@@ -1,11 +1,14 @@
 //! Fits of the elastic and the screened solution to the radial profile of one sample: [`fit_radial_profile`].
 //!
-//! The fit is to the rescaled displacement r·d_r of every ring:
+//! The fit is to the rescaled displacement `r^(D−1) d_r` of every ring, in D = 2 or 3 dimensions:
 //!
 //! ```text
-//! elastic    r·d_r = d_0^eff a (r² − R²)/(a² − R²)                                     one parameter
-//! screened   r·d_r = d_0^eff r [Y_1(κr)J_1(κR) − J_1(κr)Y_1(κR)] / [same at a]         two parameters
+//! elastic          r^(D−1) d_r = d_0^eff a^(D−1) (R^D − r^D)/(R^D − a^D)                       one parameter
+//! screened, D = 2      r d_r   = d_0^eff r [Y_1(κr)J_1(κR) − J_1(κr)Y_1(κR)] / [same at a]     two parameters
+//! screened, D = 3      r² d_r  = d_0^eff r² [y_1(κr)j_1(κR) − j_1(κr)y_1(κR)] / [same at a]    two parameters
 //! ```
+//!
+//! In two dimensions a ring is a part of the annulus, in three a part of the shell.
 //!
 //! These describe the curve of a single sample. A mean over samples mixes amplitudes and wavenumbers and is not such a
 //! curve.
@@ -24,7 +27,7 @@
 //! **Decision.** Screened if the decrease of χ² against elastic is significant (F test with n_eff − 2 degrees of
 //! freedom, corrected for the number of branches). Otherwise elastic. Neither, if the selected one is not significantly
 //! better than zero displacement, or describes too little of the variance. A κ below about κ_1/3 changes d_r by at most
-//! (κR)²/8 ≈ 20 %, at the rim, where d_r vanishes. Unless the rings are that accurate, the decision is elastic, and the
+//! (κR)²/8 ≈ 20 % (D = 2; (κR)²/10 ≈ 22 % in three dimensions), at the rim, where d_r vanishes. Unless the rings are that accurate, the decision is elastic, and the
 //! bound on κ states what is excluded.
 
 use std::f64::consts::PI;
@@ -33,6 +36,7 @@ use serde::{Deserialize, Serialize};
 
 pub use crate::fit::profile_fit::{Decision, ElasticFit, ProfileFit, ScreenedFit};
 
+use crate::fit::dimension::Dimension;
 use crate::fit::rings::Rings;
 use crate::fit::screening::{Landscape, Projection};
 use crate::fit::significance::{chance, corrected, effective_count, freedom};
@@ -40,7 +44,6 @@ use crate::fit::units::Units;
 use crate::fit::{Estimate, FitError};
 use crate::observe::radial_profile::RadialProfile;
 use crate::reference::Annulus;
-use crate::reference::poles::pole_count_below;
 
 /// Minimum number of rings for an autocorrelation and two parameters.
 pub const LEAST_RING_COUNT: usize = 8;
@@ -60,7 +63,7 @@ pub struct ProfileFitSettings {
     pub rings_per_wavelength: f64,
     /// Level of significance \[1\]. Changes decisions, no numbers.
     pub significance: f64,
-    /// Minimum share of the variance of r·d_r that the selected solution must describe \[1\]. Changes decisions, no
+    /// Minimum share of the variance of `r^(D−1) d_r` that the selected solution must describe \[1\]. Changes decisions, no
     /// numbers.
     pub least_share: f64,
 }
@@ -79,7 +82,8 @@ impl Default for ProfileFitSettings {
     }
 }
 
-/// Fits the elastic and the screened solution in `annulus` to the profile of one sample, and decides between them.
+/// Fits the elastic and the screened solution in `annulus` to the profile of one sample in `D` dimensions, and decides
+/// between them.
 ///
 /// # Units
 /// Lengths as in the profile; d_0^eff in lengths, κ in 1/length.
@@ -103,14 +107,24 @@ impl Default for ProfileFitSettings {
 ///     Ring { radius, disk_count: 5 * i as usize, mean: medium.value(radius), spread: 0.0, standard_error: 0.0 }
 /// };
 /// let profile = RadialProfile { rings: (1..41).map(ring).collect() };
-/// let fit = fit_radial_profile(&profile, annulus, &ProfileFitSettings::default())?;
+/// let fit = fit_radial_profile::<2>(&profile, annulus, &ProfileFitSettings::default())?;
 /// assert_eq!(fit.decision, Decision::Screened);
 /// let screened = fit.screened.expect("decided so");
 /// assert!((screened.wavenumber.value - 0.12).abs() < 1e-9);
 /// assert!((screened.amplitude.value - 0.05).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn fit_radial_profile(
+pub fn fit_radial_profile<const D: usize>(
+    profile: &RadialProfile,
+    annulus: Annulus,
+    settings: &ProfileFitSettings,
+) -> Result<ProfileFit, FitError> {
+    fit_in(const { Dimension::of::<D>() }, profile, annulus, settings)
+}
+
+/// The fit, compiled once for both dimensions.
+fn fit_in(
+    dimension: Dimension,
     profile: &RadialProfile,
     annulus: Annulus,
     settings: &ProfileFitSettings,
@@ -118,23 +132,23 @@ pub fn fit_radial_profile(
     let units = Units::of(&profile.rings, annulus, settings.range(annulus)?)?;
     let annulus = units.annulus(annulus)?;
     let [from, to] = settings.range(annulus)?;
-    let rings =
-        Rings::new(&units.rings(&profile.rings), from, to, LEAST_RING_COUNT).map_err(|error| units.error(error))?;
-    let landscape = Landscape::new(&rings, annulus);
+    let rings = Rings::new(&units.rings(&profile.rings), [from, to], dimension, LEAST_RING_COUNT)
+        .map_err(|error| units.error(error))?;
+    let landscape = Landscape::new(&rings, annulus, dimension);
     let ring_count = rings.len() as f64;
     let shortest_wavelength = settings.rings_per_wavelength * (to - from) / ring_count;
     let branch_width = PI / (annulus.outer_radius() - annulus.inner_radius());
     // At most as many branches as rings, even for a narrow range.
     let largest_wavenumber = (2.0 * PI / shortest_wavelength).min(ring_count * branch_width);
     // One shape per branch, with either sign of the amplitude at the disk.
-    let trial_count = 2.0 * (pole_count_below::<2>(annulus, largest_wavenumber) + 1) as f64;
+    let trial_count = 2.0 * (dimension.pole_count_below(annulus, largest_wavenumber) + 1) as f64;
 
     let grid = landscape.grid(largest_wavenumber);
     let criteria = Criteria { rings: &rings, at_rest: rings.weighted(&rings.rescaled, &rings.rescaled) };
     let elastic = fit_elastic(&landscape, &criteria, &grid);
     let screened = landscape
         .minimum(&grid)
-        .and_then(|minimum| fit_screened(&landscape, &criteria, annulus, &minimum, elastic.chi_squared, trial_count));
+        .and_then(|minimum| fit_screened(&landscape, &criteria, &minimum, elastic.chi_squared, trial_count));
 
     let level = settings.significance;
     let describes = |share: f64, chance: f64| share >= settings.least_share && chance < level;
@@ -145,7 +159,7 @@ pub fn fit_radial_profile(
     };
     let fit =
         ProfileFit { decision, elastic, screened, ring_count: rings.len(), range: [from, to], largest_wavenumber };
-    Ok(units.fit(fit, rings.errors_known))
+    Ok(units.fit(fit, dimension, rings.errors_known))
 }
 
 impl ProfileFitSettings {
@@ -218,7 +232,6 @@ fn fit_elastic(landscape: &Landscape<'_>, criteria: &Criteria<'_>, grid: &[(f64,
 fn fit_screened(
     landscape: &Landscape<'_>,
     criteria: &Criteria<'_>,
-    annulus: Annulus,
     at: &Projection,
     elastic_chi_squared: f64,
     trial_count: f64,
@@ -245,7 +258,7 @@ fn fit_screened(
         },
         wavenumber: Estimate { value: at.wavenumber, standard_error: (scale * wavenumber_variance).sqrt() },
         correlation: joint / (amplitude_variance * wavenumber_variance).sqrt(),
-        branch: pole_count_below::<2>(annulus, at.wavenumber),
+        branch: landscape.branch(at.wavenumber),
         chi_squared: at.chi_squared,
         share_described: criteria.share(at, 2),
         effective_ring_count: count,

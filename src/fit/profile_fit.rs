@@ -13,7 +13,7 @@ pub struct ElasticFit {
     pub wavenumber_bound: Option<f64>,
     /// Σ (residual/error)² over the rings.
     pub chi_squared: f64,
-    /// Share of the weighted Σ (r·d_r)² described, per degree of freedom: `1 − (χ²/(n−1))/(χ²_0/n)` \[1\].
+    /// Share of the weighted Σ (r^(D−1) d_r)² described, per degree of freedom: `1 − (χ²/(n−1))/(χ²_0/n)` \[1\].
     pub share_described: f64,
     /// Number of independent rings n_eff, from its residuals.
     pub effective_ring_count: f64,
@@ -34,7 +34,7 @@ pub struct ScreenedFit {
     pub branch: usize,
     /// Σ (residual/error)² over the rings.
     pub chi_squared: f64,
-    /// Share of the weighted Σ (r·d_r)² described, per degree of freedom: `1 − (χ²/(n−2))/(χ²_0/n)` \[1\].
+    /// Share of the weighted Σ (r^(D−1) d_r)² described, per degree of freedom: `1 − (χ²/(n−2))/(χ²_0/n)` \[1\].
     pub share_described: f64,
     /// Number of independent rings n_eff, from its residuals.
     pub effective_ring_count: f64,

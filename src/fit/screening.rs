@@ -1,6 +1,6 @@
 //! The one-dimensional search for the screening wavenumber over all branches.
 //!
-//! With the rim solution v(r; κ) as the shape, the model is r·d_r = B r v(r; κ). It is linear in the slope B, which
+//! With the rim solution v(r; κ) as the shape, the model is r^(D−1) d_r = B r^(D−1) v(r; κ). It is linear in the slope B, which
 //! is minus d_r' at the rim. For each κ, the best B and χ²(κ) therefore have closed forms (variable projection; Golub &
 //! Pereyra (1973), SIAM J. Numer. Anal. 10, 413). v has no poles in κ, so χ²(κ) is smooth through all of them. The
 //! branches are connected, and a minimum near a pole is found like any other.
@@ -8,9 +8,9 @@
 use argmin::core::{CostFunction, Error, Executor, State};
 use argmin::solver::brent::BrentOpt;
 
+use crate::fit::dimension::Dimension;
 use crate::fit::rings::Rings;
-use crate::reference::rim::RimSolution;
-use crate::reference::{Annulus, RadialSolution};
+use crate::reference::Annulus;
 
 /// Grid points between two poles. χ² has at most a few extrema per branch, one per node of v in the range.
 const POINTS_PER_BRANCH: f64 = 16.0;
@@ -24,7 +24,7 @@ const BRENT_TOLERANCE: f64 = 1e-10;
 /// Brent needs 10 to 30 steps; golden section alone would need 60.
 const BRENT_STEP_LIMIT: u64 = 100;
 
-/// A κR below this counts as zero: it changes the profile by (κR)²/8 ≈ 10⁻⁷, and the error of κ grows as 1/κ.
+/// A κR below this counts as zero: it changes the profile by (κR)²/8 ≈ 10⁻⁷ or less, and the error of κ grows as 1/κ.
 const LEAST_ARGUMENT: f64 = 1e-3;
 
 /// Step in κR of the central difference ∂v/∂κ, with errors 10⁻¹⁰/6 (third derivative) and 10⁻¹⁶/10⁻⁵ (rounding).
@@ -47,23 +47,31 @@ pub(crate) struct Projection {
 pub(crate) struct Landscape<'a> {
     rings: &'a Rings,
     annulus: Annulus,
+    dimension: Dimension,
 }
 
 impl<'a> Landscape<'a> {
-    pub(crate) fn new(rings: &'a Rings, annulus: Annulus) -> Self {
-        Landscape { rings, annulus }
+    pub(crate) fn new(rings: &'a Rings, annulus: Annulus, dimension: Dimension) -> Self {
+        Landscape { rings, annulus, dimension }
     }
 
-    /// r v(r; κ) on the rings, and v(a; κ).
+    /// `r^(D−1) v(r; κ)` on the rings, and v(a; κ).
     fn shape(&self, wavenumber: f64) -> (Vec<f64>, f64) {
-        let solution = RimSolution::<2>::new(self.annulus, wavenumber).expect("the search stays at finite κ ≥ 0");
-        let shape = self.rings.radii.iter().map(|&radius| radius * solution.value(radius)).collect();
+        let solution = self.dimension.rim_solution(self.annulus, wavenumber);
+        let solution = solution.expect("the search stays at finite κ ≥ 0");
+        let rescaled = |radius: f64| self.dimension.rescaling(radius) * solution.value(radius);
+        let shape = self.rings.radii.iter().map(|&radius| rescaled(radius)).collect();
         (shape, solution.value(self.annulus.inner_radius()))
     }
 
     /// v(a; κ), the factor from B to d_0.
     pub(crate) fn inner_value(&self, wavenumber: f64) -> f64 {
         self.shape(wavenumber).1
+    }
+
+    /// Number of poles below `wavenumber`.
+    pub(crate) fn branch(&self, wavenumber: f64) -> usize {
+        self.dimension.pole_count_below(self.annulus, wavenumber)
     }
 
     /// The best slope B at `wavenumber`.

@@ -1,6 +1,7 @@
 //! The units of a fit: powers of two near the lengths and displacements of the profile. So squares neither overflow nor
 //! underflow in any units of the profile, and the conversion is exact.
 
+use crate::fit::dimension::Dimension;
 use crate::fit::profile_fit::{ElasticFit, ProfileFit, ScreenedFit};
 use crate::fit::{Estimate, FitError};
 use crate::observe::radial_profile::Ring;
@@ -9,7 +10,7 @@ use crate::reference::{Annulus, ReferenceError};
 /// Displacements below this share of their errors count as zero: their squares would vanish beside those of the errors.
 const LEAST_DISPLACEMENT: f64 = 1e-100;
 
-/// Above this, d_0^eff, which is larger by up to R/a, might overflow \[length\].
+/// Above this, d_0^eff, which is larger by up to (R/a)^(D−1), might overflow \[length\].
 const LARGEST_DISPLACEMENT: f64 = 1e200;
 
 /// Units of length and of displacement \[length\].
@@ -84,12 +85,12 @@ impl Units {
     }
 
     /// Converts a fit from these units to those of the caller. χ² has units only if the rings have no errors.
-    pub(crate) fn fit(&self, fit: ProfileFit, errors_known: bool) -> ProfileFit {
+    pub(crate) fn fit(&self, fit: ProfileFit, dimension: Dimension, errors_known: bool) -> ProfileFit {
         let estimate = |value: Estimate, unit: f64| Estimate {
             value: value.value * unit,
             standard_error: value.standard_error * unit,
         };
-        let square = if errors_known { 1.0 } else { (self.length * self.displacement).powi(2) };
+        let square = if errors_known { 1.0 } else { (dimension.rescaling(self.length) * self.displacement).powi(2) };
         ProfileFit {
             elastic: ElasticFit {
                 amplitude: estimate(fit.elastic.amplitude, self.displacement),

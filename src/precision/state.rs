@@ -175,7 +175,7 @@ impl State {
 #[cfg(feature = "fit")]
 pub(super) fn fit(field: &DisplacementField<2>, ring_width: f64, settings: &ProfileFitSettings) -> Option<Fitted> {
     let annulus = Annulus::new(field.inner_radius, field.outer_radius).ok()?;
-    fit_radial_profile(&RadialProfile::of(field, ring_width), annulus, settings).ok().as_ref().map(Fitted::from)
+    fit_radial_profile::<2>(&RadialProfile::of(field, ring_width), annulus, settings).ok().as_ref().map(Fitted::from)
 }
 
 /// Number of entries in only one of two ascending lists.

@@ -29,7 +29,7 @@ impl Compared<2> {
             let Some(after) = state else { continue };
             let response = Inflated { after: after.clone(), deflated: None, ..inflated.clone() };
             let profile = RadialProfile::of(&DisplacementField::of_inflation(&response), ring_width);
-            ending.fit = fit_radial_profile(&profile, annulus, settings).ok().map(EndingFit::from);
+            ending.fit = fit_radial_profile::<2>(&profile, annulus, settings).ok().map(EndingFit::from);
         }
         self.sensitivity.spreads = Spreads::of(&self.sensitivity.endings);
     }

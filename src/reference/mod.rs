@@ -31,6 +31,7 @@
 //! | [`poles`] | derived there; Watson, A Treatise on the Theory of Bessel Functions, §13.74 |
 //! | [`Amplitude`](amplitude::Amplitude) | derived there; Hadamard's theorem |
 //! | [`ElasticMode`](angular_modes::elastic::ElasticMode) | Michell (1899), Proc. Lond. Math. Soc. 31, 100 |
+//! | [`SphericalMode`](angular_modes::spherical::SphericalMode) | Love (1927), ch. XI; the closed form derived there |
 //! | [`PointForce`](angular_modes::point_force::PointForce) | Timoshenko & Goodier (1970), ch. 4; the rim derived there |
 //! | [`ScreenedMode`](angular_modes::screened::ScreenedMode) | Lemaître et al. (2021); odd screening Cohen et al. (2023), arXiv:2310.09942 |
 //! | [`bessel`] | Abramowitz & Stegun (1964), 9.1, 9.2, 9.6, 9.7, 10.1, 10.2 |

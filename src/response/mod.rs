@@ -195,7 +195,7 @@ impl Response {
                     return Measurement::Refused(reason.clone());
                 }
                 match Annulus::new(field.inner_radius, field.outer_radius) {
-                    Ok(annulus) => fit_radial_profile(profile, annulus, &settings).into(),
+                    Ok(annulus) => fit_radial_profile::<D>(profile, annulus, &settings).into(),
                     Err(error) => Measurement::Refused(error.to_string()),
                 }
             }),

@@ -41,7 +41,7 @@ proptest! {
             standard_error: error.abs() / (disk_count as f64).sqrt(),
         });
         let profile = RadialProfile { rings: rings.collect() };
-        if let Ok(fit) = fit_radial_profile(&profile, annulus, &ProfileFitSettings::default()) {
+        if let Ok(fit) = fit_radial_profile::<2>(&profile, annulus, &ProfileFitSettings::default()) {
             let numbers = numbers(&fit);
             prop_assert!(numbers.iter().all(|number| !number.is_nan()), "{fit:?}");
         }

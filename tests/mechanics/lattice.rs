@@ -2,6 +2,8 @@
 //! fit) against the continuum they tend to.
 
 #[cfg(feature = "fit")]
+mod body_centred;
+#[cfg(feature = "fit")]
 mod fits;
 
 use std::f64::consts::PI;

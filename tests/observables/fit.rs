@@ -1,5 +1,7 @@
 //! Fits of profiles whose answer is known.
 
+mod three_dimensions;
+
 use jamscope::fit::profile::{Decision, ProfileFit, ProfileFitSettings, fit_radial_profile};
 use jamscope::fit::{Estimate, FitError};
 use jamscope::observe::radial_profile::{RadialProfile, Ring};
@@ -71,7 +73,7 @@ fn screened(amplitude: f64, wavenumber: f64) -> impl Fn(f64) -> f64 {
 }
 
 fn fit(profile: &RadialProfile) -> ProfileFit {
-    fit_radial_profile(profile, annulus(), &ProfileFitSettings::default()).expect("a profile that can be fitted")
+    fit_radial_profile::<2>(profile, annulus(), &ProfileFitSettings::default()).expect("a profile that can be fitted")
 }
 
 /// d_0 for which r·d_r has 0.025 as its largest size on the rings, as in an elastic sample with d_0^eff = 0.05.
@@ -283,7 +285,7 @@ fn units_and_signs_scale_exactly() {
         });
         let other = RadialProfile { rings: rings.collect() };
         let scaled_annulus = Annulus::new(4.0, 8.0 * RIM).expect("valid");
-        let scaled = fit_radial_profile(&other, scaled_annulus, &ProfileFitSettings::default()).expect("fits");
+        let scaled = fit_radial_profile::<2>(&other, scaled_annulus, &ProfileFitSettings::default()).expect("fits");
         assert_eq!(scaled.decision, found.decision);
         assert_eq!(scaled.elastic.amplitude.value, -4.0 * found.elastic.amplitude.value);
         assert_eq!(scaled.elastic.amplitude.standard_error, 4.0 * found.elastic.amplitude.standard_error);
@@ -338,7 +340,7 @@ fn what_cannot_be_fitted_is_named() {
     let good = profile(screened(0.05, 0.0), WHITE, &mut random);
     let settings = ProfileFitSettings::default();
     let refusal = |profile: &RadialProfile, settings: &ProfileFitSettings| {
-        fit_radial_profile(profile, annulus(), settings).expect_err("a refusal")
+        fit_radial_profile::<2>(profile, annulus(), settings).expect_err("a refusal")
     };
     // Ring i is at i + 1.5 and the range begins at 2.5.
     let few = RadialProfile { rings: good.rings[..8].to_vec() };
@@ -391,6 +393,6 @@ fn rings_that_cannot_tell_give_no_wavenumber() {
     // A sliver of the annulus: the search must end.
     let narrow = ProfileFitSettings { inner_margin: 40.0, rim_margin: 1.5 - 1e-9, ..ProfileFitSettings::default() };
     let rings = (0..9).map(|i| Ring { radius: 40.5 + 1e-10 * f64::from(i), ..ring }).collect();
-    let found = fit_radial_profile(&RadialProfile { rings }, annulus(), &narrow);
+    let found = fit_radial_profile::<2>(&RadialProfile { rings }, annulus(), &narrow);
     assert!(found.is_ok_and(|fit| fit.decision != Decision::Screened));
 }

@@ -10,7 +10,7 @@ const LONGEST_FILE: usize = 450;
 const LONG: [&str; 1] = ["reference::bessel::modified_tables"];
 
 /// Names of files that are standard terms of physics, mathematics, numerical computing or programming.
-const STANDARD: [&str; 158] = [
+const STANDARD: [&str; 162] = [
     "analyse",
     "angular",
     "archive",
@@ -41,6 +41,8 @@ const STANDARD: [&str; 158] = [
     "decompress",
     "definition",
     "descent",
+    "detail",
+    "dimension",
     "displacement",
     "divergence",
     "dynamics",
@@ -140,9 +142,11 @@ const STANDARD: [&str; 158] = [
     "search",
     "section",
     "settings",
+    "shell_map",
     "significance",
     "simd",
     "size",
+    "slice_map",
     "slope",
     "solution",
     "source",

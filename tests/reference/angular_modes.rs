@@ -6,6 +6,7 @@ mod bessel;
 mod equation;
 mod outcomes;
 mod point_force;
+mod spherical;
 
 use annulus_mode::Twin;
 use jamscope::reference::Annulus;

@@ -1,11 +1,10 @@
 //! [`ElasticMode`]: an angular mode of the elastic annulus, in closed form.
 
-use crate::reference::angular_modes::exponential_differences::{Gap, product_difference};
+use crate::reference::angular_modes::exponential_differences::{Coupling, Kernels, log_ratio};
 use crate::reference::angular_modes::{
     AngularModeError, AngularSolution, ModeAmplitudes, ModeState, compliance_ratio, finite_amplitudes,
 };
 use crate::reference::{Annulus, RadialSolution, elastic::Elastic};
-use crate::vector::two_product;
 
 /// An angular mode of an isotropic elastic medium whose inner circle is displaced and whose rim is held.
 ///
@@ -69,12 +68,6 @@ pub struct ElasticMode {
     depth: f64,
 }
 
-/// The factors of s_a and d_a in s and d, all over Δ, and the t-derivatives of the brackets.
-struct Kernels {
-    value: [[f64; 2]; 2],
-    derivative: [[f64; 2]; 2],
-}
-
 impl ElasticMode {
     /// Mode n = `mode` in `annulus`, with Poisson's ratio ν of two dimensions and the amplitudes at the inner circle.
     ///
@@ -111,46 +104,10 @@ impl ElasticMode {
 
     /// The formulas of the type, n ≥ 1.
     fn kernels(&self, radius: f64) -> Kernels {
-        let (inner, outer) = (self.annulus.inner_radius(), self.annulus.outer_radius());
-        let n = f64::from(self.mode);
-        let (p, q) = (2.0 * n + 2.0, 2.0 * n - 2.0);
-        let (t, tau, eta) = (log_ratio(outer, radius), self.depth, log_ratio(radius, inner));
-        let epsilon = self.compliance_ratio;
-        let (soft, stiff, mixed) = (4.0 * epsilon, (1.0 - epsilon).powi(2), (1.0 - epsilon) * (1.0 + epsilon));
-
-        let [whole_p, whole_q, whole_2] = [p, q, 2.0].map(|m| Gap::integral(m, tau));
-        let [here_p, here_q, here_2] = [p, q, 2.0].map(|m| Gap::integral(m, t));
-        let [slope_p, slope_2] = [p, 2.0].map(|m| Gap::power(m, t));
-        let one = Gap::power(0.0, t);
-        let whole_2_q = whole_2.times_power(q, tau);
-        let (here_2_q, slope_2_q) = (here_2.times_power(q, t), slope_2.times_power(q, t));
-        let both = |a: [Gap; 2], b: [Gap; 2]| soft * a[0].value() * a[1].value() + stiff * product_difference(a, b);
-
-        let determinant = both([whole_p, whole_q], [whole_2, whole_2_q]);
-        let steep = ratio_power(inner, radius, n + 1.0) / determinant;
-        let flat = ratio_power(inner, radius, n - 1.0) / determinant;
-        let share = (radius / outer).powi(2);
-        // [E_2(τ) E_p(t) − E_p(τ) E_2(t)]/x² = E_2(η) E_p(t) − x^(2n) E_p(η) E_2(t) with η = ln(r/a) = τ − t.
-        let [inner_p, inner_2] = [p, 2.0].map(|m| Gap::integral(m, eta));
-        let from_inner = product_difference([inner_2, here_p], [inner_p.times_power(2.0 * n, t), here_2]);
-        let value = [
-            [steep * both([whole_q, here_p], [whole_2_q, here_2]), flat * mixed * from_inner],
-            [
-                steep * mixed * share * product_difference([whole_2_q, here_q], [whole_q, here_2_q]),
-                flat * both([whole_p, here_q], [whole_2, here_2_q]),
-            ],
-        ];
-        let derivative = [
-            [
-                steep * both([whole_q, slope_p], [whole_2_q, slope_2]),
-                flat * mixed * product_difference([whole_2, Gap::power(2.0 * n, t)], [whole_p, one]),
-            ],
-            [
-                steep * mixed * share * product_difference([whole_2_q, one], [whole_q, slope_2_q]),
-                flat * both([whole_p, one], [whole_2, slope_2_q]),
-            ],
-        ];
-        Kernels { value, derivative }
+        let (n, epsilon) = (f64::from(self.mode), self.compliance_ratio);
+        let mixed = (1.0 - epsilon) * (1.0 + epsilon);
+        let coupling = Coupling { soft: 4.0 * epsilon, stiff: (1.0 - epsilon).powi(2), mixed: [mixed, mixed] };
+        Kernels::new(self.annulus, self.depth, [2.0 * n + 2.0, 2.0 * n - 2.0], n + 1.0, &coupling, radius)
     }
 }
 
@@ -181,26 +138,4 @@ impl AngularSolution for ElasticMode {
         };
         ModeState { value, derivative: ModeAmplitudes::from_sum_and_difference(slopes) }
     }
-}
-
-/// ln(larger/smaller) to rounding, also if the ratio is near 1.
-pub(super) fn log_ratio(larger: f64, smaller: f64) -> f64 {
-    let ratio = larger / smaller;
-    if smaller > 0.5 * larger {
-        -libm::log1p(-(larger - smaller) / larger)
-    } else if ratio.is_finite() {
-        libm::log(ratio)
-    } else {
-        libm::log(larger) - libm::log(smaller)
-    }
-}
-
-/// (a/b)^power for a ≤ b, corrected for the rounding of a/b, which would be multiplied by `power`.
-fn ratio_power(a: f64, b: f64, power: f64) -> f64 {
-    let ratio = a / b;
-    let value = libm::pow(ratio, power);
-    let (product, rest) = two_product(ratio, b);
-    let lost = ((a - product) - rest) / a;
-    // NaN if the product overflows (b > 2⁹⁹⁵), and not needed if a/b is subnormal: radii beyond 10²⁹⁹.
-    if lost.abs() < f64::EPSILON { value * (1.0 + power * lost) } else { value }
 }

@@ -8,6 +8,11 @@
 //!
 //! In a thin annulus all of them are nearly equal to t, and only their differences matter; the second form resolves
 //! these.
+//!
+//! [`Kernels`] are the elastic modes made of them, in the annulus and in the shell.
+
+use crate::reference::Annulus;
+use crate::vector::two_product;
 
 /// Up to this size of the arguments, differences are computed from those of the exponents and of shc − 1.
 const NEAR: f64 = 1.0;
@@ -65,6 +70,99 @@ pub(super) fn product_difference(a: [Gap; 2], b: [Gap; 2]) -> f64 {
     let half = 0.5 * (exponent_a - exponent_b);
     let bracket = (excess_a - excess_b) * libm::cosh(half) + (2.0 + excess_a + excess_b) * libm::sinh(half);
     a[0].width * a[1].width * libm::exp(0.5 * (exponent_a + exponent_b)) * bracket
+}
+
+/// Coefficients of the products of integrals in an elastic mode.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Coupling {
+    /// That of E_p E_q: vanishes in an incompressible medium.
+    pub(super) soft: f64,
+    /// That of the difference `E_p E_q − x^q E_2 E_2`.
+    pub(super) stiff: f64,
+    /// Those of d_a in s, and of s_a in d.
+    pub(super) mixed: [f64; 2],
+}
+
+/// The factors of s_a and d_a in s and d, all over Δ, and the t-derivatives of the brackets.
+///
+/// s and d are the two combinations of the amplitudes of an elastic mode that each contain three of its four powers,
+/// `x^(−σ), x^(−σ+2), x^(−σ+p)` in s and `x^(−σ+2), x^(−σ+2+q), x^(−σ+4+q)` in d, with x = r/R and p = q + 4. Both
+/// vanish at the rim.
+pub(super) struct Kernels {
+    pub(super) value: [[f64; 2]; 2],
+    pub(super) derivative: [[f64; 2]; 2],
+}
+
+impl Kernels {
+    /// The factors at `radius`, for `depth` ln(R/a), the exponents p and q, and σ = `steepness`.
+    pub(super) fn new(
+        annulus: Annulus,
+        depth: f64,
+        [p, q]: [f64; 2],
+        steepness: f64,
+        coupling: &Coupling,
+        radius: f64,
+    ) -> Self {
+        let (inner, outer) = (annulus.inner_radius(), annulus.outer_radius());
+        let (t, tau, eta) = (log_ratio(outer, radius), depth, log_ratio(radius, inner));
+        let Coupling { soft, stiff, mixed: [into_sum, into_difference] } = *coupling;
+
+        let [whole_p, whole_q, whole_2] = [p, q, 2.0].map(|m| Gap::integral(m, tau));
+        let [here_p, here_q, here_2] = [p, q, 2.0].map(|m| Gap::integral(m, t));
+        let [slope_p, slope_2] = [p, 2.0].map(|m| Gap::power(m, t));
+        let one = Gap::power(0.0, t);
+        let whole_2_q = whole_2.times_power(q, tau);
+        let (here_2_q, slope_2_q) = (here_2.times_power(q, t), slope_2.times_power(q, t));
+        let both = |a: [Gap; 2], b: [Gap; 2]| soft * a[0].value() * a[1].value() + stiff * product_difference(a, b);
+
+        let determinant = both([whole_p, whole_q], [whole_2, whole_2_q]);
+        let steep = ratio_power(inner, radius, steepness) / determinant;
+        let flat = ratio_power(inner, radius, steepness - 2.0) / determinant;
+        let share = (radius / outer).powi(2);
+        // [E_2(τ) E_p(t) − E_p(τ) E_2(t)]/x² = E_2(η) E_p(t) − x^(p−2) E_p(η) E_2(t) with η = ln(r/a) = τ − t.
+        let [inner_p, inner_2] = [p, 2.0].map(|m| Gap::integral(m, eta));
+        let from_inner = product_difference([inner_2, here_p], [inner_p.times_power(p - 2.0, t), here_2]);
+        let value = [
+            [steep * both([whole_q, here_p], [whole_2_q, here_2]), flat * into_sum * from_inner],
+            [
+                steep * into_difference * share * product_difference([whole_2_q, here_q], [whole_q, here_2_q]),
+                flat * both([whole_p, here_q], [whole_2, here_2_q]),
+            ],
+        ];
+        let derivative = [
+            [
+                steep * both([whole_q, slope_p], [whole_2_q, slope_2]),
+                flat * into_sum * product_difference([whole_2, Gap::power(p - 2.0, t)], [whole_p, one]),
+            ],
+            [
+                steep * into_difference * share * product_difference([whole_2_q, one], [whole_q, slope_2_q]),
+                flat * both([whole_p, one], [whole_2, slope_2_q]),
+            ],
+        ];
+        Kernels { value, derivative }
+    }
+}
+
+/// ln(larger/smaller) to rounding, also if the ratio is near 1.
+pub(super) fn log_ratio(larger: f64, smaller: f64) -> f64 {
+    let ratio = larger / smaller;
+    if smaller > 0.5 * larger {
+        -libm::log1p(-(larger - smaller) / larger)
+    } else if ratio.is_finite() {
+        libm::log(ratio)
+    } else {
+        libm::log(larger) - libm::log(smaller)
+    }
+}
+
+/// (a/b)^power for a ≤ b, corrected for the rounding of a/b, which would be multiplied by `power`.
+pub(super) fn ratio_power(a: f64, b: f64, power: f64) -> f64 {
+    let ratio = a / b;
+    let value = libm::pow(ratio, power);
+    let (product, rest) = two_product(ratio, b);
+    let lost = ((a - product) - rest) / a;
+    // NaN if the product overflows (b > 2⁹⁹⁵), and not needed if a/b is subnormal: radii beyond 10²⁹⁹.
+    if lost.abs() < f64::EPSILON { value * (1.0 + power * lost) } else { value }
 }
 
 /// `sinh z / z − 1`, 0 ≤ z ≤ 4: all terms of its power series have one sign.

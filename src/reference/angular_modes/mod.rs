@@ -1,4 +1,4 @@
-//! Angular modes of the annulus in two dimensions: the response of the medium to a displacement cos nθ of the inner
+//! Angular modes of the annulus, and of the elastic shell: the response of the medium to a displacement cos nθ of the inner
 //! circle.
 //!
 //! A mode n = 0, 1, 2, … has two complex amplitudes, one along the radius and one along the circle,
@@ -18,7 +18,8 @@
 //! [`ElasticMode`](elastic::ElasticMode) is the closed form for Γ = 0. [`PointForce`](point_force::PointForce) is the n
 //! = 1 mode of a force at the centre. [`ScreenedMode`](screened::ScreenedMode) allows any even and odd screening; odd
 //! screening turns radial inflation (n = 0) into radial and transverse displacement. All implement [`AngularSolution`],
-//! which also gives the stretch of bonds. Start from [`ElasticMode::new`](elastic::ElasticMode::new).
+//! which also gives the stretch of bonds. Start from [`ElasticMode::new`](elastic::ElasticMode::new). The modes of an
+//! elastic shell, in three dimensions, are [`SphericalMode`](spherical::SphericalMode).
 //!
 //! # Poisson's ratio
 //!
@@ -35,6 +36,7 @@ mod first_order_system;
 pub mod point_force;
 pub mod screened;
 mod solution_basis;
+pub mod spherical;
 
 pub use num_complex::Complex;
 use thiserror::Error;
@@ -171,6 +173,22 @@ pub enum AngularModeError {
     PoissonRatioOutside {
         /// The ratio given.
         poisson_ratio: f64,
+    },
+    /// Poisson's ratio of the material is not between −1 and 1/2.
+    #[error("Poisson's ratio in three dimensions must lie between -1 and 0.5, it is {poisson_ratio}")]
+    MaterialRatioOutside {
+        /// The ratio given.
+        poisson_ratio: f64,
+    },
+    /// An amplitude at the inner sphere is not finite.
+    #[error("the amplitudes at the inner sphere must be finite, they are {radial}, {gradient} and {toroidal}")]
+    SphericalAmplitudeNotFinite {
+        /// U_a given \[length\].
+        radial: f64,
+        /// V_a given \[length\].
+        gradient: f64,
+        /// W_a given \[length\].
+        toroidal: f64,
     },
     /// An amplitude at the inner circle is not finite.
     #[error("the amplitudes at the inner radius must be finite, they are {radial} and {transverse}")]

@@ -1,7 +1,7 @@
 //! [`PointForce`]: the response of an elastic medium to a force at the centre of a held circle.
 
 use crate::reference::Annulus;
-use crate::reference::angular_modes::elastic::log_ratio;
+use crate::reference::angular_modes::exponential_differences::log_ratio;
 use crate::reference::angular_modes::{
     AngularModeError, AngularSolution, ModeAmplitudes, ModeState, compliance_ratio, finite_force,
 };

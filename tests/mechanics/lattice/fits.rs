@@ -6,7 +6,7 @@ use super::*;
 
 fn fitted(profile: &RadialProfile, outer_radius: f64) -> ProfileFit {
     let annulus = Annulus::new(0.5, outer_radius).expect("an annulus");
-    fit_radial_profile(profile, annulus, &ProfileFitSettings::default()).expect("a fit")
+    fit_radial_profile::<2>(profile, annulus, &ProfileFitSettings::default()).expect("a fit")
 }
 
 /// κ fitted over κ put in, less one; the amplitude fitted over B d_0/a, less one; the branch.
