@@ -22,7 +22,8 @@
 //! same scatter: at few irregular angles the leakage of low frequencies is common to all
 //! ([`dependence`](crate::observe::angular::dependence)). The standard error is a fourth of the interval.
 //!
-//! For shells of spheres, [`fit_shell_slope`] and [`fit_shell_crossover`] use the same likelihood with 2ℓ+1 modes per power.
+//! For shells of spheres, [`fit_shell_slope`] and [`fit_shell_crossover`] use the same likelihood with
+//! 2ℓ+1 modes per power.
 //!
 //! Source: Whittle (1953), Ark. Mat. 2, 423; Sykulski et al. (2019), Biometrika 106, 251; Lawley (1956), Biometrika 43,
 //! 295.

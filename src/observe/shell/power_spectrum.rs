@@ -118,7 +118,7 @@ impl ShellSpectrum {
     /// ℓ_max out of range; directions that do not separate the degrees.
     ///
     /// # Cost
-    /// 5 n ℓ_max² steps of a recursion and ℓ_max⁴/3 multiplications: 0.02 s at 5000 spheres.
+    /// 5 n ℓ_max² steps of a recursion and ℓ_max⁴/3 multiplications: 0.03 s at 5000 spheres.
     ///
     /// # Accuracy
     /// The errors are √(2/(2ℓ+1)) of the power with leakage, for Gaussian amplitudes, times the response of P_ℓ to that

@@ -43,7 +43,7 @@ fn bins_hold_the_products_of_their_pairs() {
 fn bins_and_powers_are_a_legendre_transform_of_each_other() {
     // P_ℓ/V = 1/n + (2/n²) Σ_b n_b G_b P_ℓ(cos γ_b), exact but for the width of a bin: |dP_ℓ/dγ| ≤ ℓ (Bernstein).
     let (count, bins) = (400, 2000);
-    let sample = shell(&clustered_directions(count, 2), |n| n[0] + 2.0 * n[1] * n[2] + (9.0 * n[2]).sin());
+    let sample = shell(&clustered_directions(count, 2), |n| n[0] + 4.0 * n[0] * n[1] + (9.0 * n[2]).sin());
     let found = correlation(&sample, bins);
     let spectrum = ShellSpectrum::of(&sample, &up_to(10, Leakage::Kept)).expect("enough spheres");
     let n = count as f64;
