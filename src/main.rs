@@ -95,6 +95,9 @@ struct RunArguments {
     /// Use this packing (extended XYZ, LAMMPS data or dump, NumPy archive; `-` is the standard input) instead of the samples of the scene.
     #[arg(long, value_name = "FILE")]
     packing: Option<PathBuf>,
+    /// Dimension of the packing, if there is no scene file; 2 by default.
+    #[arg(long, value_name = "D", value_parser = clap::value_parser!(u8).range(2..=3))]
+    dimension: Option<u8>,
     /// Folder for the report.
     #[arg(long, value_name = "DIR", default_value = "jamscope-report")]
     out: PathBuf,
@@ -180,17 +183,21 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
 fn run_with(arguments: &RunArguments, inputs: &mut input::Inputs) -> Result<ExitCode, Failure> {
     let mut scene = match &arguments.scene {
         Some(path) => scene_file::read_scene(path)?,
-        None => Scene::default(),
+        None => Scene::in_dimension(usize::from(arguments.dimension.unwrap_or(2))),
     };
+    if let Some(dimension) = arguments.dimension.filter(|&it| usize::from(it) != scene.dimension) {
+        return Err(format!("--dimension {dimension}: the scene has dimension = {}", scene.dimension).into());
+    }
     if let Some(path) = &arguments.packing {
         let path = inputs.file(path)?;
         scene.sample = vec![sample_of_file(&path, &scene)];
         scene.law = law_of_run(&path, arguments.scene.is_some().then_some(&scene.law))?;
         // A file that cannot be read is reported by the run.
-        if arguments.scene.is_none()
-            && let Ok(packing) = read_packing::<2>(&path)
-        {
-            let unit = unit_of(&packing);
+        let unit = match scene.dimension {
+            3 => read_packing::<3>(&path).ok().map(|packing| unit_of(&packing)),
+            _ => read_packing::<2>(&path).ok().map(|packing| unit_of(&packing)),
+        };
+        if let Some(unit) = unit.filter(|_| arguments.scene.is_none()) {
             scene.observables = scene.observables.in_units(unit);
             scene.inflation.increase *= unit;
         }
@@ -234,7 +241,7 @@ fn law_of_run(path: &Path, of_scene: Option<&LawChoice>) -> Result<LawChoice, Fa
 }
 
 /// The unit of lengths that are not given: the diameter of a small disk of the packing, 1 in the units of the defaults.
-fn unit_of(packing: &Packing<2>) -> f64 {
+fn unit_of<const D: usize>(packing: &Packing<D>) -> f64 {
     2.0 * packing.radii().iter().copied().fold(f64::INFINITY, f64::min)
 }
 
@@ -270,13 +277,16 @@ fn sample_of_file(path: &Path, scene: &Scene) -> Sample {
 /// What the scene relaxes packings with that are as dense as this one; the default protocol, if it has none of them.
 fn relaxer_of_file(path: &Path, scene: &Scene) -> RelaxerChoice {
     // A file that cannot be read is reported by the run.
-    let fraction = read_packing::<2>(path).ok().and_then(|packing| packing.packing_fraction()).unwrap_or(1.0);
-    let own = Source::PackingFraction(fraction);
+    let fraction = match scene.dimension {
+        3 => read_packing::<3>(path).ok().and_then(|packing| packing.packing_fraction()),
+        _ => read_packing::<2>(path).ok().and_then(|packing| packing.packing_fraction()),
+    };
+    let own = Source::PackingFraction(fraction.unwrap_or(1.0));
     let alike = scene
         .sample
         .iter()
         .find(|sample| sample.source.is_below_jamming(scene.dimension) == own.is_below_jamming(scene.dimension));
-    alike.map_or_else(|| ProtocolChoice::default().relaxer_of(&own), |sample| sample.relaxer)
+    alike.map_or_else(|| ProtocolChoice::default().relaxer_in(scene.dimension, &own), |sample| sample.relaxer)
 }
 
 fn inspect_packing(arguments: &InspectArguments) -> Result<ExitCode, Failure> {

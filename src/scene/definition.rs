@@ -76,6 +76,24 @@ pub struct Sample {
     pub relaxer: RelaxerChoice,
 }
 
+impl Scene {
+    /// The built-in scene of disks (2), or of spheres (3) with the same sizes of packings and the same observables, as
+    /// far as spheres have them.
+    pub fn in_dimension(dimension: usize) -> Self {
+        let scene = Scene::default();
+        if dimension != 3 {
+            return scene;
+        }
+        let unjammed = Source::PackingFraction(0.62);
+        let relaxer = ProtocolChoice::default().relaxer_in(3, &unjammed);
+        let sample = scene.sample.iter().enumerate().map(|(place, sample)| match place {
+            0 => Sample { source: unjammed.clone(), relaxer, ..sample.clone() },
+            _ => sample.clone(),
+        });
+        Scene { dimension, sample: sample.collect(), observables: Observables::of_dimension(dimension), ..scene }
+    }
+}
+
 impl Default for Scene {
     /// The three phases at the study's smallest size: unjammed, plastic and quasielastic.
     ///

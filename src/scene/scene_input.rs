@@ -82,7 +82,7 @@ impl From<Written> for Scene {
             None => {
                 let by_protocol =
                     |sample: Sample| Sample { relaxer: protocol.relaxer_in(dimension, &sample.source), ..sample };
-                Scene::default().sample.into_iter().map(by_protocol).collect()
+                Scene::in_dimension(dimension).sample.into_iter().map(by_protocol).collect()
             }
         };
         Scene { dimension, disk_count, law, mixture, preparation, inflation, observables, verdict, sample }

@@ -23,6 +23,7 @@ mod precision;
 mod report;
 #[cfg(feature = "cli")]
 mod sizes;
+mod spheres;
 mod structure;
 mod study;
 #[cfg(feature = "cli")]

@@ -1,0 +1,111 @@
+//! Runs and studies of spheres: what they write, what they refuse, the same bytes on one thread and two.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn jamscope(folder: &Path, arguments: &str) -> Output {
+    let program = Command::new(env!("CARGO_BIN_EXE_jamscope")).args(arguments.split(' ')).current_dir(folder).output();
+    program.expect("the program starts")
+}
+
+fn done(folder: &Path, arguments: &str) -> String {
+    let output = jamscope(folder, arguments);
+    assert!(output.status.success(), "{arguments}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("Unicode")
+}
+
+fn refused(folder: &Path, scene: &str, part: &str) {
+    std::fs::write(folder.join("wrong.toml"), scene).expect("written");
+    let output = jamscope(folder, "run wrong.toml");
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{scene}: {message}");
+    assert!(message.contains(part), "no `{part}` in: {message}");
+}
+
+fn text(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+const SCENE: &str = "dimension = 3\ndisk_count = 2000\nprotocol = \"fire\"\n[[sample]]\nname = \"dense\"\nsource = { pressure = 2000.0 }\n";
+
+#[test]
+fn a_run_of_spheres_has_its_page_its_tables_and_the_same_bytes_on_two_threads() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("scene.toml"), SCENE).expect("written");
+    done(folder.path(), "run scene.toml --threads 1 --out one");
+    let printed = done(folder.path(), "run scene.toml --threads 2 --out two");
+    assert!(printed.contains("spheres within the shell, N") && printed.contains("[force/length^2]"), "{printed}");
+    let one = folder.path().join("one");
+    for entry in std::fs::read_dir(&one).expect("a folder") {
+        let name = entry.expect("an entry").file_name();
+        if name != "timings.json" {
+            let [first, second] =
+                ["one", "two"].map(|it| std::fs::read(folder.path().join(it).join(&name)).expect("a file"));
+            assert!(first == second, "{name:?}");
+        }
+    }
+    let page = text(&one.join("report.html"));
+    for title in ["slice of r²·d_r", "d_r on a shell", "radial profile", "angular correlation"] {
+        assert!(page.contains(&format!("dense: {title}")), "no {title}");
+    }
+    let report: Value = serde_json::from_str(&text(&one.join("report.json"))).expect("JSON");
+    let sample = &report["samples"][0]["done"];
+    assert_eq!(
+        (report["scene"]["dimension"].as_u64(), sample["packing"]["box_sides"].as_array().map(Vec::len)),
+        (Some(3), Some(3))
+    );
+    let shell = &sample["shell_correlation"]["measured"];
+    let powers = shell["spectrum"]["power"].as_array().expect("powers").len();
+    // Columns of spheres: three coordinates, r² d_r.
+    assert_eq!(text(&one.join("dense.shell_spectrum.csv")).lines().count(), 2 + powers - 1);
+    let head = |name: &str| text(&one.join(name)).lines().take(2).map(str::to_owned).collect::<Vec<_>>().join("\n");
+    assert!(head("dense.contact_changes.csv").starts_with("change,first,second,x,y,z,distance\n"));
+    assert!(head("dense.radial_profile.csv").contains("length^3"));
+    let field = head("dense.displacement.xyz");
+    assert!(field.contains("displacement:R:3:radial:R:1:counted:R:1") && !field.contains("transverse"), "{field}");
+    // What is written is a packing of spheres again, at rest.
+    done(folder.path(), "inspect one/dense.packing.xyz --dimension 3");
+    done(folder.path(), "run --packing one/dense.packing.xyz --dimension 3 --out again");
+    let again: Value = serde_json::from_str(&text(&folder.path().join("again/report.json"))).expect("JSON");
+    let pressure = |report: &Value| report["samples"][0]["done"]["packing"]["pressure"].as_f64().expect("a pressure");
+    assert!((pressure(&again) / pressure(&report) - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_study_of_spheres_is_merged() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let study = "targets = [{ pressure = 500.0 }, { reduced_pressure = 1e6 }]\nrelaxers = [{ fire = {} }]\nseeds = { first = 1, count = 2 }\n\
+                 [scene]\ndimension = 3\ndisk_count = 400\n";
+    std::fs::write(folder.path().join("study.toml"), study).expect("written");
+    done(folder.path(), "study study.toml --out s");
+    done(folder.path(), "merge s");
+    let records = text(&folder.path().join("s/samples.csv"));
+    assert_eq!(records.lines().count(), 1 + 4, "{records}");
+    // p̂ = p N for Hertzian spheres: 10⁶ over the 185 spheres of a ball of radius 0.48 in a box of 400.
+    let names: Vec<&str> = records.lines().next().expect("names").split(',').collect();
+    let column = |name: &str| names.iter().position(|&other| other == name).expect(name);
+    let numbers = |row: &str, name: &str| row.split(',').nth(column(name)).expect("a cell").parse::<f64>().ok();
+    let ratios: Vec<f64> = records
+        .lines()
+        .skip(1)
+        .filter_map(|row| Some(numbers(row, "reduced_pressure")? / numbers(row, "pressure")?))
+        .collect();
+    let mobile = 4.0 / 3.0 * std::f64::consts::PI * 0.48f64.powi(3) * 400.0;
+    assert!(
+        !ratios.is_empty() && ratios.iter().all(|ratio| (ratio / mobile - 1.0).abs() < 1e-12),
+        "{ratios:?} {names:?}"
+    );
+}
+
+#[test]
+fn what_belongs_to_another_dimension_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    refused(folder.path(), "dimension = 4\n", "dimension = 4: must be 2 or 3");
+    refused(folder.path(), "dimension = 3\n[observables.multipoles]\n", "observables.multipoles: with dimension = 3");
+    refused(folder.path(), "[observables.shell_correlation]\n", "observables.shell_correlation: is of spheres");
+    std::fs::write(folder.path().join("scene.toml"), SCENE).expect("written");
+    let output = jamscope(folder.path(), "run scene.toml --dimension 2");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--dimension 2: the scene has dimension = 3"));
+}
