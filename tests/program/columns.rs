@@ -283,6 +283,13 @@ fn every_column_of_a_table_is_in_the_book_and_the_reverse() {
             }
         }
     }
+    let scene = "dimension = 3\ndisk_count = 2000\nprotocol = \"fire\"\n[observables]\nradial_profile = {}\nshell_correlation = {}\n";
+    write("spheres.toml", &format!("{scene}[[sample]]\nname = \"spheres\"\nsource = {{ pressure = 3000.0 }}\n"));
+    done(folder.path(), "run spheres.toml --out spheres");
+    for name in ["shell_correlation.csv", "shell_spectrum.csv"] {
+        let table = text(&folder.path().join(format!("spheres/spheres.{name}")));
+        found.extend(columns_of(&format!("NAME.{name}"), &table, true));
+    }
     for (name, arguments) in [
         ("exact profile", ""),
         ("exact amplitude", ""),
