@@ -51,7 +51,8 @@ fn modes_of_a_shell_have_their_digits() {
             let (state, condition) = (medium.at(radius), medium.condition(radius));
             let (value, slope) = (state.value, state.derivative);
             let error = error(exact, [value.radial, value.gradient, slope.radial, slope.gradient]);
-            spheroidal_worst.take(error / CLAIMED / condition, || format!("{error:.1e}, condition {condition:.1}: {row}"));
+            spheroidal_worst
+                .take(error / CLAIMED / condition, || format!("{error:.1e}, condition {condition:.1}: {row}"));
             if condition < 10.0 {
                 plain_worst.take(error / CLAIMED, || format!("{error:.1e}, condition {condition:.1}: {row}"));
             }
