@@ -128,6 +128,24 @@ fn elastic_modes_have_their_digits() {
     worst.finish("elastic modes", cases.len() * 4 * 12);
 }
 
+#[test]
+fn a_transverse_displacement_of_a_thin_nearly_incompressible_annulus_loses_digits() {
+    // s_a = −d_a, and their factors are some R/((R−a) n) = 500 times as large as the displacement that they leave: a film
+    // that can hardly be squeezed.
+    let (annulus, mode, poisson_ratio) = (annulus(1.0, 1.001), 2, 0.999_999_999_9);
+    let (radii, boundary) = (radii(annulus, 6), ModeAmplitudes::in_phase(0.0, 1.0));
+    let twin = Twin { annulus, poisson_ratio, screening: Screening::default(), mode };
+    let medium = elastic(annulus, poisson_ratio, mode, boundary);
+    let exact = twin.at(&radii, &[boundary]);
+    let errors = exact[0]
+        .iter()
+        .zip(&radii)
+        .map(|(state, &radius)| error(state, &medium.at(radius), length(annulus, mode, Screening::default(), radius)));
+    let worst = errors.fold(0.0, jamscope::vector::larger);
+    println!("largest error {worst:.1e}");
+    assert!(worst > CLAIMED_ELASTIC && worst < 500.0 * CLAIMED_ELASTIC, "{worst:.1e}");
+}
+
 /// Accuracy claimed for the screened modes: every node rounds a state by a few 2⁻⁵³ (a sum of terms, a projection, a
 /// combination), the series to the radius once more; errors of nodes add, and the condition of the boundary values
 /// multiplies.

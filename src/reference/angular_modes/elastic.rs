@@ -38,7 +38,8 @@ use crate::reference::{Annulus, RadialSolution, elastic::Elastic};
 /// # Accuracy
 /// Relative to |u| + ℓ|u'|, where ℓ is the length over which u changes, and u' times ℓ relative to the same: below
 /// 7.5·10⁻¹⁵. Largest error found against 160 bits: 1.2·10⁻¹⁵, for n from 0 to 1000, R/a from 1 + 10⁻⁷ to 10⁷, ν from
-/// −0.99999 to 1 − 10⁻¹⁰. Beyond n = 1000 it agrees with
+/// −0.99999 to 1 − 10⁻¹⁰. A transverse displacement alone, U_a = 0, loses more in a thin, nearly incompressible annulus,
+/// by up to R/((R−a) n): 4·10⁻¹³ for R/a = 1.001, n = 2, ν = 1 − 10⁻¹⁰. Beyond n = 1000 it agrees with
 /// [`ScreenedMode`](crate::reference::angular_modes::screened::ScreenedMode) without screening, tested to n = 5000.
 ///
 /// # Cost

@@ -110,7 +110,9 @@ pub struct SphericalState {
 ///
 /// # Accuracy
 /// Relative to |u| + h|u'|, with |u| = |U| + √L(|V| + |W|) and h the length over which u changes, and u' times h
-/// relative to the same: below 7.5·10⁻¹⁵ times the [condition](SphericalMode::condition).
+/// relative to the same: below 7.5·10⁻¹⁵ times the [condition](SphericalMode::condition). Largest error found against 25
+/// digits: 2.6·10⁻¹⁵ for a condition below 10, and 9.9·10⁻¹⁵ otherwise, for ℓ from 1 to 20, R/a from 1.001 to 2·10⁴, ν
+/// from −0.5 to 0.4999.
 ///
 /// # Example
 /// ```
