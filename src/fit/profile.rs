@@ -27,8 +27,8 @@
 //! **Decision.** Screened if the decrease of χ² against elastic is significant (F test with n_eff − 2 degrees of
 //! freedom, corrected for the number of branches). Otherwise elastic. Neither, if the selected one is not significantly
 //! better than zero displacement, or describes too little of the variance. A κ below about κ_1/3 changes d_r by at most
-//! (κR)²/8 ≈ 20 % (D = 2; (κR)²/10 ≈ 22 % in three dimensions), at the rim, where d_r vanishes. Unless the rings are that accurate, the decision is elastic, and the
-//! bound on κ states what is excluded.
+//! (κR)²/8 ≈ 20 % (D = 2) or (κR)²/10 ≈ 22 % (D = 3), at the rim, where d_r vanishes. Unless the rings are that
+//! accurate, the decision is elastic, and the bound on κ states what is excluded.
 
 use std::f64::consts::PI;
 

@@ -1,5 +1,5 @@
-//! Angular modes of the annulus, and of the elastic shell: the response of the medium to a displacement cos nθ of the inner
-//! circle.
+//! Angular modes of the annulus in two dimensions, and of the elastic shell: the response of the medium to a
+//! displacement cos nθ of the inner circle.
 //!
 //! A mode n = 0, 1, 2, … has two complex amplitudes, one along the radius and one along the circle,
 //!
