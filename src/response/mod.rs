@@ -7,10 +7,9 @@
 mod calibration;
 mod contacts;
 mod detail;
+mod measurement;
 mod phase;
 mod shell;
-
-use std::fmt::Display;
 
 use serde::Serialize;
 
@@ -19,6 +18,7 @@ pub use calibration::{
 };
 pub use contacts::{ContactChangeCounts, ContactSummary, CycleCounts};
 pub use detail::{Detail, DetailOf};
+pub use measurement::Measurement;
 pub use phase::{Evidence, Phase, PhaseDecision, PhaseOutcome};
 pub use shell::ShellResponse;
 
@@ -43,40 +43,6 @@ use crate::response::detail::{in_plane, in_space};
 use crate::response::phase::{by_contact_changes, by_pressure_change};
 use crate::scene::{AngularCorrelationSettings, Observables};
 use crate::verdict::RestVerdict;
-
-/// A measured quantity, or the reason why there is none.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Measurement<T> {
-    /// The quantity.
-    Measured(T),
-    /// The reason why there is none.
-    Refused(String),
-}
-
-impl<T> Measurement<T> {
-    /// The quantity, if it was measured.
-    pub fn measured(&self) -> Option<&T> {
-        match self {
-            Measurement::Measured(value) => Some(value),
-            Measurement::Refused(_) => None,
-        }
-    }
-
-    /// The reason why there is none, if it was refused.
-    pub fn refused(&self) -> Option<&str> {
-        match self {
-            Measurement::Measured(_) => None,
-            Measurement::Refused(reason) => Some(reason),
-        }
-    }
-}
-
-impl<T, E: Display> From<Result<T, E>> for Measurement<T> {
-    fn from(result: Result<T, E>) -> Self {
-        result.map_or_else(|error| Measurement::Refused(error.to_string()), Measurement::Measured)
-    }
-}
 
 /// The states of a response.
 pub struct Subject<'a, const D: usize> {

@@ -9,7 +9,7 @@ use crate::fit::angular::{CrossoverFit, SlopeFit, fit_shell_crossover, fit_shell
 use crate::observe::shell::ShellSample;
 use crate::observe::shell::{ShellAnalysis, ShellError};
 #[cfg(feature = "fit")]
-use crate::response::Measurement;
+use crate::response::measurement::Measurement;
 use crate::scene::{Observables, ShellCorrelationSettings};
 
 /// Spectrum and correlation of one shell, and the fits to the spectrum.

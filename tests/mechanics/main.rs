@@ -33,8 +33,10 @@ mod preparation;
 #[cfg(feature = "linear")]
 mod protocol;
 mod relax;
-#[cfg(feature = "linear")]
 mod spheres;
+#[cfg(feature = "linear")]
 mod stability;
+#[cfg(feature = "linear")]
 mod strain;
+#[cfg(feature = "linear")]
 mod tilted;

@@ -10,7 +10,7 @@ const LONGEST_FILE: usize = 450;
 const LONG: [&str; 1] = ["reference::bessel::modified_tables"];
 
 /// Names of files that are standard terms of physics, mathematics, numerical computing or programming.
-const STANDARD: [&str; 162] = [
+const STANDARD: [&str; 163] = [
     "analyse",
     "angular",
     "archive",
@@ -94,6 +94,7 @@ const STANDARD: [&str; 162] = [
     "manifest",
     "map",
     "measure",
+    "measurement",
     "memory",
     "merge",
     "minimise",

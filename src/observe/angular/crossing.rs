@@ -44,7 +44,7 @@ impl CrossingOutcome {
     }
 
     /// The first crossing in a table, ascending from θ = 0, with linear interpolation.
-    pub(in crate::observe) fn in_table(angles: &[f64], values: &[f64], threshold: f64) -> Self {
+    pub(crate) fn in_table(angles: &[f64], values: &[f64], threshold: f64) -> Self {
         Self::refined(angles, values, threshold, |low, high| {
             let share = (values[low] - threshold) / (values[low] - values[high]);
             angles[low] + share * (angles[high] - angles[low])

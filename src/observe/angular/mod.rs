@@ -44,5 +44,5 @@ pub(crate) use statistics::quantile;
 pub use statistics::{
     CorrelationStatistics, CrossingStatistics, Mean, SpectrumStatistics, correlation_statistics, spectrum_statistics,
 };
-pub(in crate::observe) use unmixing::solve;
+pub(crate) use unmixing::solve;
 pub use window::{Source, SpectralWindow};

@@ -34,7 +34,7 @@ pub(super) struct Shares {
 }
 
 /// Gaussian elimination with partial pivoting; each row ends with its right-hand side.
-pub(in crate::observe) fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
+pub(crate) fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     let size = rows.len();
     for column in 0..size {
         let largest = (column..size).max_by(|&a, &b| rows[a][column].abs().total_cmp(&rows[b][column].abs()))?;
