@@ -41,7 +41,7 @@
 //! ```
 //!
 //! [`prepare`] and [`inflate`] take Hertzian disks and FIRE; [`prepare_with`](preparation::prepare_with) and
-//! [`inflate_with`](inflation::inflate_with) take any law, relaxer and observer. Six programs of at most 50 lines are in `examples/`.
+//! [`inflate_with`](inflation::inflate_with) take any law, relaxer and observer. Seven programs of at most 50 lines are in `examples/`.
 //!
 //! # Modules
 //!
