@@ -108,6 +108,7 @@ def states(record, shear, square):
     text = 'disk_count = 300\n[inflation]\nboundary = "periodic"\n[[sample]]\nname = "dense"\nsource = {{ {} }}\nrelaxer = {{ fire = {{}} }}\n'
     if shear:
         sheared = record.out / "sheared.xyz"
+        sheared.with_suffix(".csv").unlink(missing_ok=True)
         record.run("strain", square / "dense.packing.xyz", "--shear", shear, "--steps", 1, "--out", sheared, codes=(0,))
         source = f'file = "{sheared}"'
     scene.write_text(text.format(source))

@@ -1,5 +1,6 @@
 //! [`FileArguments`]: a packing file on the command line, how it is relaxed, and a result that an interruption left unfinished.
 
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -57,6 +58,9 @@ const UNFINISHED: &str = "unfinished";
 /// Key of the last step of an unfinished shear.
 const UNFINISHED_STEP: &str = "unfinished_step";
 
+/// Key of the packing from which an unfinished result was made, see [`digest`].
+const UNFINISHED_OF: &str = "unfinished_of";
+
 /// Steps between two states written of one relaxation. A state is written each half minute for 88776 disks. The relaxer
 /// starts anew from each, so the number is fixed: the result is the same with and without an interruption.
 const PORTION: usize = 20_000;
@@ -70,10 +74,21 @@ pub struct Task {
     pub relaxer: RelaxerChoice,
     /// The command, without its files.
     description: String,
-    path: PathBuf,
+    /// The file that is read, possibly a copy of the standard input.
+    pub path: PathBuf,
     frame: Frame,
     /// Copies of the standard input and of pipes, which last as long as this.
     inputs: Inputs,
+    digest: Cell<u64>,
+}
+
+/// A number that differs for different packings: FNV-1a of the bits of positions and radii.
+///
+/// Source: Fowler, Noll and Vo, RFC 9923.
+fn digest<const D: usize>(packing: &Packing<D>) -> u64 {
+    let numbers = packing.positions().iter().flatten().chain(packing.radii());
+    let bytes = numbers.flat_map(|number| number.to_bits().to_le_bytes());
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
 }
 
 /// A packing that was read, and where to continue.
@@ -113,7 +128,7 @@ impl FileArguments {
         }
         input::check_output(&out, &path)?;
         let name = self.packing.display().to_string();
-        Ok(Task { name, out, law, relaxer, description, path, frame: self.frame, inputs })
+        Ok(Task { name, out, law, relaxer, description, path, frame: self.frame, inputs, digest: Cell::new(0) })
     }
 
     fn relaxer(&self) -> Result<RelaxerChoice, Failure> {
@@ -165,17 +180,22 @@ impl Task {
         let Contents { packing: given, mut properties, warnings } = read_contents::<D>(&self.path, self.frame)?;
         warn(Path::new(name), &warnings);
         check(&given).map_err(|reason| format!("{name}: {reason}"))?;
-        properties.retain(|(key, _)| key != UNFINISHED && key != UNFINISHED_STEP);
+        properties.retain(|(key, _)| ![UNFINISHED, UNFINISHED_STEP, UNFINISHED_OF].contains(&key.as_str()));
+        self.digest.set(digest(&given));
         let unfinished = match unfinished_command(&self.out) {
             Some(_) => {
                 let Contents { packing, properties, .. } = read_contents::<D>(&self.out, Frame::Last)?;
-                let is_same = packing.len() == given.len()
-                    && packing.labels() == given.labels()
-                    && packing.radii() == given.radii();
+                let is_same = value_of(&properties, UNFINISHED_OF) == Some(format!("{:016x}", self.digest.get()));
                 if !is_same {
                     return Err(format!("{}: holds the unfinished result of another packing; remove it, or give another file with --out", self.out.display()).into());
                 }
-                let step = value_of(&properties, UNFINISHED_STEP).and_then(|step| step.parse().ok()).unwrap_or(0);
+                let step = value_of(&properties, UNFINISHED_STEP).and_then(|step| step.parse().ok());
+                let step = step.ok_or_else(|| {
+                    format!(
+                        "{}: unfinished_step is not the number of a step; remove the file to begin anew",
+                        self.out.display()
+                    )
+                })?;
                 Some((packing, step))
             }
             None => None,
@@ -196,7 +216,11 @@ impl Task {
     /// Writes a state from which the same command continues.
     pub fn save<const D: usize>(&self, packing: &Packing<D>, step: usize) -> Result<(), Failure> {
         let network = ContactNetwork::new(packing, &self.law)?;
-        let properties = [(UNFINISHED, self.description.clone()), (UNFINISHED_STEP, step.to_string())];
+        let properties = [
+            (UNFINISHED, self.description.clone()),
+            (UNFINISHED_STEP, step.to_string()),
+            (UNFINISHED_OF, format!("{:016x}", self.digest.get())),
+        ];
         let properties = properties.map(|(key, value)| (key.to_string(), value));
         self.finish(packing, &network, &properties)
     }
@@ -297,7 +321,7 @@ mod tests {
         let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/packings/hertz_N1000_p100.xyz"));
         let (law, relaxer) = (LawChoice::default(), RelaxerChoice::default());
         let (name, description, frame) = ("a packing".into(), "relax".into(), Frame::Last);
-        Task { name, out, law, relaxer, description, path, frame, inputs: Inputs::default() }
+        Task { name, out, law, relaxer, description, path, frame, inputs: Inputs::default(), digest: Cell::new(0) }
     }
 
     /// A relaxation in portions that is interrupted between two of them and continued has the bits of the whole one.
@@ -318,7 +342,10 @@ mod tests {
         let rest = relaxer.relax(saved, &law, &mut ()).expect("apart");
         assert_eq!(rest.state, whole.state);
         assert!(rest.cost.step_count < whole.cost.step_count);
-        // Of another packing it is refused: its radii are not those of the input.
+        // Of another packing it is refused.
+        let text = std::fs::read_to_string(&task.out).expect("text");
+        let at = text.find("unfinished_of=").expect("a key") + "unfinished_of=".len();
+        std::fs::write(&task.out, format!("{}{:016x}{}", &text[..at], 1, &text[at + 16..])).expect("written");
         let error = task.start::<2>().err().expect("another packing").to_string();
         assert!(error.contains("unfinished result of another packing"), "{error}");
     }

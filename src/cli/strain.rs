@@ -1,12 +1,11 @@
 //! `jamscope strain`: quasistatic simple shear of one packing file, with the stress of every step.
 
-use std::fs::OpenOptions;
-use std::io::Write;
+use std::fs::{File, OpenOptions};
+use std::io::{Read, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
 use clap::Args;
-use jamscope::io::write_atomically;
 use jamscope::network::ContactNetwork;
 use jamscope::report::csv::{shear_header, shear_row};
 use jamscope::run::{Progress, Watch};
@@ -52,23 +51,24 @@ fn run_in<const D: usize>(task: &Task, settings: ShearSettings) -> Result<ExitCo
     let name = &task.name;
     let table = task.out.with_extension("csv");
     let failed = |error: jamscope::strain::StrainError| format!("{name}: {error}");
+    if table == task.out || table == task.path {
+        return Err(format!(
+            "{}: would be the table of steps, which ends in .csv; give another file with --out",
+            table.display()
+        )
+        .into());
+    }
+    let step = unfinished.as_ref().map(|(_, step)| *step);
     let mut shear = match unfinished {
-        Some((packing, step)) => {
-            keep_rows(&table, step)?;
-            QuasistaticShear::resumed(packing, step, settings, &task.law).map_err(failed)?
-        }
-        None => {
-            let shear = QuasistaticShear::new(given, settings, &task.law).map_err(failed)?;
-            write_atomically(&table, |writer| writer.write_all(shear_header().as_bytes()))?;
-            shear
-        }
+        Some((packing, step)) => QuasistaticShear::resumed(packing, step, settings, &task.law).map_err(failed)?,
+        None => QuasistaticShear::new(given, settings, &task.law).map_err(failed)?,
     };
+    let mut file = opened(&table, step)?;
     let bars = Bars::new(std::iter::once(name.as_str()));
     let mut trace = Watch { progress: &bars, sample: 0, stage: "shear step", limit: task.relaxer.limit().value() };
     let mut last = None;
     while let Some(state) = shear.advance(&task.relaxer, &mut trace).map_err(failed)? {
         // The row first: rows beyond the last state are removed when the shear continues.
-        let mut file = OpenOptions::new().append(true).open(&table)?;
         file.write_all(shear_row(&state).as_bytes())?;
         task.save(shear.packing(), state.step)?;
         last = Some(state);
@@ -95,17 +95,38 @@ fn rows(table: &Path) -> Result<Vec<String>, Failure> {
     Ok(text.lines().skip(2).map(str::to_owned).collect())
 }
 
-/// Keeps the rows up to a step, those of the states that were written.
-fn keep_rows(table: &Path, step: usize) -> Result<(), Failure> {
-    let rows = rows(table)?;
-    if rows.len() <= step {
-        return Err(format!(
-            "{}: has {} steps, but the state beside it is that after step {step}; remove both to begin anew",
-            table.display(),
-            rows.len()
-        )
-        .into());
+/// The table of steps, locked: new with its header, or with the rows up to `step`, those of the states that were written.
+fn opened(table: &Path, step: Option<usize>) -> Result<File, Failure> {
+    let named = |reason: &dyn std::fmt::Display| format!("{}: {reason}", table.display());
+    let mut file =
+        OpenOptions::new().read(true).append(true).create(true).open(table).map_err(|error| named(&error))?;
+    file.try_lock().map_err(|_| named(&"another shear writes it"))?;
+    let header = shear_header();
+    let Some(step) = step else {
+        if file.metadata()?.len() > 0 {
+            return Err(named(&"exists; give another file with --out, or remove it").into());
+        }
+        file.write_all(header.as_bytes())?;
+        return Ok(file);
+    };
+    let mut text = String::new();
+    file.read_to_string(&mut text).map_err(|error| named(&error))?;
+    let begin_anew = "remove it and the state beside it to begin anew";
+    let rest = text.strip_prefix(&header).ok_or_else(|| named(&format!("is not a table of steps; {begin_anew}")))?;
+    let columns = header.lines().next().map_or(0, |names| names.split(',').count());
+    let mut length = header.len();
+    let mut rows = rest.split_inclusive('\n');
+    for index in 0..=step {
+        let row = rows.next().unwrap_or_default();
+        let is_whole = row.trim_end().split(',').filter(|cell| cell.parse::<f64>().is_ok()).count() == columns;
+        if !(is_whole && row.split(',').next() == Some(index.to_string().as_str()) && row.ends_with('\n')) {
+            return Err(named(&format!(
+                "has no row of step {index}, but the state beside it is that after step {step}; {begin_anew}"
+            ))
+            .into());
+        }
+        length += row.len();
     }
-    let kept: String = rows[..=step].iter().map(|row| format!("{row}\n")).collect();
-    Ok(write_atomically(table, |writer| writer.write_all(format!("{}{kept}", shear_header()).as_bytes()))?)
+    file.set_len(length as u64)?;
+    Ok(file)
 }

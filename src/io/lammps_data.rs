@@ -48,6 +48,13 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Con
     // The first line is free text and may resemble anything.
     let sections: Vec<usize> = (1..source.lines.len()).filter(|&line| opens_section(source.lines[line])).collect();
     let header_end = sections.first().copied().unwrap_or(source.lines.len());
+    // A header line whose first number is none looks like a section.
+    if let Some(&line) = sections.iter().find(|&&line| {
+        let last = source.row_without_comment(line).values.last().copied().unwrap_or_default().to_owned();
+        ["yz", "avec", "bvec", "cvec", "origin", "xhi", "yhi", "zhi"].contains(&last.as_str())
+    }) {
+        return Err(source.bad(line, "header line", source.lines[line].trim(), "finite numbers before its keyword"));
+    }
     let header = Header::<D>::new(source, header_end)?;
     let names: Vec<String> = sections.iter().map(|&line| source.row_without_comment(line).values.join(" ")).collect();
     for (place, name) in names.iter().enumerate() {
@@ -153,7 +160,7 @@ impl<const D: usize> Header<D> {
                     };
                 }
                 [_, "atom", "types"] => type_count = Some(row.whole(0, "atom types")?),
-                [.., "xy", "xz", "yz"] => (tilts, tilt_line) = (row.three("xy xz yz")?, line),
+                [_, _, _, "xy", "xz", "yz"] => (tilts, tilt_line) = (row.three("xy xz yz")?, line),
                 [.., "avec"] => edges[0] = Some((line, row.three("avec")?)),
                 [.., "bvec"] => edges[1] = Some((line, row.three("bvec")?)),
                 [.., "cvec"] => edges[2] = Some((line, row.three("cvec")?)),
@@ -164,7 +171,14 @@ impl<const D: usize> Header<D> {
                         sides[axis] = Some(source.side(line, &name, low, high)?);
                     }
                 }
-                _ => {}
+                _ => {
+                    // A tilt that is not understood is not left out.
+                    let is_tilt = |word: &str| ["xy", "xz", "yz"].iter().any(|tilt| word.eq_ignore_ascii_case(tilt));
+                    if row.values.iter().any(|word| is_tilt(word)) {
+                        let text = source.lines[line].trim();
+                        return Err(source.bad(line, "xy xz yz", text, "three numbers, then xy xz yz"));
+                    }
+                }
             }
         }
         let last = end.saturating_sub(1);

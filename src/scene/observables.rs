@@ -165,6 +165,10 @@ impl Observables {
             ("angular_correlation", self.angular_correlation.is_some()),
             ("radial_dependence", self.radial_dependence.is_some()),
             ("multipoles", self.multipoles.is_some()),
+            #[cfg(feature = "fit")]
+            ("spectrum_fit", self.spectrum_fit.is_some()),
+            #[cfg(feature = "fit")]
+            ("elastic_modes", self.elastic_modes.is_some()),
             #[cfg(feature = "linear")]
             ("protocol", self.protocol.is_some()),
         ];

@@ -440,3 +440,27 @@ fn a_tilted_packing_goes_through_every_command() {
         .expect("a number");
     assert!((pressure / 500.0 - 1.0).abs() < 0.01, "{pressure}");
 }
+
+/// The table of steps replaces no file, and a damaged one is not continued.
+#[test]
+fn a_shear_replaces_no_table_and_continues_no_damaged_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    std::fs::copy(fixture("packings/hertz_N1000_p100.xyz"), path("in.csv")).expect("copied");
+    let shear = ["--shear", "0.001", "--steps", "2", "--limit", "1e-6", "--out"];
+    let strain = |input: &'static str, out: &'static str| [&["strain", input][..], &shear[..], &[out][..]].concat();
+    let before = std::fs::read(path("in.csv")).expect("a file");
+    refused(folder.path(), &strain("in.csv", "in.xyz"), &["in.csv: would be the table of steps"]);
+    refused(folder.path(), &strain("in.csv", "a.csv"), &["a.csv: would be the table of steps"]);
+    std::fs::write(path("b.csv"), "notes").expect("written");
+    refused(folder.path(), &strain("in.csv", "b.xyz"), &["b.csv: exists"]);
+    assert_eq!(std::fs::read(path("in.csv")).expect("a file"), before);
+    assert_eq!(std::fs::read_to_string(path("b.csv")).expect("a file"), "notes");
+    // A state made unfinished by hand, with its table as it is and damaged.
+    done(folder.path(), &strain("in.csv", "c.xyz"), b"");
+    let text = std::fs::read_to_string(path("c.xyz")).expect("a state");
+    let key = "unfinished=\"shear by 0.001 in 2 steps, FIRE to 1e-6, Hertzian(Hertzian { stiffness: 200000.0 })\"";
+    std::fs::write(path("c.xyz"), text.replacen("dimension=2", &format!("dimension=2 {key} unfinished_of=0"), 1))
+        .expect("written");
+    refused(folder.path(), &strain("in.csv", "c.xyz"), &["c.xyz: holds the unfinished result of another packing"]);
+}

@@ -161,6 +161,14 @@ fn boxes_that_are_missing_flat_or_empty() {
     );
     let tilts = "-0.5 0.5 zlo zhi\n0.1 no 0 xy xz yz";
     assert_change_refused::<2>(DATA, "-0.5 0.5 zlo zhi", tilts, &["line 8", "xy xz yz is `no`", "finite number"]);
+    for tilts in ["1.2 0 0 xy xz", "1.2 0 0 XY XZ YZ", "1.2 0 0 0 xy xz yz"] {
+        let changed = format!("-0.5 0.5 zlo zhi\n{tilts}");
+        assert_change_refused::<2>(DATA, "-0.5 0.5 zlo zhi", &changed, &["line 8", "xy xz yz is", "three numbers"]);
+    }
+    for tilts in ["nan 0 0 xy xz yz", "inf 0 0 xy xz yz", "abc 0 0 xy xz yz"] {
+        let changed = format!("-0.5 0.5 zlo zhi\n{tilts}");
+        assert_change_refused::<2>(DATA, "-0.5 0.5 zlo zhi", &changed, &["line 8", "header line is", "finite numbers"]);
+    }
     assert_change_refused::<2>(DATA, "0.0 9.0 xlo xhi", "9 0 0 avec", &["header lines avec, bvec and cvec is missing"]);
     assert_change_refused::<2>(DUMP, "0.0 9.0", "0.0 -9.0", &["line 6", "xlo xhi is `0.0 -9.0`"]);
     let vectors = DUMP.replace("BOUNDS", "BOUNDS abc origin").replace("0.0 9.0", "9 0 0.5 0");
