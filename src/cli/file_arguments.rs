@@ -62,7 +62,7 @@ const UNFINISHED_STEP: &str = "unfinished_step";
 const UNFINISHED_OF: &str = "unfinished_of";
 
 /// Steps between two states written of one relaxation. A state is written each half minute for 88776 disks. The relaxer
-/// starts anew from each, so the number is fixed: the result is the same with and without an interruption.
+/// restarts from each. The number is fixed, so a result does not depend on interruptions.
 const PORTION: usize = 20_000;
 
 /// What the arguments name, checked.
@@ -154,6 +154,10 @@ pub fn residual_limit() -> f64 {
 
 /// The command whose unfinished result a file is.
 fn unfinished_command(out: &Path) -> Option<String> {
+    // A device has no end.
+    if !out.is_file() {
+        return None;
+    }
     value_of(&read_properties(out).ok()?, UNFINISHED)
 }
 
@@ -192,7 +196,7 @@ impl Task {
                 let step = value_of(&properties, UNFINISHED_STEP).and_then(|step| step.parse().ok());
                 let step = step.ok_or_else(|| {
                     format!(
-                        "{}: unfinished_step is not the number of a step; remove the file to begin anew",
+                        "{}: unfinished_step is not the number of a step; remove the file to start again",
                         self.out.display()
                     )
                 })?;

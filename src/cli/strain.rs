@@ -10,6 +10,7 @@ use jamscope::network::ContactNetwork;
 use jamscope::report::csv::{shear_header, shear_row};
 use jamscope::run::{Progress, Watch};
 use jamscope::strain::{QuasistaticShear, ShearSettings};
+use jamscope::vector::larger;
 
 use crate::file_arguments::{FileArguments, Start, Task};
 use crate::progress::Bars;
@@ -76,23 +77,27 @@ fn run_in<const D: usize>(task: &Task, settings: ShearSettings) -> Result<ExitCo
     bars.done(0, None);
     let network = ContactNetwork::new(shear.packing(), &task.law)?;
     task.finish(shear.packing(), &network, &properties)?;
-    let rows = rows(&table)?;
-    let column = |place: usize| rows.iter().filter_map(move |row| row.split(',').nth(place)?.parse::<f64>().ok());
-    let event_count = column(11).filter(|&event| event == 1.0).count();
-    let largest = column(2).fold(f64::NEG_INFINITY, f64::max);
     if let Some(state) = last {
+        let (largest, event_count) = summary(&table)?;
         print(&format!(
-            "shear {}: shear stress {:.6e}, largest {largest:.6e}, pressure {:.6e}, {event_count} events in {} steps\n",
+            "shear {}: shear stress {:.6e}, largest size {largest:.6e}, pressure {:.6e}, {event_count} events in {} steps\n",
             state.strain, state.shear_stress, state.pressure, settings.step_count
         ))?;
     }
     print(&format!("{}\n{}\n", task.out.display(), table.display()))
 }
 
-/// The rows of a table of steps.
-fn rows(table: &Path) -> Result<Vec<String>, Failure> {
+/// The largest |σ_xy| of a table of steps, and the number of its events.
+fn summary(table: &Path) -> Result<(f64, usize), Failure> {
     let text = std::fs::read_to_string(table).map_err(|error| format!("{}: {error}", table.display()))?;
-    Ok(text.lines().skip(2).map(str::to_owned).collect())
+    let names: Vec<&str> = text.lines().next().unwrap_or_default().split(',').collect();
+    let column = |name: &str| -> Vec<f64> {
+        let place = names.iter().position(|&other| other == name).unwrap_or_default();
+        let cells = text.lines().skip(2).filter_map(|row| row.split(',').nth(place)?.parse().ok());
+        cells.collect()
+    };
+    let largest = column("shear_stress").into_iter().fold(0.0, |most, stress| larger(stress.abs(), most));
+    Ok((largest, column("event").into_iter().filter(|&event| event == 1.0).count()))
 }
 
 /// The table of steps, locked: new with its header, or with the rows up to `step`, those of the states that were written.
@@ -111,8 +116,8 @@ fn opened(table: &Path, step: Option<usize>) -> Result<File, Failure> {
     };
     let mut text = String::new();
     file.read_to_string(&mut text).map_err(|error| named(&error))?;
-    let begin_anew = "remove it and the state beside it to begin anew";
-    let rest = text.strip_prefix(&header).ok_or_else(|| named(&format!("is not a table of steps; {begin_anew}")))?;
+    let start_again = "remove it and the state beside it to start again";
+    let rest = text.strip_prefix(&header).ok_or_else(|| named(&format!("is not a table of steps; {start_again}")))?;
     let columns = header.lines().next().map_or(0, |names| names.split(',').count());
     let mut length = header.len();
     let mut rows = rest.split_inclusive('\n');
@@ -121,7 +126,7 @@ fn opened(table: &Path, step: Option<usize>) -> Result<File, Failure> {
         let is_whole = row.trim_end().split(',').filter(|cell| cell.parse::<f64>().is_ok()).count() == columns;
         if !(is_whole && row.split(',').next() == Some(index.to_string().as_str()) && row.ends_with('\n')) {
             return Err(named(&format!(
-                "has no row of step {index}, but the state beside it is that after step {step}; {begin_anew}"
+                "has no row of step {index}, but the state beside it is that after step {step}; {start_again}"
             ))
             .into());
         }

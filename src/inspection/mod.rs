@@ -296,6 +296,10 @@ impl std::fmt::Display for Inspection {
             Some(sides) => {
                 let sides: Vec<String> = sides.iter().map(f64::to_string).collect();
                 writeln!(f, "{:<28} {} [length]", "periodic box", sides.join(" x "))?;
+                for (edge, name) in self.box_edges.iter().flatten().zip(["edge a", "edge b", "edge c"]) {
+                    let components: Vec<String> = edge.iter().map(f64::to_string).collect();
+                    writeln!(f, "{name:<28} {} [length]", components.join("  "))?;
+                }
             }
             None => writeln!(f, "{:<28} open", "domain")?,
         }

@@ -1,8 +1,8 @@
 //! [`Triclinic`]: the box of a file, three edges in any direction, and the domain that it makes.
 //!
 //! The edges of a [`Domain`] are triangular: the first lies along x, the second in the plane of x and y. Edges that are
-//! so in another order, or against an axis, describe the same packing and are taken in the right order. Otherwise the
-//! packing is turned.
+//! so in another order, or against an axis, describe the same packing and are taken in the right order. Otherwise short
+//! edges of the same lattice are taken, and the packing is turned if these are not triangular either.
 
 use crate::io::read_error::ReadError;
 use crate::io::source::{AXES, Disk, Source};
@@ -12,6 +12,9 @@ use crate::vector::{Vector, difference, dot, norm};
 /// Smallest component along its axis over the length of an edge: below it, edges do not span a box. Rounding changes
 /// this share by 10⁻¹⁶.
 const FLATTEST: f64 = 1e-10;
+
+/// Largest number of rounds of a reduction; a few suffice.
+const MOST_STEPS: usize = 1000;
 
 /// The box of a file in three dimensions; that of a plane has a third edge along z.
 #[derive(Debug, Clone, Copy, Default)]
@@ -54,10 +57,24 @@ impl Triclinic {
         let corner: Vector<D> = std::array::from_fn(|axis| self.corner[axis]);
         let given: [Vector<D>; D] = std::array::from_fn(|d| std::array::from_fn(|axis| self.edges[d][axis]));
         if let Some(edges) = in_order(&given) {
+            for (d, edge) in edges.iter().enumerate() {
+                for axis in 0..d {
+                    source.check_corner(
+                        line,
+                        &format!("{field}, tilt of edge {}", d + 1),
+                        edge[axis],
+                        edges[axis][axis],
+                    )?;
+                }
+            }
             return Ok((Domain::Periodic { corner, edges }, None));
         }
-        let axes = directions(&given)
-            .ok_or_else(|| source.bad(line, field, &format!("{given:?}"), "edges that span a box"))?;
+        let mut given = reduced(given);
+        if let Some(edges) = in_order(&given) {
+            return Ok((Domain::Periodic { corner, edges }, None));
+        }
+        let axes = directions(&mut given)
+            .ok_or_else(|| source.bad(line, field, &format!("{:?}", self.edges), "edges that span a box"))?;
         let turned = |point: Vector<D>| -> Vector<D> { axes.map(|axis| dot(axis, point)) };
         let edges = std::array::from_fn(|d| {
             let edge = turned(given[d]);
@@ -94,8 +111,33 @@ fn in_order<const D: usize>(given: &[Vector<D>; D]) -> Option<[Vector<D>; D]> {
     Some(edges)
 }
 
-/// Directions of the axes that make the edges triangular: the first edge lies along the first, and so on.
-fn directions<const D: usize>(given: &[Vector<D>; D]) -> Option<[Vector<D>; D]> {
+/// Short edges of the same lattice: no edge becomes shorter by a multiple of another. Then the box is wide in all
+/// directions, however the file wrote it.
+///
+/// # Source
+/// Lagrange's reduction of two vectors, for each pair: Cohen (1993), A Course in Computational Algebraic Number Theory,
+/// section 1.3.
+fn reduced<const D: usize>(mut edges: [Vector<D>; D]) -> [Vector<D>; D] {
+    // Each step shortens an edge. Numbers that are too far apart end it early.
+    for _ in 0..MOST_STEPS {
+        let mut is_reduced = true;
+        for (d, other) in (0..D).flat_map(|d| (0..D).map(move |other| (d, other))).filter(|(d, other)| d != other) {
+            let boxes = (dot(edges[d], edges[other]) / dot(edges[other], edges[other])).round();
+            let shorter = difference(edges[d], edges[other].map(|component| boxes * component));
+            if norm(shorter) < (1.0 - FLATTEST) * norm(edges[d]) {
+                (edges[d], is_reduced) = (shorter, false);
+            }
+        }
+        if is_reduced {
+            break;
+        }
+    }
+    edges
+}
+
+/// Directions of the axes that make the edges triangular: the first edge lies along the first, and so on. The last edge
+/// is reversed if the axes would be a mirror image otherwise.
+fn directions<const D: usize>(given: &mut [Vector<D>; D]) -> Option<[Vector<D>; D]> {
     let mut axes = [[0.0; D]; D];
     for d in 0..D {
         let mut rest = given[d];
@@ -112,7 +154,20 @@ fn directions<const D: usize>(given: &[Vector<D>; D]) -> Option<[Vector<D>; D]> 
         }
         axes[d] = rest.map(|component| component / length);
     }
+    if determinant(&axes) < 0.0 {
+        for vector in [&mut axes[D - 1], &mut given[D - 1]] {
+            *vector = vector.map(|component| -component);
+        }
+    }
     Some(axes)
+}
+
+fn determinant<const D: usize>(rows: &[Vector<D>; D]) -> f64 {
+    let minor = |a: usize, b: usize, p: usize, q: usize| rows[p][a] * rows[q][b] - rows[p][b] * rows[q][a];
+    if D == 2 {
+        return minor(0, 1, 0, 1);
+    }
+    rows[0][0] * minor(1, 2, 1, 2) - rows[0][1] * minor(0, 2, 1, 2) + rows[0][2] * minor(0, 1, 1, 2)
 }
 
 #[cfg(test)]
@@ -128,8 +183,8 @@ mod tests {
 
     #[test]
     fn axes_are_orthonormal_and_edges_become_triangular() {
-        let given = [[3.0, 0.4, -0.2], [0.5, 2.0, 0.3], [-0.7, 0.1, 4.0]];
-        let axes = directions(&given).expect("a box");
+        let mut given = [[3.0, 0.4, -0.2], [0.5, 2.0, 0.3], [-0.7, 0.1, 4.0]];
+        let axes = directions(&mut given).expect("a box");
         for (d, axis) in axes.iter().enumerate() {
             for (other, second) in axes.iter().enumerate() {
                 let one = if d == other { 1.0 } else { 0.0 };
@@ -138,6 +193,35 @@ mod tests {
             }
             given[..d].iter().for_each(|edge| assert!(dot(*axis, *edge).abs() < 1e-15));
         }
-        assert_eq!(directions(&[[1.0, 1.0], [2.0, 2.0]]), None);
+        assert_eq!(directions(&mut [[1.0, 1.0], [2.0, 2.0]]), None);
+    }
+
+    #[test]
+    fn a_left_handed_box_is_turned_and_not_mirrored() {
+        for given in [[[1.0, 1.0], [3.0, -1.0]], [[1.0, 1.0], [-1.0, 3.0]]] {
+            let mut edges = given;
+            let axes = directions(&mut edges).expect("a box");
+            assert!((determinant(&axes) - 1.0).abs() < 4.0 * f64::EPSILON, "{axes:?}");
+            // The edge along its own axis stays positive.
+            assert!(dot(axes[1], edges[1]) > 0.0);
+        }
+        let mirrored = [[0.0, 1.0, 1.0], [1.0, 0.0, 1.0], [3.0, -1.0, 0.0]];
+        for mut edges in [mirrored, [mirrored[1], mirrored[0], mirrored[2]]] {
+            let axes = directions(&mut edges).expect("a box");
+            assert!((determinant(&axes) - 1.0).abs() < 8.0 * f64::EPSILON && dot(axes[2], edges[2]) > 0.0);
+        }
+    }
+
+    #[test]
+    fn a_poor_basis_becomes_a_short_one_of_the_same_lattice() {
+        // Edges of a square lattice, twice its side and more.
+        let square = reduced([[20.0, 10.0], [10.0, 10.0]]);
+        assert_eq!(in_order(&square), Some([[10.0, 0.0], [0.0, 10.0]]));
+        let long = reduced([[10.0, 200.0], [0.0, 10.0]]);
+        assert_eq!(in_order(&long), Some([[10.0, 0.0], [0.0, 10.0]]));
+        let cube = reduced([[7.0, 0.0, -14.0], [0.0, 7.0, 21.0], [35.0, 0.0, 7.0]]);
+        assert!(determinant(&cube).abs() > 0.0 && cube.iter().all(|edge| norm(*edge) <= 28.0), "{cube:?}");
+        let volume = determinant(&[[7.0, 0.0, -14.0], [0.0, 7.0, 21.0], [35.0, 0.0, 7.0]]);
+        assert!((determinant(&cube).abs() / volume.abs() - 1.0).abs() < 1e-12);
     }
 }

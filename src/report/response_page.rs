@@ -166,7 +166,7 @@ fn fitted<'a>(ring: &'a RingResponse, relative: &'a [f64]) -> Vec<SpectrumCurve<
     let mut curves = Vec::new();
     if let Some(fit) = ring.slope.as_ref().and_then(|it| it.measured()) {
         let exponent = fit.exponent.best;
-        let label = format!("f^(−{}), fitted", significant(exponent, 3));
+        let label = format!("f^({}), fitted", significant(-exponent, 3));
         curves.push(scaled(label, fit.window, Box::new(move |f| libm::pow(f, -exponent))));
     }
     if let Some(fit) = ring.crossover.as_ref().and_then(|it| it.measured())

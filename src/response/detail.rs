@@ -30,11 +30,7 @@ impl Detail {
     /// Wraps the parts of a response in two or three dimensions.
     pub(crate) fn of<const D: usize>(detail: DetailOf<D>) -> Self {
         const { assert!(D == 2 || D == 3, "a response has two or three dimensions") };
-        let detail: Box<dyn Any> = Box::new(detail);
-        match detail.downcast() {
-            Ok(plane) => Detail::Plane(plane),
-            Err(space) => Detail::Space(space.downcast().expect("three dimensions if not two")),
-        }
+        in_dimension(detail, Detail::Plane, Detail::Space)
     }
 
     /// The parts in the plane.
@@ -67,6 +63,22 @@ impl Detail {
             Detail::Plane(detail) => [detail.field.inner_radius, detail.field.outer_radius],
             Detail::Space(detail) => [detail.field.inner_radius, detail.field.outer_radius],
         }
+    }
+}
+
+/// Wraps a value that is an `A` (of the plane) or a `B` (of space).
+///
+/// # Panics
+/// If it is neither.
+pub(crate) fn in_dimension<A: Any, B: Any, R>(
+    value: impl Any,
+    plane: impl FnOnce(Box<A>) -> R,
+    space: impl FnOnce(Box<B>) -> R,
+) -> R {
+    let value: Box<dyn Any> = Box::new(value);
+    match value.downcast() {
+        Ok(value) => plane(value),
+        Err(value) => space(value.downcast().expect("three dimensions if not two")),
     }
 }
 

@@ -17,6 +17,7 @@ pub use calibration::{
     CalibratedCell, CalibratedEnsemble, Calibration, Conditions, EvidenceCounts, PhaseFrequency, WordCounts,
 };
 pub use contacts::{ContactChangeCounts, ContactSummary, CycleCounts};
+pub(crate) use detail::in_dimension;
 pub use detail::{Detail, DetailOf};
 pub use measurement::Measurement;
 pub use phase::{Evidence, Phase, PhaseDecision, PhaseOutcome};

@@ -39,7 +39,10 @@ impl ShellResponse {
         #[cfg(not(feature = "fit"))]
         let _ = (observables, no_fit);
         #[cfg(feature = "fit")]
-        let shell = [ShellSample::of_field(field, relative_radius, half_width)?];
+        let shell = match (observables.shell_fit, no_fit) {
+            (Some(_), None) => vec![ShellSample::of_field(field, relative_radius, half_width)?],
+            _ => Vec::new(),
+        };
         Ok(ShellResponse {
             analysis: ShellAnalysis::of(field, relative_radius, half_width, &settings.shell)?,
             #[cfg(feature = "fit")]

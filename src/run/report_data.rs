@@ -1,7 +1,5 @@
 //! [`Report`]: all numbers of a run, with units, as plain data.
 
-use std::any::Any;
-
 use serde::Serialize;
 
 use crate::certificate::Certificate;
@@ -16,7 +14,7 @@ use crate::protocol::{ProtocolSensitivity, ProtocolSummary};
 use crate::relax::{Cost, Criterion};
 #[cfg(feature = "linear")]
 use crate::response::Measurement;
-use crate::response::{PhaseFrequency, Response};
+use crate::response::{PhaseFrequency, Response, in_dimension};
 use crate::scene::Scene;
 use crate::vector::{larger, norm};
 use crate::verdict::RestVerdict;
@@ -113,11 +111,7 @@ impl States {
     /// Wraps the states of a sample in two or three dimensions.
     pub(crate) fn of<const D: usize>(states: StatesOf<D>) -> Self {
         const { assert!(D == 2 || D == 3, "a packing has two or three dimensions") };
-        let states: Box<dyn Any> = Box::new(states);
-        match states.downcast() {
-            Ok(plane) => States::Plane(plane),
-            Err(space) => States::Space(space.downcast().expect("three dimensions if not two")),
-        }
+        in_dimension(states, States::Plane, States::Space)
     }
 
     /// The states in the plane.

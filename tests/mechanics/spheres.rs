@@ -3,7 +3,7 @@
 use jamscope::io::read_packing;
 use jamscope::network::ContactNetwork;
 use jamscope::relax::{Fire, ForceLimit, Relaxer};
-use jamscope::vector::{Vector, difference, norm};
+use jamscope::vector::{Vector, difference, larger, norm};
 
 use crate::scenes::lammps_inflated::fixture;
 use crate::scenes::laws::hertzian;
@@ -30,11 +30,12 @@ fn final_states_of_spheres_are_those_of_lammps() {
             .collect();
         let network = ContactNetwork::new(&after, &law).expect("apart");
         let mobile = (0..after.len()).filter(|&disk| !after.held()[disk]);
-        let (mut most, mut moved) = (0.0f64, 0.0f64);
+        assert_eq!(mobile.clone().count(), theirs.len());
+        let (mut most, mut moved) = (0.0, 0.0);
         for (disk, &expected) in mobile.zip(&theirs) {
-            moved = moved.max(norm(difference(after.positions()[disk], before.positions()[disk])));
+            moved = larger(norm(difference(after.positions()[disk], before.positions()[disk])), moved);
             if network.backbone[disk] {
-                most = most.max(norm(difference(after.positions()[disk], expected)));
+                most = larger(norm(difference(after.positions()[disk], expected)), most);
             }
         }
         println!("{name}: {most:.1e} apart, largest displacement {moved:.2}");

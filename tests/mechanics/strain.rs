@@ -8,7 +8,7 @@ use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::{Fire, ForceLimit};
 use jamscope::strain::{QuasistaticShear, ShearSettings, ShearState, StrainError};
-use jamscope::vector::norm;
+use jamscope::vector::{larger, norm};
 
 fn fire(limit: f64) -> Fire {
     Fire { limit: ForceLimit::Relative(limit), ..Fire::default() }
@@ -116,7 +116,7 @@ fn events_dissipate_and_elastic_steps_do_not() {
     let law = hertzian();
     let packing = dense(100, 0.87, 5);
     let (states, last) = sheared(packing.clone(), ShearSettings { strain: 0.15, step_count: 300 }, &law, 1e-10);
-    let energies = states.iter().map(|state| state.energy).fold(0.0, f64::max);
+    let energies = states.iter().map(|state| state.energy).fold(0.0, larger);
     let mut event_count = 0;
     for state in &states[1..] {
         if state.is_event && state.dissipated > 1e-3 * energies {

@@ -7,7 +7,7 @@ use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::{Fire, ForceLimit, Relaxer};
-use jamscope::vector::{Vector, norm};
+use jamscope::vector::{Vector, larger, norm};
 
 /// A Bravais lattice of disks with radius 0.5: `counts` cells along the edges, a box spanned by multiples of them.
 fn bravais<const D: usize>(cell: [Vector<D>; D], counts: [usize; D]) -> Packing<D> {
@@ -81,7 +81,7 @@ fn check_lattice<const D: usize>(
             close(found[a][b], stress[a][b], size, "stress");
         }
     }
-    let stiffest = constants.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+    let stiffest = constants.iter().fold(0.0, |most, value| larger(value.abs(), most));
     for (index, &expected) in constants.iter().enumerate() {
         let [a, b, c, d] = [index % D, index / D % D, index / (D * D) % D, index / (D * D * D)];
         close(moduli.affine.constants[a][b][c][d], expected, stiffest, "affine constants");
@@ -152,7 +152,7 @@ fn check_same(one: &Packing<2>, other: &Packing<2>, law: &dyn PairLaw, what: &st
     let ((energy, stress, constants), (energy_too, stress_too, constants_too)) = (of(one), of(other));
     assert!((energy / energy_too - 1.0).abs() < 1e-12, "{what}: {energy} and {energy_too}");
     for (values, values_too) in [(stress, stress_too), (constants, constants_too)] {
-        let scale = values.iter().fold(0.0f64, |most, value| most.max(value.abs()));
+        let scale = values.iter().fold(0.0, |most, value| larger(value.abs(), most));
         for (value, value_too) in values.iter().zip(&values_too) {
             assert!((value - value_too).abs() < 1e-12 * scale, "{what}: {value} and {value_too}");
         }

@@ -90,11 +90,21 @@ fn count<const N: usize>(
     sample_count: usize,
     claims: [&dyn Fn(&ProfileFit) -> bool; N],
 ) -> [usize; N] {
-    let mut random = Pcg64Mcg::seed_from_u64(20_261_121);
     let medium = screened(amplitude(wavenumber), wavenumber);
+    counted(20_261_121, sample_count, |random| fit(&profile(&medium, noise, random)), claims)
+}
+
+/// How many of `sample_count` fits satisfy each of the claims.
+fn counted<const N: usize>(
+    seed: u64,
+    sample_count: usize,
+    sample: impl Fn(&mut Pcg64Mcg) -> ProfileFit,
+    claims: [&dyn Fn(&ProfileFit) -> bool; N],
+) -> [usize; N] {
+    let mut random = Pcg64Mcg::seed_from_u64(seed);
     let mut counts = [0; N];
     for _ in 0..sample_count {
-        let found = fit(&profile(&medium, noise, &mut random));
+        let found = sample(&mut random);
         for (count, claim) in counts.iter_mut().zip(claims) {
             *count += usize::from(claim(&found));
         }

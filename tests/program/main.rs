@@ -24,6 +24,7 @@ mod report;
 #[cfg(feature = "cli")]
 mod sizes;
 mod spheres;
+mod strain_command;
 mod structure;
 mod study;
 #[cfg(feature = "cli")]

@@ -36,6 +36,7 @@ pub use crossing::{CrossingOutcome, ThresholdCrossing};
 pub use error::{AngularError, LEAST_DISK_COUNT};
 pub use fourier::{Route, fourier_sums, fourier_sums_by};
 pub use limits::{MOST_COUPLED_FREQUENCIES, MOST_GRID_POINTS, MOST_STEPS};
+pub(crate) use pairs::correlation_of_bins;
 pub use power_dependence::dependence;
 pub use power_spectrum::{FrequencyLimit, Leakage, PowerSpectrum, SpectrumEstimator, SpectrumSettings};
 pub use radial_dependence::{RadialDependenceSettings, RingAnalysis, RingOutcome, radial_dependence};

@@ -69,14 +69,19 @@ impl PairSums {
 
     /// Products over counts and variance; a bin without pairs takes the value of the bin before it.
     pub(super) fn correlation(&self, variance: f64) -> Vec<f64> {
-        let mut last = if variance > 0.0 { 1.0 } else { f64::NAN };
-        let bins = self.products.iter().zip(&self.counts);
-        bins.map(|(product, count)| {
-            if *count > 0.0 {
-                last = product / count / variance;
-            }
-            last
-        })
-        .collect()
+        let first = if variance > 0.0 { 1.0 } else { f64::NAN };
+        correlation_of_bins((&self.products, &self.counts), variance, first)
     }
+}
+
+/// Products over counts and variance; a bin without pairs takes the value of the bin before it, the first bin `first`.
+pub(crate) fn correlation_of_bins((products, counts): (&[f64], &[f64]), variance: f64, first: f64) -> Vec<f64> {
+    let mut last = first;
+    let value = |(product, &count): (&f64, &f64)| {
+        if count > 0.0 {
+            last = product / count / variance;
+        }
+        last
+    };
+    products.iter().zip(counts).map(value).collect()
 }

@@ -7,6 +7,7 @@
 
 use std::f64::consts::PI;
 
+use crate::observe::angular::correlation_of_bins;
 use crate::observe::shell::sample::ShellSample;
 use crate::vector::{Vector, dot};
 
@@ -56,15 +57,7 @@ impl PairSums {
     /// Products over counts and variance; a bin without pairs takes the value of the bin before it, the first that of
     /// γ = 0.
     pub(super) fn correlation(&self, variance: f64) -> Vec<f64> {
-        let mut last = 1.0;
-        let bins = self.products.iter().zip(&self.counts);
-        bins.map(|(product, count)| {
-            if *count > 0.0 {
-                last = product / count / variance;
-            }
-            last
-        })
-        .collect()
+        correlation_of_bins((&self.products, &self.counts), variance, 1.0)
     }
 
     /// G(π) by the straight line in the cap; none with fewer than two angles in it.

@@ -159,7 +159,6 @@ fn shell_of(response: &Response) -> Option<&ShellResponse> {
 }
 
 fn shell(responses: Vec<Option<&Response>>) -> Section {
-    let of = |it: &'_ Response| shell_of(it).map(|shell| shell.analysis.clone());
     let mut thresholds: Vec<f64> = Vec::new();
     let shells = responses.iter().flatten().filter_map(|it| shell_of(it));
     for crossing in shells.flat_map(|shell| &shell.analysis.correlation.crossings) {
@@ -168,14 +167,14 @@ fn shell(responses: Vec<Option<&Response>>) -> Section {
         }
     }
     let mut rows = Rows::new(responses);
-    rows.add("shell, r/R", |it| Some(significant(of(it)?.relative_radius, 3)))
-        .add("spheres in the shell", |it| Some(count(of(it)?.disk_count)))
+    rows.add("shell, r/R", |it| Some(significant(shell_of(it)?.analysis.relative_radius, 3)))
+        .add("spheres in the shell", |it| Some(count(shell_of(it)?.analysis.disk_count)))
         .add("negative S(ℓ), number of ℓ", |it| {
-            let spectrum = of(it)?.spectrum;
+            let spectrum = &shell_of(it)?.analysis.spectrum;
             (spectrum.negative_count > 0).then(|| format!("{} of {}", spectrum.negative_count, spectrum.degree_limit()))
         })
         .add("G* = −G(π)", |it| {
-            let found = of(it)?.correlation.anticorrelation?;
+            let found = shell_of(it)?.analysis.correlation.anticorrelation?;
             Some(match found.standard_error {
                 Some(error) => with_error(found.value, error),
                 None => significant(found.value, 3),
@@ -183,7 +182,7 @@ fn shell(responses: Vec<Option<&Response>>) -> Section {
         });
     for threshold in thresholds {
         rows.add(format!("γ*/π, G = {}", significant(threshold, 2)), |it| {
-            let crossings = of(it)?.correlation.crossings;
+            let crossings = &shell_of(it)?.analysis.correlation.crossings;
             let crossing = *crossings.iter().find(|crossing| crossing.threshold == threshold)?;
             Some(match (crossing.outcome, crossing.standard_error) {
                 (CrossingOutcome::At { angle }, Some(error)) => with_error(angle / PI, error / PI),

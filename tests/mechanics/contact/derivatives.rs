@@ -95,7 +95,7 @@ fn check_virial<const D: usize>(law: &dyn PairLaw, seed: u64, count: usize, doma
         };
         let slope = (deformed(STEP) - deformed(-STEP)) / (2.0 * STEP);
         let off = (slope + totals.virial[a][b]).abs();
-        // The coordinates are rounded anew.
+        // The deformed coordinates are rounded.
         let allowed = slope_error(&packing, law, STEP, blur(&packing), |pair| pair.separation[b].abs());
         assert!(
             off <= allowed,

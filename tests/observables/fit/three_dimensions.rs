@@ -65,16 +65,8 @@ fn count<const N: usize>(
     sample_count: usize,
     claims: [&dyn Fn(&ProfileFit) -> bool; N],
 ) -> [usize; N] {
-    let mut random = Pcg64Mcg::seed_from_u64(20_261_128);
     let medium = medium(amplitude(wavenumber), wavenumber);
-    let mut counts = [0; N];
-    for _ in 0..sample_count {
-        let found = fit(&profile(&medium, noise, &mut random));
-        for (count, claim) in counts.iter_mut().zip(claims) {
-            *count += usize::from(claim(&found));
-        }
-    }
-    counts
+    counted(20_261_128, sample_count, |random| fit(&profile(&medium, noise, random)), claims)
 }
 
 #[test]

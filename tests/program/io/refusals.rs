@@ -149,6 +149,7 @@ fn boxes_that_are_missing_flat_or_empty() {
     assert_change_refused::<2>(XYZ, "9 0 0 0 8 0", "9 0 0 0 8 1", &["line 2", "out of the plane", "edge 2 along z"]);
     assert_change_refused::<2>(XYZ, "9 0 0", "0 0 0", &["line 2", "Lattice is", "span a box"]);
     assert_change_refused::<2>(XYZ, "9 0 0 0 8", "9 3 0 18 6", &["line 2", "Lattice is", "span a box"]);
+    assert_change_refused::<2>(XYZ, "9 0 0 0 8", "9 0 0 1e8 8", &["line 2", "tilt of edge 2", "100000000"]);
     assert_change_refused::<2>(XYZ, "9 0 0", "9 0", &["line 2", "Lattice is `9 0 0 8 0 0 0 1`", "nine numbers"]);
     assert_change_refused::<2>(DATA, "0.0 9.0 xlo xhi\n", "", &["xlo xhi is missing"]);
     assert_change_refused::<2>(DATA, "0.0 9.0", "9.0 0.0", &["line 5", "xlo xhi is `9.0 0.0`"]);

@@ -4,7 +4,7 @@ use jamscope::io::{Frame, ReadWarning, read_contents, read_packing, write_lammps
 use jamscope::law::Hookean;
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Packing};
-use jamscope::vector::{difference, norm};
+use jamscope::vector::{difference, larger, norm};
 
 use super::{Scratch, fixture};
 
@@ -39,7 +39,7 @@ fn check_mechanics<const D: usize>(packing: &Packing<D>, name: &str, turned: boo
     }
     let text = std::fs::read_to_string(fixture("formats").join(format!("{name}.dump"))).expect("text");
     let rows = text.lines().skip_while(|line| !line.starts_with("ITEM: ATOMS")).skip(1);
-    let largest = network.forces().iter().map(|&force| norm(force)).fold(0.0, f64::max);
+    let largest = network.forces().iter().map(|&force| norm(force)).fold(0.0, larger);
     for (row, force) in rows.zip(network.forces()) {
         let values: Vec<f64> = row.split_ascii_whitespace().map(|word| word.parse().expect("a number")).collect();
         let off = norm(difference(*force, std::array::from_fn(|d| values[5 + d])));
@@ -134,10 +134,13 @@ fn lattices_of_extended_xyz_in_any_order_and_direction() {
     assert_eq!(edges(content("9 0 0 -2 8 0 0 0 1", points.0, points.1)), [[9.0, 0.0], [-2.0, 8.0]]);
     assert_eq!(edges(content("0 8 0 9 0 0 0 0 1", points.0, points.1)), [[9.0, 0.0], [0.0, 8.0]]);
     assert_eq!(edges(content("-9 0 0 2 -8 0 0 0 1", points.0, points.1)), [[9.0, 0.0], [-2.0, 8.0]]);
-    // Turned by the angle of 3 : 4 : 5, edges 10 and (−2, 5).
-    let turned = scratch.read::<2>(content("8 6 0 -4.6 2.8 0 0 0 1", "1 2", "2 2.5")).expect("read");
+    // A poor basis of the square lattice of side 9.
+    let short = edges(content("18 9 0 9 9 0 0 0 1", points.0, points.1));
+    assert_eq!(short, [[9.0, 0.0], [0.0, 9.0]]);
+    // Turned by the angle of 3 : 4 : 5, edges 10 and (−1, 5).
+    let turned = scratch.read::<2>(content("8 6 0 -3.8 3.4 0 0 0 1", "1 2", "2 2.5")).expect("read");
     let Domain::Periodic { edges: [a, b], .. } = *turned.domain() else { panic!("a box") };
-    assert!(norm(difference(a, [10.0, 0.0])) < 1e-14 && norm(difference(b, [-2.0, 5.0])) < 1e-14, "{a:?} {b:?}");
+    assert!(norm(difference(a, [10.0, 0.0])) < 1e-14 && norm(difference(b, [-1.0, 5.0])) < 1e-14, "{a:?} {b:?}");
     let apart = difference(turned.positions()[1], turned.positions()[0]);
     assert!(norm(difference(apart, [0.8 + 0.3, -0.6 + 0.4])) < 1e-14, "{apart:?}");
 }
