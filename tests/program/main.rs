@@ -24,6 +24,7 @@ mod report;
 #[cfg(feature = "cli")]
 mod sizes;
 mod spheres;
+#[cfg(feature = "cli")]
 mod strain_command;
 mod structure;
 mod study;
