@@ -27,9 +27,9 @@ pub struct StudyArguments {
     /// Size of a recipe: minutes on two cores, a night on two cores, or the published sizes and 400 samples.
     #[arg(long, value_parser = scales(), default_value = "small", requires = "recipe")]
     scale: Scale,
-    /// How the packings of a recipe are relaxed after the inflation.
-    #[arg(long, value_name = "NAME", value_parser = protocols(), default_value = ProtocolChoice::default().name(), requires = "recipe")]
-    protocol: ProtocolChoice,
+    /// How the packings of a recipe are relaxed after the inflation; several names with commas use the same packings.
+    #[arg(long, value_name = "NAME", value_parser = protocols(), value_delimiter = ',', default_value = ProtocolChoice::default().name(), requires = "recipe")]
+    protocol: Vec<ProtocolChoice>,
     /// Relaxer of a recipe with its default settings, instead of a protocol.
     #[arg(long, value_name = "NAME", value_parser = relaxer, requires = "recipe", conflicts_with = "protocol")]
     relaxer: Option<RelaxerChoice>,
@@ -136,12 +136,13 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
     let study = match (&arguments.study, arguments.recipe) {
         (Some(path), _) => read_study(path)?,
         (None, Some(recipe)) => {
-            let relaxer = arguments.relaxer.unwrap_or(arguments.protocol.relaxer());
-            let mut study = recipe.study_by(arguments.scale, relaxer);
+            let by_protocol = || arguments.protocol.iter().map(|protocol| protocol.relaxer()).collect();
+            let relaxers = arguments.relaxer.map_or_else(by_protocol, |relaxer| vec![relaxer]);
+            let mut study = recipe.study_by(arguments.scale, relaxers);
             if let Some(count) = arguments.seeds {
                 study.set_seed_count(count);
-                study.check()?;
             }
+            study.check()?;
             study
         }
         (None, None) => {
@@ -162,7 +163,8 @@ pub fn run(arguments: &StudyArguments) -> Result<ExitCode, Failure> {
     }
     set_threads(arguments.threads)?;
     if let Some(recipe) = arguments.recipe {
-        let by = arguments.relaxer.map_or(arguments.protocol.title(), |relaxer| relaxer.name());
+        let by_protocol = || arguments.protocol.iter().map(|protocol| protocol.title()).collect::<Vec<_>>().join("; ");
+        let by = arguments.relaxer.map_or_else(by_protocol, |relaxer| relaxer.name().to_string());
         let cost = cost::summary(&plan, &arguments.out, shard);
         print(&format!("{}: {}\nrelaxed by {by}\n{cost}", recipe.name(), recipe.title()))?;
     }
@@ -215,8 +217,9 @@ fn results(merged: &Merged, folder: &Path) -> Result<String, Failure> {
         let cell = &statistics.cell;
         let (target, value) = cell.target.name_and_value();
         text += &format!(
-            "{} disks, {} {value}, d_0 {}, {}: {} samples",
+            "{} {}, {} {value}, d_0 {}, {}: {} samples",
             cell.disk_count,
+            cell.particles(),
             target.replace('_', " "),
             cell.increase,
             cell.relaxer.name(),
@@ -319,9 +322,10 @@ mod cost {
             let first = cell.first;
             let (target, value) = first.target.name_and_value();
             text += &format!(
-                "{} {} disks, {} {value}: {} packings, {} inflations each, {} done, {} each {}, {} left on one core\n",
+                "{} {} {}, {} {value}: {} packings, {} inflations each, {} done, {} each {}, {} left on one core\n",
                 first.law.name(),
                 first.disk_count,
+                if first.dimension() == 3 { "spheres" } else { "disks" },
                 target.replace('_', " "),
                 cell.count,
                 first.scene_count(),

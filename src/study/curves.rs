@@ -28,6 +28,13 @@ pub(super) fn curves(scene: &Scene, response: &Response) -> BTreeMap<String, Vec
         put("angular_correlation".into(), correlation(&ring.correlation));
         put("power_spectrum".into(), spectrum(&ring.spectrum));
     }
+    if let Some(shell) = response.shell_correlation.as_ref().and_then(|it| it.measured()) {
+        let of = &shell.analysis;
+        let angles = of.correlation.angles.iter().zip(&of.correlation.values);
+        put("shell_correlation".into(), angles.map(|(&angle, &value)| [angle, value]).collect());
+        let powers = of.spectrum.power.iter().enumerate().skip(1);
+        put("shell_spectrum".into(), powers.map(|(l, &power)| [l as f64, power / of.spectrum.variance]).collect());
+    }
     if let Some(rings) = response.radial_dependence.as_ref().and_then(|it| it.measured()) {
         let measured = |of: fn(&AngularCorrelation) -> Option<f64>| -> Vec<[f64; 2]> {
             let point = |ring: &crate::observe::angular::RingAnalysis| match &ring.outcome {

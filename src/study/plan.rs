@@ -138,6 +138,11 @@ impl Task {
         self.study.increases().len() * self.study.relaxers(self.target).len()
     }
 
+    /// Dimension of space.
+    pub fn dimension(&self) -> usize {
+        self.study.scene.dimension
+    }
+
     /// The boundary.
     pub fn boundary(&self) -> Boundary {
         self.study.scene.inflation.boundary

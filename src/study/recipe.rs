@@ -1,4 +1,4 @@
-//! [`Recipe`]: the studies for the figures of the published study, at three scales.
+//! [`Recipe`]: the studies for the figures of the published study, and one of spheres, at three scales.
 //!
 //! Six recipes, [`Recipe::Kappa`] to [`Recipe::Isostatic`], use the same study: in a common folder its samples are run
 //! once.
@@ -12,7 +12,7 @@ use crate::relax::{Fire, RelaxerChoice};
 use crate::scene::{Observables, ProtocolChoice, Scene};
 use crate::study::settings::{Part, Seeds, Study, Target};
 
-/// A figure of the published study.
+/// A figure of the published study, or the same in three dimensions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Recipe {
@@ -44,6 +44,8 @@ pub enum Recipe {
     Radius,
     /// Contacts changed by inflation and deflation (fig. S9).
     ContactChanges,
+    /// The transition of spheres: κ, Δp, contact changes and G(γ) against p̂, several sizes.
+    Spheres,
 }
 
 /// The size of a recipe.
@@ -64,7 +66,7 @@ const SIZES: [(usize, f64); 4] = [(1387, 0.480), (5548, 0.480), (22184, 0.486), 
 
 impl Recipe {
     /// All recipes.
-    pub const ALL: [Recipe; 14] = [
+    pub const ALL: [Recipe; 15] = [
         Recipe::Radial,
         Recipe::Kappa,
         Recipe::Angular,
@@ -79,6 +81,7 @@ impl Recipe {
         Recipe::Hookean,
         Recipe::Radius,
         Recipe::ContactChanges,
+        Recipe::Spheres,
     ];
 
     /// Its name on the command line.
@@ -98,6 +101,7 @@ impl Recipe {
             Recipe::Hookean => "hookean",
             Recipe::Radius => "radius",
             Recipe::ContactChanges => "contact-changes",
+            Recipe::Spheres => "spheres",
         }
     }
 
@@ -118,20 +122,22 @@ impl Recipe {
             Recipe::Hookean => "finite-size scaling of Hookean disks (fig. S5)",
             Recipe::Radius => "S(f) at the transition by distance, both laws (fig. S6)",
             Recipe::ContactChanges => "contacts changed by inflation and deflation (fig. S9)",
+            Recipe::Spheres => "the transition in three dimensions, against p and p̂",
         }
     }
 
     /// The study, with the protocol of the published one.
     pub fn study(self, scale: Scale) -> Study {
-        self.study_by(scale, ProtocolChoice::default().relaxer())
+        self.study_by(scale, vec![ProtocolChoice::default().relaxer()])
     }
 
-    /// The study with another relaxer. Packings below jamming always use FIRE, because damped dynamics would not end.
-    pub fn study_by(self, scale: Scale, relaxer: RelaxerChoice) -> Study {
+    /// The study with other relaxers; each starts from the same packings. Packings below jamming always use FIRE,
+    /// because damped dynamics would not end.
+    pub fn study_by(self, scale: Scale, relaxers: Vec<RelaxerChoice>) -> Study {
         let mut study = self.of_scale(scale);
         // Parts below jamming have their own relaxer.
         if self != Recipe::Jamming {
-            study.relaxers = vec![relaxer];
+            study.relaxers = relaxers;
         }
         study
     }
@@ -154,6 +160,7 @@ impl Recipe {
             Recipe::Hookean => hookean(scale),
             Recipe::Radius => radius(scale),
             Recipe::ContactChanges => contact_changes(scale),
+            Recipe::Spheres => spheres(scale),
         }
     }
 }
@@ -174,7 +181,17 @@ impl Scale {
 
 /// Common settings: FIRE for the packing, then the protocol of the published study.
 fn common() -> Study {
-    let observables = Observables {
+    Study {
+        scene: Scene { observables: ensemble_observables(2), sample: Vec::new(), ..Scene::default() },
+        targets: Vec::new(),
+        relaxers: vec![ProtocolChoice::default().relaxer()],
+        ..Study::default()
+    }
+}
+
+/// The observables that an ensemble needs, of disks (2) or spheres (3).
+fn ensemble_observables(dimension: usize) -> Observables {
+    Observables {
         angular_profiles: None,
         bond_changes: None,
         displacement_field: None,
@@ -182,13 +199,7 @@ fn common() -> Study {
         elastic_modes: None,
         #[cfg(feature = "linear")]
         plastic_part: None,
-        ..Observables::default()
-    };
-    Study {
-        scene: Scene { observables, sample: Vec::new(), ..Scene::default() },
-        targets: Vec::new(),
-        relaxers: vec![ProtocolChoice::default().relaxer()],
-        ..Study::default()
+        ..Observables::of_dimension(dimension)
     }
 }
 
@@ -332,6 +343,33 @@ fn contact_changes(scale: Scale) -> Study {
     study
 }
 
+/// Sizes from 1000 to 64000 spheres; in a held shell of the default R there are 0.46 of them.
+fn spheres(scale: Scale) -> Study {
+    let part = |disk_count, targets: &[f64], count| Part {
+        disk_counts: vec![disk_count],
+        targets: reduced(targets),
+        seeds: Some(Seeds { first: 1, count }),
+        ..Part::default()
+    };
+    let all = [1e6, 1e5, 1e4, 1e3, 1e2, 1e1];
+    let parts = match scale {
+        Scale::Small => vec![part(1000, &all[..4], 16), part(4000, &all[..4], 4)],
+        Scale::Medium => {
+            vec![part(1000, &all, 24), part(4000, &all[..5], 8), part(16_000, &all[..4], 4), part(64_000, &all[..3], 2)]
+        }
+        Scale::Full => vec![
+            part(4000, &all, 400),
+            part(16_000, &all, 400),
+            part(64_000, &all[..5], 400),
+            part(280_000, &all[..4], 400),
+        ],
+    };
+    let mut study = Study { parts, ..common() };
+    study.scene.dimension = 3;
+    study.scene.observables = ensemble_observables(3);
+    study
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -349,7 +387,7 @@ mod tests {
     fn a_relaxer_is_that_of_jammed_packings_only() {
         for recipe in Recipe::ALL {
             for relaxer in ProtocolChoice::ALL.map(ProtocolChoice::relaxer) {
-                let (study, default) = (recipe.study_by(Scale::Small, relaxer), recipe.study(Scale::Small));
+                let (study, default) = (recipe.study_by(Scale::Small, vec![relaxer]), recipe.study(Scale::Small));
                 let below = recipe == Recipe::Jamming;
                 assert_eq!(study.relaxers == default.relaxers, below || relaxer == ProtocolChoice::default().relaxer());
                 let parts: Vec<_> = study.parts.iter().map(|part| &part.relaxers).collect();

@@ -47,7 +47,12 @@ impl Cell {
         Cell { target: self.target, ..*other } == *self
     }
 
-    /// N, the number of disks in the circle by area, or of the whole periodic box.
+    /// What its packings consist of: disks or spheres.
+    pub fn particles(&self) -> &'static str {
+        if self.dimension == 3 { "spheres" } else { "disks" }
+    }
+
+    /// N, the number of disks in the circle by area (spheres in the shell by volume), or of the whole periodic box.
     pub fn mobile_count(&self) -> f64 {
         mobile_count(self.disk_count, self.boundary, self.dimension)
     }

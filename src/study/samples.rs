@@ -175,7 +175,7 @@ impl CellSamples {
         }
         for (name, points) in curves {
             let place = |index: usize, x: f64| match name.as_str() {
-                "angular_correlation" => index as i64,
+                "angular_correlation" | "shell_correlation" => index as i64,
                 name if name.ends_with("_by_radius") => (10.0 * x).round() as i64,
                 _ => x.floor() as i64,
             };

@@ -4,8 +4,7 @@ use crate::study::CellSamples;
 use crate::transition::crossing::{by_halves, by_level};
 use crate::transition::evidence::{CannotTell, LEAST_SAMPLES};
 use crate::transition::pressure::{
-    FIRST_ZERO, Method, MethodEstimate, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION, SCALE_FREE_SLOPE,
-    TransitionPressure,
+    Method, MethodEstimate, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION, SCALE_FREE_SLOPE, TransitionPressure, poles,
 };
 use crate::transition::series_point::{ANGLE, ANTICORRELATION, SeriesPoint};
 use crate::transition::spectra::{crossover_of, likelihood_slope_of, slope_of};
@@ -67,7 +66,7 @@ pub(super) fn estimates(points: &[SeriesPoint], samples: &[&CellSamples]) -> Vec
         Some(radii.iter().sum::<f64>() / radii.len() as f64)
     };
     let screened = |samples: &CellSamples, wavenumber: f64| {
-        radius(samples).is_some_and(|radius| wavenumber * radius >= 0.5 * FIRST_ZERO)
+        radius(samples).is_some_and(|radius| wavenumber * radius >= 0.5 * poles(samples.cell.dimension)[0])
     };
     let mean = |method, name: &str, level: f64| {
         estimate(method, numbers(points, samples, name), |at, sizes, cells| {
@@ -84,19 +83,22 @@ pub(super) fn estimates(points: &[SeriesPoint], samples: &[&CellSamples]) -> Vec
             .collect();
         estimate(method, cells, |at, sizes, cells| by_level(at, sizes, level, |cell, chosen| of(cells[cell], chosen)))
     };
-    [
+    let by_sample = [
         plastic(Method::Wavenumber, "wavenumber", &screened),
         plastic(Method::PressureChange, "pressure_change", &|_, change| change < 0.0),
+    ];
+    if samples.iter().any(|samples| samples.cell.dimension == 3) {
+        return by_sample.into_iter().flatten().collect();
+    }
+    let by_angle = [
         mean(Method::Anticorrelation, ANTICORRELATION, SCALE_FREE_ANTICORRELATION),
         mean(Method::Angle, ANGLE, SCALE_FREE_ANGLE),
         spectrum(Method::Spectrum, SCALE_FREE_SLOPE, slope_of),
         spectrum(Method::SpectrumLikelihood, SCALE_FREE_SLOPE, likelihood_slope_of),
         // A value that falls below a level has a negative that rises above minus the level.
         spectrum(Method::Crossover, -VANISHED, |powers, chosen| Some(-crossover_of(powers, chosen)?)),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    ];
+    by_sample.into_iter().chain(by_angle).flatten().collect()
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@ use crate::fit::ensemble::{
 };
 use crate::study::{Cell, CellSamples, MeanPoint, Merged, NumberStatistics, StretchingRow, Target};
 use crate::transition::evidence::{RESAMPLINGS, Sampled};
+use crate::transition::pressure::poles;
 use crate::transition::series_point::SeriesPoint;
 
 /// y beyond which bonds stretch as in a continuum. Source: the study.
@@ -78,7 +79,7 @@ impl Lengths {
             .get("wavenumber")
             .zip(radius)
             .map(|(all, radius)| {
-                let screened = all.iter().filter(|&&kappa| kappa * radius >= 0.5 * super::pressure::FIRST_ZERO);
+                let screened = all.iter().filter(|&&kappa| kappa * radius >= 0.5 * poles(samples.cell.dimension)[0]);
                 screened.map(|kappa| kappa.recip()).collect()
             })
             .unwrap_or_default();
@@ -131,7 +132,7 @@ fn isostatic_of(rows: &[StretchingRow], radii: &[(usize, f64)], chosen: &[usize]
 /// are resampled.
 pub(super) fn matching(points: &[SeriesPoint], samples: &[&CellSamples]) -> Option<Sampled> {
     let radii = samples.first()?.numbers.get("outer_radius")?;
-    let longest = NumberStatistics::of(radii).mean / super::pressure::FIRST_ZERO;
+    let longest = NumberStatistics::of(radii).mean / poles(samples.first()?.cell.dimension)[0];
     let pressures: Vec<f64> = points.iter().map(|point| point.pressure).collect();
     let rings: Vec<Vec<(usize, f64)>> = samples.iter().map(|samples| ring_radii(samples)).collect();
     let matched_of = |groups: &[Vec<usize>]| {
@@ -315,7 +316,7 @@ mod tests {
             let mut draw = || generator.random::<f64>() - 0.5;
             let numbers = BTreeMap::from([
                 ("excess_coordination".to_string(), unit * (1.0 + 0.2 * draw())),
-                ("outer_radius".to_string(), 8.0 * super::super::pressure::FIRST_ZERO),
+                ("outer_radius".to_string(), 8.0 * poles(2)[0]),
             ]);
             let rings: Vec<[f64; 2]> =
                 (1..30).map(|place| [f64::from(place) + 0.5, 0.01 * (1.0 + 0.4 * draw())]).collect();

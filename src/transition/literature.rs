@@ -21,7 +21,7 @@ use crate::transition::lengths::JammingSeries;
 use crate::transition::pressure::{
     Method, MethodEstimate, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION, SCALE_FREE_SLOPE, TransitionPressure,
 };
-use crate::transition::scaling::{ExponentOutcome, PressureLaw, Scaling, beta};
+use crate::transition::scaling::{ExponentOutcome, PRESSURE_CHANGE, PressureLaw, Scaling, beta};
 use crate::transition::series::Series;
 
 /// A result and the published value.
@@ -165,6 +165,10 @@ pub(super) fn comparisons(
     laws: &[PressureLaw],
     jamming: &[JammingSeries],
 ) -> Vec<Comparison> {
+    // All published values are of disks.
+    if series.iter().any(|one| one.cell.dimension != 2) {
+        return Vec::new();
+    }
     // p̂_c is published for Hertzian disks and d_0 = 0.1.
     let published = series.iter().filter(|one| beta(&one.cell.law) == 3.0 && one.cell.increase == 0.1);
     let mut all: Vec<Comparison> = published.flat_map(of_series).collect();
@@ -270,6 +274,7 @@ fn of_series(one: &Series) -> Vec<Comparison> {
 pub(crate) fn words(observable: &str) -> String {
     match observable.strip_prefix("correlation_angle_at_") {
         Some(threshold) => format!("θ*, G = {threshold}"),
+        None if observable == PRESSURE_CHANGE => "Δp/p^((α−2)/(α−1))".into(),
         None => "G*".into(),
     }
 }

@@ -45,7 +45,7 @@ pub(crate) use lengths::{ISOSTATIC_THRESHOLD, JAMMING};
 #[cfg(feature = "plot")]
 pub(crate) use literature::words;
 #[cfg(feature = "plot")]
-pub(crate) use pressure::{FIRST_ZERO, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION};
+pub(crate) use pressure::{SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION, poles};
 #[cfg(feature = "plot")]
 pub(crate) use scaling::{beta, laws_and_relaxers};
 #[cfg(feature = "plot")]

@@ -15,14 +15,23 @@
 //! Otherwise the method is [uninformative](TransitionPressure::Uninformative).
 //!
 //! κ_1 R = 3.8317, the first zero of J_1: κ_fit of single samples is either near 0 or at least κ_1 (the study, fig. 2).
+//!
+//! For spheres κ_1 R = 4.4934, the first zero of j_1, and only κ and Δp are used: what G*, γ* and S(ℓ) are at a
+//! transition in three dimensions is not known.
 
 use serde::Serialize;
 
 use crate::fit::ensemble::BootstrapInterval;
 use crate::transition::evidence::CannotTell;
 
-/// First zero of J_1.
-pub(crate) const FIRST_ZERO: f64 = 3.831_705_970_207_512;
+/// κ_1 R and κ_2 R: the first zeros of J_1 for disks (2), of j_1 for spheres (3). Source: DLMF, §10.21(i), §10.58.
+pub(crate) fn poles(dimension: usize) -> [f64; 2] {
+    if dimension == 3 {
+        [4.493_409_457_909_064, 7.725_251_836_937_707]
+    } else {
+        [3.831_705_970_207_512, 7.015_586_669_815_618]
+    }
+}
 
 /// G* for S ∝ f^(−1.5): 1 − 2^(−1/2).
 pub(crate) const SCALE_FREE_ANTICORRELATION: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;

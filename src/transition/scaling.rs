@@ -38,6 +38,9 @@ const OBSERVABLES: [&str; 5] = [
     "correlation_angle_at_0.2",
 ];
 
+/// Collapsed for spheres too: Δp/p^((α−2)/(α−1)).
+pub(crate) const PRESSURE_CHANGE: &str = "scaled_pressure_change";
+
 /// The collapse of the curves of one observable, for one law and relaxer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Scaling {
@@ -60,7 +63,7 @@ pub struct Scaling {
     /// S at the best exponents: 1 if curves agree within their errors.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quality: Option<CollapseQuality>,
-    /// S at the published exponents.
+    /// S at the exponents of the theory: those published for disks; for spheres that of p̂.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub published_quality: Option<CollapseQuality>,
 }
@@ -100,6 +103,11 @@ pub(crate) fn beta(law: &LawChoice) -> f64 {
     2.0 * (law.exponent() - 1.0)
 }
 
+/// β/D, the exponent of N in p̂. Source: the study for D = 2; the chapter on spheres.
+fn size_exponent(series: &Series) -> f64 {
+    beta(&series.cell.law) / series.cell.dimension as f64
+}
+
 /// Laws with their relaxers, in the order of the series.
 pub(crate) fn laws_and_relaxers(series: &[Series]) -> Vec<(LawChoice, RelaxerChoice)> {
     let mut all = Vec::new();
@@ -121,7 +129,9 @@ impl Scaling {
             let is_own = |it: &&Series| (it.cell.law, it.cell.relaxer) == (law, relaxer) && it.points.len() > 1;
             let own: Vec<&Series> = series.iter().filter(is_own).collect();
             let of = |observable: &&'static str| Self::of(merged, (law, relaxer), &own, observable);
-            OBSERVABLES.iter().filter_map(of).collect::<Vec<_>>()
+            let of_space = own.iter().any(|one| one.cell.dimension == 3);
+            let further: &[&str] = if of_space { &[PRESSURE_CHANGE] } else { &[] };
+            OBSERVABLES.iter().chain(further).filter_map(of).collect::<Vec<_>>()
         };
         laws_and_relaxers(series).into_iter().flat_map(of_group).collect()
     }
@@ -144,7 +154,7 @@ impl Scaling {
             .filter(|(_, values): &(_, Values<'_>)| values.len() > 1)
             .collect();
         let varies = |k: usize| curves.iter().any(|(scales, _)| scales[k] != curves[0].0[k]);
-        let published = [0.5 * beta(&law), 0.25 * beta(&law)];
+        let published = [size_exponent(series.first()?), 0.25 * beta(&law)];
         let found = match curves.len() {
             0 | 1 => return None,
             _ => match (varies(0), varies(1)) {
@@ -225,7 +235,8 @@ fn measured(x: f64, values: &[f64], chosen: &[usize]) -> Option<MeasuredPoint> {
 impl PressureLaw {
     pub(super) fn all(series: &[Series]) -> Vec<PressureLaw> {
         let mut all: Vec<PressureLaw> = Vec::new();
-        for one in series {
+        // The argument N² d_0 is of disks.
+        for one in series.iter().filter(|one| one.cell.dimension == 2) {
             let (law, relaxer, mobile) = (one.cell.law, one.cell.relaxer, one.mobile_count());
             for estimate in &one.estimates {
                 let TransitionPressure::Found(found) = estimate.pressure else { continue };

@@ -32,7 +32,7 @@ pub struct Series {
     pub at_published: Option<AtPressure>,
     /// ℓ_s and ℓ_iso of every cell.
     pub lengths: Vec<Lengths>,
-    /// p where ℓ_iso equals R/3.83 = 1/κ_1, the longest screening length, by linear interpolation in logarithms. Its
+    /// p where ℓ_iso equals 1/κ_1 (R/3.83, spheres R/4.49), the longest screening length, by linear interpolation in logarithms. Its
     /// interval is from resampling all cells \[force / length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub matching: Option<Sampled>,
@@ -105,7 +105,7 @@ impl Series {
                 .collect(),
             divergence: AngleDivergence::of(&spectra, critical),
             at_transition: critical.and_then(|at| AtPressure::of(&points, &samples, at)),
-            at_published: AtPressure::of(&points, &samples, PUBLISHED),
+            at_published: AtPressure::of(&points, &samples, PUBLISHED).filter(|_| samples[0].cell.dimension == 2),
             lengths,
             points,
             spectra,
@@ -121,7 +121,8 @@ impl Series {
     /// A description with law, size, inflation and relaxer.
     pub fn name(&self) -> String {
         let Cell { law, disk_count, increase, relaxer, .. } = self.cell;
-        format!("{} {disk_count} disks, d_0 = {increase}, {}", law.name(), relaxer.description())
+        let disks = self.cell.particles();
+        format!("{} {disk_count} {disks}, d_0 = {increase}, {}", law.name(), relaxer.description())
     }
 }
 

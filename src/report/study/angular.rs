@@ -8,7 +8,7 @@ use crate::report::figures::plot::{Guide, Plot, PlotAxis, PlotPoint, Series as C
 use crate::report::number::significant;
 use crate::report::study::figure_data::{Subject, reduced, short};
 use crate::study::{MeanCurve, MeanPoint};
-use crate::transition::{RingSlope, Series};
+use crate::transition::{RingSlope, Series, SeriesPoint};
 
 /// G(θ) and S(f) at every p̂ of the series with the base inflation.
 pub(super) fn functions(subject: &Subject<'_>) -> Vec<Figure> {
@@ -18,7 +18,11 @@ pub(super) fn functions(subject: &Subject<'_>) -> Vec<Figure> {
     let away = |series: &&Series| (series.cell.increase - 0.1f64.min(largest)).abs();
     let nearest = all.iter().map(|series| away(&series)).fold(f64::INFINITY, f64::min);
     let chosen = all.iter().filter(|series| away(series) <= nearest + 1e-12);
-    chosen.flat_map(|series| [correlation(subject, series), spectrum(subject, series)]).flatten().collect()
+    let of = |series| match subject.dimension() {
+        3 => [shell_correlation(subject, series), shell_spectrum(subject, series)],
+        _ => [correlation(subject, series), spectrum(subject, series)],
+    };
+    chosen.flat_map(of).flatten().collect()
 }
 
 fn with_error(point: &MeanPoint, unit: f64) -> PlotPoint {
@@ -48,6 +52,46 @@ fn correlation(subject: &Subject<'_>, series: &Series) -> Option<Figure> {
             y: PlotAxis::linear("G(θ)").within(-0.6, 1.0),
             series: curves,
             guides: vec![Guide::Horizontal(0.0, String::new()), Guide::Horizontal(0.1, "G = 0.1".into())],
+        })?
+        .draw()
+}
+
+/// The mean curves of a name at every p̂ of a series.
+fn means(subject: &Subject<'_>, series: &Series, name: &str, style: Style, unit: f64) -> Vec<Curve> {
+    let count = series.points.len().max(5);
+    let of = |(index, point): (usize, &SeriesPoint)| {
+        let points = subject.samples(point).curves.get(name)?.points();
+        let points = points.iter().map(|point| PlotPoint { x: point.x / unit, ..with_error(point, 1.0) }).collect();
+        Some(Curve { label: reduced(point.reduced_pressure), points, style, colour: colour(index, count) })
+    };
+    series.points.iter().enumerate().filter_map(of).collect()
+}
+
+fn shell_correlation(subject: &Subject<'_>, series: &Series) -> Option<Figure> {
+    let curves = means(subject, series, "shell_correlation", Style::Joined, PI);
+    (!curves.is_empty())
+        .then(|| Plot {
+            title: format!("G(γ), {}", short(series, &subject.transition.series)),
+            description: "Mean angular correlation in the shell at several reduced pressures, with standard errors"
+                .into(),
+            x: PlotAxis::linear("γ / π").within(0.0, 1.0),
+            y: PlotAxis::linear("G(γ)").within(-0.6, 1.0),
+            series: curves,
+            guides: vec![Guide::Horizontal(0.0, String::new()), Guide::Horizontal(0.1, "G = 0.1".into())],
+        })?
+        .draw()
+}
+
+fn shell_spectrum(subject: &Subject<'_>, series: &Series) -> Option<Figure> {
+    let curves = means(subject, series, "shell_spectrum", Style::Joined, 1.0);
+    (!curves.is_empty())
+        .then(|| Plot {
+            title: format!("S(ℓ), {}", short(series, &subject.transition.series)),
+            description: "Mean power of a harmonic over the variance in the shell, with standard errors".into(),
+            x: PlotAxis::linear("ℓ"),
+            y: PlotAxis::linear("S(ℓ) / ⟨δdᵣ²⟩"),
+            series: curves,
+            guides: vec![Guide::Horizontal(0.0, String::new())],
         })?
         .draw()
 }

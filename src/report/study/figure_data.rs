@@ -12,6 +12,21 @@ pub(super) struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
+    /// Dimension of space.
+    pub fn dimension(&self) -> usize {
+        self.merged.study.scene.dimension
+    }
+
+    /// What the packings consist of: disks or spheres.
+    pub fn particles(&self) -> &'static str {
+        if self.dimension() == 3 { "spheres" } else { "disks" }
+    }
+
+    /// The symbol of an angle: θ in a ring, γ in a shell.
+    pub fn angle(&self) -> &'static str {
+        if self.dimension() == 3 { "γ" } else { "θ" }
+    }
+
     pub fn samples(&self, point: &SeriesPoint) -> &'a CellSamples {
         &self.merged.samples[point.cell]
     }

@@ -4,7 +4,7 @@ use crate::report::figures::Figure;
 use crate::report::figures::plot::{Guide, Plot, PlotAxis, PlotPoint, Series as Curve, Style, bare, colour};
 use crate::report::number::with_error;
 use crate::report::study::figure_data::{Subject, reduced, series_colour, short};
-use crate::transition::{FIRST_ZERO, ISOSTATIC_THRESHOLD, JAMMING, JammingSeries, Series};
+use crate::transition::{ISOSTATIC_THRESHOLD, JAMMING, JammingSeries, Series, poles};
 
 /// Both lengths of every series.
 pub(super) fn matching(subject: &Subject<'_>) -> Vec<Figure> {
@@ -25,23 +25,25 @@ pub(super) fn matching(subject: &Subject<'_>) -> Vec<Figure> {
             series.points.iter().map(|point| (point.pressure, 75.0 * libm::pow(point.pressure, -1.0 / 3.0)));
         let radius = series.points.iter().find_map(|point| subject.number(point.cell, "outer_radius"))?.mean;
         let some = !isostatic.is_empty();
-        let curves = vec![
+        let mut curves = vec![
             Curve { label: "ℓₛ = 1/κ".into(), points: screening.collect(), style: Style::Points, colour },
             Curve { label: "ℓ_iso".into(), points: isostatic, style: Style::Joined, colour: [0x22; 3] },
-            Curve {
+        ];
+        if subject.dimension() == 2 {
+            curves.push(Curve {
                 label: "75 p^(−1/3), published".into(),
                 points: bare(published),
                 style: Style::Dashed,
                 colour: [0x77; 3],
-            },
-        ];
+            });
+        }
         some.then(|| Plot {
             title: format!("Screening and isostatic length, {}", short(series, all)),
             description: "Screening length of the screened samples and isostatic length against the pressure".into(),
             x: PlotAxis::logarithmic("p (force / length)"),
             y: PlotAxis::logarithmic("length"),
             series: curves,
-            guides: vec![Guide::Horizontal(radius / FIRST_ZERO, "1/κ₁".into())],
+            guides: vec![Guide::Horizontal(radius / poles(subject.dimension())[0], "1/κ₁".into())],
         })?
         .draw()
     };

@@ -8,18 +8,16 @@ use crate::report::figures::plot::{Guide, Plot, PlotAxis, PlotPoint, Series as C
 use crate::report::study::figure_data::{Subject, series_colour, short};
 use crate::study::NumberStatistics;
 use crate::transition::{
-    ANGLE, ANTICORRELATION, FIRST_ZERO, PUBLISHED, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION, Series, beta,
+    ANGLE, ANTICORRELATION, PUBLISHED, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION, Series, beta, poles,
 };
 
 /// Largest number of samples of a cell drawn as points.
 const SINGLES: usize = 200;
 
-/// κ_2/κ_1, from the zeros of J_1.
-const SECOND_OVER_FIRST: f64 = 7.015_586_669_815_618 / FIRST_ZERO;
-
 /// κ and Δp, one point per sample, with connected means.
 pub(super) fn by_sample(subject: &Subject<'_>) -> Vec<Figure> {
-    let scaled = |values: &[f64], radius: f64| values.iter().map(|kappa| kappa * radius / FIRST_ZERO).collect();
+    let [first, second] = poles(subject.dimension());
+    let scaled = |values: &[f64], radius: f64| values.iter().map(|kappa| kappa * radius / first).collect();
     let kappa = figure(subject, "wavenumber", "κ of the best screened solution", "κ / κ₁", &scaled);
     let change = figure(
         subject,
@@ -32,7 +30,7 @@ pub(super) fn by_sample(subject: &Subject<'_>) -> Vec<Figure> {
     if let Some(plot) = &mut kappa {
         plot.guides = vec![
             Guide::Horizontal(1.0, "κ₁".into()),
-            Guide::Horizontal(SECOND_OVER_FIRST, "κ₂".into()),
+            Guide::Horizontal(second / first, "κ₂".into()),
             Guide::Horizontal(0.5, "counted as screened above".into()),
         ];
     }
@@ -68,11 +66,20 @@ fn figure(
     curves.iter().any(|curve| !curve.points.is_empty()).then(|| Plot {
         title: format!("{title} against p̂"),
         description: format!("{title} of single samples and means over samples against the reduced pressure"),
-        x: PlotAxis::logarithmic("p̂ = p Nᵅ⁻¹ (force / length)"),
+        x: PlotAxis::logarithmic(reduced_axis(subject)),
         y: PlotAxis::linear(label),
         series: curves,
         guides: Vec::new(),
     })
+}
+
+/// The axis of p̂.
+fn reduced_axis(subject: &Subject<'_>) -> &'static str {
+    if subject.dimension() == 3 {
+        "p̂ = p N^(2(α−1)/3) (force / length²)"
+    } else {
+        "p̂ = p Nᵅ⁻¹ (force / length)"
+    }
 }
 
 /// The abscissa of a figure.
@@ -92,15 +99,17 @@ pub(super) fn against(subject: &Subject<'_>, abscissa: Abscissa) -> Vec<Figure> 
         subject_plot(subject, name, title, label, unit, guide, abscissa).draw()
     };
     let depth = one(ANTICORRELATION, "G*", "G* = −G(π)", 1.0, SCALE_FREE_ANTICORRELATION);
-    let angle = one(ANGLE, "θ*", "θ* / π", PI, SCALE_FREE_ANGLE / PI);
+    let symbol = subject.angle();
+    let angle = one(ANGLE, &format!("{symbol}*"), &format!("{symbol}* / π"), PI, SCALE_FREE_ANGLE / PI);
     [depth, angle].into_iter().flatten().collect()
 }
 
 /// θ* at another threshold of G for all series.
 pub(super) fn threshold(subject: &Subject<'_>, threshold: &str) -> Option<Figure> {
     let name = format!("correlation_angle_at_{threshold}");
-    let title = format!("θ*, G = {threshold}");
-    subject_plot(subject, &name, &title, "θ* / π", PI, f64::NAN, Abscissa::Reduced).draw()
+    let symbol = subject.angle();
+    let title = format!("{symbol}*, G = {threshold}");
+    subject_plot(subject, &name, &title, &format!("{symbol}* / π"), PI, f64::NAN, Abscissa::Reduced).draw()
 }
 
 fn subject_plot(
@@ -114,8 +123,9 @@ fn subject_plot(
 ) -> Plot {
     let all = &subject.transition.series;
     let (x_label, words) = match abscissa {
+        Abscissa::Pressure if subject.dimension() == 3 => ("p (force / length²)", "p"),
         Abscissa::Pressure => ("p (force / length)", "p"),
-        Abscissa::Reduced => ("p̂ = p Nᵅ⁻¹ (force / length)", "p̂"),
+        Abscissa::Reduced => (reduced_axis(subject), "p̂"),
         Abscissa::AsHertzian => ("p N^(3/2) (force / length)", "p N^(3/2)"),
     };
     let mut curves = Vec::new();
@@ -137,8 +147,15 @@ fn subject_plot(
             curves.push(crossover_angles(series, index, all));
         }
     }
-    let mut guides = vec![Guide::Horizontal(guide, "S ∼ f^−1.5".into())];
-    if matches!(abscissa, Abscissa::Reduced) && all.iter().all(|series| beta(&series.cell.law) == 3.0) {
+    // Both guides are of disks.
+    let mut guides = Vec::new();
+    if subject.dimension() == 2 {
+        guides.push(Guide::Horizontal(guide, "S ∼ f^−1.5".into()));
+    }
+    if subject.dimension() == 2
+        && matches!(abscissa, Abscissa::Reduced)
+        && all.iter().all(|series| beta(&series.cell.law) == 3.0)
+    {
         guides.push(Guide::Vertical(PUBLISHED, "published".into()));
     }
     Plot {

@@ -59,8 +59,9 @@ fn views(subject: &Subject<'_>) -> Vec<(&'static str, &'static str, Vec<Figure>)
     profiles.extend(radial::means(subject));
     let thresholds =
         ["0.02", "0.05", "0.2"].into_iter().filter_map(|it| order_parameters::threshold(subject, it)).collect();
-    let mut scaled = scaling::with_inflation(subject);
-    scaled.extend(scaling::phase_diagram(subject));
+    let is_plane = subject.dimension() == 2;
+    let mut scaled = if is_plane { scaling::with_inflation(subject) } else { Vec::new() };
+    scaled.extend(if is_plane { scaling::phase_diagram(subject) } else { Vec::new() });
     vec![
         (
             "Radial profiles",
@@ -74,12 +75,20 @@ fn views(subject: &Subject<'_>) -> Vec<(&'static str, &'static str, Vec<Figure>)
         ),
         (
             "Angular correlation and spectrum",
-            "Means over samples. A spectrum ∼ f^(−1.5) has no scale; below the transition, Lorentzians are fitted.",
+            if is_plane {
+                "Means over samples. A spectrum ∼ f^(−1.5) has no scale; below the transition, Lorentzians are fitted."
+            } else {
+                "Means over samples: G(γ) over the angle between two spheres of the shell, and the power S(ℓ) of its spherical harmonics."
+            },
             angular::functions(subject),
         ),
         (
             "Order parameter and correlation angle",
-            "G* = −G(π), θ* where G = 0.1, and θ† = k/f† (hollow symbols). Series are named by their number of disks, and by law and d₀ if these differ.",
+            if is_plane {
+                "G* = −G(π), θ* where G = 0.1, and θ† = k/f† (hollow symbols). Series are named by their number of disks, and by law and d₀ if these differ."
+            } else {
+                "G* = −G(π) and γ* where G = 0.1. Series are named by their number of spheres, and by law, d₀ and relaxer if these differ."
+            },
             order,
         ),
         (
@@ -279,7 +288,7 @@ fn exponents(transition: &Transition) -> String {
         })
         .collect();
     let text = "Exponents a and b with which the curves against p N^a d₀^(−b) collapse onto one curve. S is 1 if the curves agree within their errors; the number of points used is in brackets.";
-    let heads = ["Law and relaxer", "Of", "a", "b", "S, best exponents", "S, published exponents"];
+    let heads = ["Law and relaxer", "Of", "a", "b", "S, best exponents", "S, exponents of the theory"];
     table("Collapse", text, &heads, &rows)
 }
 
@@ -350,9 +359,10 @@ fn cells(merged: &Merged) -> String {
         let phases = &statistics.phases;
         vec![
             format!(
-                "{} {} disks, d_0 = {}, {}",
+                "{} {} {}, d_0 = {}, {}",
                 cell.law.name(),
                 cell.disk_count,
+                cell.particles(),
                 cell.increase,
                 cell.relaxer.description()
             ),

@@ -7,7 +7,7 @@ use crate::report::figures::Figure;
 use crate::report::figures::plot::{Guide, Plot, PlotAxis, PlotPoint, Series as Curve, Style, bare, colour};
 use crate::report::study::figure_data::{Subject, series_colour, short, target, with_relaxer};
 use crate::study::{CellSamples, Single};
-use crate::transition::{FIRST_ZERO, Series};
+use crate::transition::{Series, poles};
 
 /// Number of points of a fitted curve.
 const CURVE_POINTS: u32 = 120;
@@ -15,34 +15,36 @@ const CURVE_POINTS: u32 = 120;
 /// Largest number of cells in a row.
 const MOST_CELLS: usize = 6;
 
-/// One sample of every cell with the solution that describes it better; r·d_r over its largest value.
+/// One sample of every cell with the solution that describes it better; r^(D−1) d_r over its largest value.
 pub(super) fn singles(subject: &Subject<'_>) -> Vec<Figure> {
     let (size, increase) = base(subject);
     let cells: Vec<&CellSamples> =
         cells(subject).filter(|it| it.cell.disk_count == size && it.cell.increase == increase).collect();
+    let weight = weight_of(subject);
     let mut curves = Vec::new();
     for (index, samples) in spread(&cells).into_iter().enumerate() {
         let Some(single) = samples.singles.first() else { continue };
-        let unit = single.profile.iter().map(|[r, d]| (r * d).abs()).fold(0.0, f64::max);
+        let unit = single.profile.iter().map(|&[r, d]| (weight(r) * d).abs()).fold(0.0, f64::max);
         let radius = single.numbers.get("outer_radius").copied().unwrap_or(f64::NAN);
         let colour = colour(index, cells.len().clamp(5, MOST_CELLS));
-        let points = bare(single.profile.iter().map(|[r, d]| (r / radius, r * d / unit)));
+        let points = bare(single.profile.iter().map(|&[r, d]| (r / radius, weight(r) * d / unit)));
         let label = with_relaxer(target(&samples.cell), &samples.cell, subject.merged);
         curves.push(Curve { label, points, style: Style::Points, colour });
         if let Some(solution) = solution(subject, single, radius) {
             let at = |step: u32| 0.05 + 0.95 * f64::from(step) / f64::from(CURVE_POINTS);
-            let points =
-                (0..=CURVE_POINTS).map(at).map(|share| (share, share * radius * solution(share * radius) / unit));
+            let points = (0..=CURVE_POINTS)
+                .map(at)
+                .map(|share| (share, weight(share * radius) * solution(share * radius) / unit));
             curves.push(Curve { label: String::new(), points: bare(points), style: Style::Line, colour });
         }
     }
     let plot = Plot {
-        title: format!("Radial profiles of single samples, {size} disks, d_0 = {increase}"),
+        title: format!("Radial profiles of single samples, {size} {}, d_0 = {increase}", subject.particles()),
         description:
             "Rescaled radial displacement of one sample of every cell over its largest value, with the better solution"
                 .into(),
         x: PlotAxis::linear("r / R").within(0.0, 1.0),
-        y: PlotAxis::linear("r·dᵣ / max").within(-1.1, 1.1),
+        y: PlotAxis::linear(format!("{} / max", rescaled(subject))).within(-1.1, 1.1),
         series: curves,
         guides: vec![Guide::Horizontal(0.0, String::new())],
     };
@@ -55,12 +57,43 @@ fn solution(subject: &Subject<'_>, single: &Single, radius: f64) -> Option<Box<d
     let annulus = Annulus::new(inner, radius).ok()?;
     let number = |name: &str| single.numbers.get(name).copied();
     let kappa = number("wavenumber")?;
-    if kappa * radius >= 0.5 * FIRST_ZERO {
-        let solution = Screened::<2>::new(annulus, number("screened_amplitude")?, kappa).ok()?;
-        return Some(Box::new(move |r| solution.value(r)));
+    let is_screened = kappa * radius >= 0.5 * poles(subject.dimension())[0];
+    let amplitude = number(if is_screened { "screened_amplitude" } else { "elastic_amplitude" })?;
+    let kappa = is_screened.then_some(kappa);
+    if subject.dimension() == 3 {
+        solution_in::<3>(annulus, amplitude, kappa)
+    } else {
+        solution_in::<2>(annulus, amplitude, kappa)
     }
-    let solution = Elastic::<2>::new(annulus, number("elastic_amplitude")?).ok()?;
-    Some(Box::new(move |r| solution.value(r)))
+}
+
+/// The screened solution with κ, or else the elastic one.
+fn solution_in<const D: usize>(
+    annulus: Annulus,
+    amplitude: f64,
+    kappa: Option<f64>,
+) -> Option<Box<dyn Fn(f64) -> f64>> {
+    match kappa {
+        Some(kappa) => {
+            let solution = Screened::<D>::new(annulus, amplitude, kappa).ok()?;
+            Some(Box::new(move |r| solution.value(r)))
+        }
+        None => {
+            let solution = Elastic::<D>::new(annulus, amplitude).ok()?;
+            Some(Box::new(move |r| solution.value(r)))
+        }
+    }
+}
+
+/// r^(D−1) of the rescaled displacement.
+fn weight_of(subject: &Subject<'_>) -> impl Fn(f64) -> f64 + use<> {
+    let power = subject.dimension() as i32 - 1;
+    move |r| r.powi(power)
+}
+
+/// r^(D−1) d_r in symbols.
+fn rescaled(subject: &Subject<'_>) -> &'static str {
+    if subject.dimension() == 3 { "r²·dᵣ" } else { "r·dᵣ" }
 }
 
 /// All cells with radial profiles.
@@ -82,14 +115,14 @@ fn spread<'a>(cells: &[&'a CellSamples]) -> Vec<&'a CellSamples> {
     (0..count).map(|i| cells[i * (cells.len() - 1) / count.saturating_sub(1).max(1)]).collect()
 }
 
-/// Mean profiles r·d_r/d_0: for every pressure at the base inflation, and for every inflation at every pressure.
+/// Mean profiles r^(D−1) d_r/d_0: for every pressure at the base inflation, and for every inflation at every pressure.
 pub(super) fn means(subject: &Subject<'_>) -> Vec<Figure> {
     let (size, increase) = base(subject);
     let all: Vec<&CellSamples> = cells(subject).filter(|it| it.cell.disk_count == size).collect();
     let at_base: Vec<&CellSamples> = all.iter().copied().filter(|it| it.cell.increase == increase).collect();
     let mut figures: Vec<Figure> = mean_figure(
         subject,
-        format!("Mean radial profiles, {size} disks, d_0 = {increase}"),
+        format!("Mean radial profiles, {size} {}, d_0 = {increase}", subject.particles()),
         &spread(&at_base),
         |it| with_relaxer(target(&it.cell), &it.cell, subject.merged),
     )
@@ -100,7 +133,8 @@ pub(super) fn means(subject: &Subject<'_>) -> Vec<Figure> {
     for of in targets {
         let own: Vec<&CellSamples> = all.iter().copied().filter(|it| it.cell.target == of).collect();
         if own.len() > 1 {
-            let title = format!("Mean radial profiles by inflation, {size} disks, {}", target(&own[0].cell));
+            let title =
+                format!("Mean radial profiles by inflation, {size} {}, {}", subject.particles(), target(&own[0].cell));
             figures.extend(mean_figure(subject, title, &spread(&own), |it| {
                 with_relaxer(format!("d_0 = {}", it.cell.increase), &it.cell, subject.merged)
             }));
@@ -115,6 +149,7 @@ fn mean_figure(
     cells: &[&CellSamples],
     label: impl Fn(&CellSamples) -> String,
 ) -> Option<Figure> {
+    let weight = weight_of(subject);
     let mut curves = Vec::new();
     let mut widest = 0.0f64;
     for (index, samples) in cells.iter().enumerate() {
@@ -125,16 +160,21 @@ fn mean_figure(
         let unit = samples.cell.increase;
         let points = points.iter().map(|point| {
             let error = point.standard_error.unwrap_or(0.0);
-            let interval = Some([-1.0, 1.0].map(|sign| point.x * (point.y + sign * error) / unit));
-            PlotPoint { x: point.x / radius, y: point.x * point.y / unit, interval }
+            let interval = Some([-1.0, 1.0].map(|sign| weight(point.x) * (point.y + sign * error) / unit));
+            PlotPoint { x: point.x / radius, y: weight(point.x) * point.y / unit, interval }
         });
         let colour = colour(index, cells.len().max(5));
         curves.push(Curve { label: label(samples), points: points.collect(), style: Style::Joined, colour });
     }
     let inner = subject.merged.study.scene.mixture.components.iter().map(|it| it.radius).fold(f64::INFINITY, f64::min);
-    let elastic = Elastic::<2>::new(Annulus::new(inner, widest).ok()?, 1.0).ok()?;
+    let annulus = Annulus::new(inner, widest).ok()?;
+    let elastic = if subject.dimension() == 3 {
+        solution_in::<3>(annulus, 1.0, None)?
+    } else {
+        solution_in::<2>(annulus, 1.0, None)?
+    };
     let at = |step: u32| 0.02 + 0.98 * f64::from(step) / f64::from(CURVE_POINTS);
-    let exact = bare((0..=CURVE_POINTS).map(at).map(|share| (share, share * widest * elastic.value(share * widest))));
+    let exact = bare((0..=CURVE_POINTS).map(at).map(|share| (share, weight(share * widest) * elastic(share * widest))));
     curves.push(Curve { label: "elastic".into(), points: exact, style: Style::Dashed, colour: [0x22; 3] });
     Plot {
         title,
@@ -142,7 +182,10 @@ fn mean_figure(
             "Mean rescaled radial displacement over the inflation, with standard errors, and the elastic solution"
                 .into(),
         x: PlotAxis::linear("r / R").within(0.0, 1.0),
-        y: PlotAxis::linear("r·dᵣ / d₀ (length)"),
+        y: PlotAxis::linear(match subject.dimension() {
+            3 => "r²·dᵣ / d₀ (length²)",
+            _ => "r·dᵣ / d₀ (length)",
+        }),
         series: curves,
         guides: vec![Guide::Horizontal(0.0, String::new())],
     }
