@@ -177,7 +177,7 @@ pub(super) fn comparisons(
         let beta = beta(&one.law);
         let exponents = [("N^a", one.size_exponent, 0.5 * beta), ("d_0^(−b)", one.inflation_exponent, 0.25 * beta)];
         for (factor, outcome, published) in exponents {
-            let quantity = format!("exponent of {factor}, collapse of {}", words(one.observable));
+            let quantity = format!("exponent of {factor}, collapse of {}", words(one.observable, "θ"));
             if let Some(ExponentOutcome::Found(found)) = outcome {
                 all.push(number(&quantity, &of, published).bootstrap(&found, one.sample_count));
             }
@@ -270,10 +270,10 @@ fn of_series(one: &Series) -> Vec<Comparison> {
     all
 }
 
-/// The name of an observable in words.
-pub(crate) fn words(observable: &str) -> String {
+/// The name of an observable in words; the angle is θ in a ring, γ in a shell.
+pub(crate) fn words(observable: &str, angle: &str) -> String {
     match observable.strip_prefix("correlation_angle_at_") {
-        Some(threshold) => format!("θ*, G = {threshold}"),
+        Some(threshold) => format!("{angle}*, G = {threshold}"),
         None if observable == PRESSURE_CHANGE => "Δp/p^((α−2)/(α−1))".into(),
         None => "G*".into(),
     }

@@ -138,3 +138,23 @@ impl TransitionPressure {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reference::bessel::{cylinder, spherical};
+
+    #[test]
+    fn poles_are_the_first_zeros_of_the_bessel_functions() {
+        for dimension in [2, 3] {
+            let j1 = |x| if dimension == 3 { spherical::j1(x) } else { cylinder::j1(x) };
+            let [first, second] = poles(dimension);
+            for zero in [first, second] {
+                // A slope of at most 0.41 and a number rounded to 16 digits.
+                assert!(j1(zero).abs() < 1e-15, "{dimension}: {zero}");
+            }
+            // The next zeros are about π apart, so none lies between.
+            assert!(first > 3.0 && second - first < 3.5 && j1(1.0) > 0.0);
+        }
+    }
+}

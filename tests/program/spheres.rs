@@ -97,6 +97,22 @@ fn a_study_of_spheres_is_merged() {
         assert!((reduced / pressure / mobile - 1.0).abs() < 1e-12, "{reduced} and {pressure}");
     }
     assert_eq!(means("anticorrelation").len(), 2, "{summary}");
+    // Mean curves of the shell, r² d_r, and nothing that was published for disks.
+    let page = text(&folder.path().join("s/report.html"));
+    for word in ["2000 spheres", "r²·dᵣ", "G(γ), 2000", "S(ℓ), 2000", "γ* / π"] {
+        assert!(page.contains(word), "{word}");
+    }
+    for word in ["2000 disks", "r·dᵣ", "θ*", "Published", "published", "f^−1.5"] {
+        assert!(!page.contains(word), "{word}");
+    }
+    #[cfg(feature = "fit")]
+    {
+        let transition: Value = serde_json::from_str(&text(&folder.path().join("s/transition.json"))).expect("JSON");
+        assert_eq!(transition["comparisons"], serde_json::json!([]));
+        let methods = transition["series"][0]["estimates"].as_array().expect("methods");
+        let names: Vec<_> = methods.iter().map(|one| one["method"].as_str().expect("a name")).collect();
+        assert_eq!(names, ["wavenumber", "pressure_change"], "G*, γ* and S(ℓ) have no known level");
+    }
 }
 
 #[test]

@@ -32,12 +32,12 @@ pub fn study_page(merged: &Merged, transition: &Transition) -> String {
             );
         }
     }
-    html.push_str(&estimates(transition));
+    html.push_str(&estimates(&subject));
     html.push_str(&slopes(transition));
     html.push_str(&divergences(transition));
-    html.push_str(&exponents(transition));
+    html.push_str(&exponents(&subject));
     html.push_str(&comparisons(transition));
-    html.push_str(&cells(merged));
+    html.push_str(&cells(&subject));
     let _ = write!(
         html,
         "</main>\n<footer>\n<p>jamscope {}. Lengths in diameters of a small disk. Intervals are 95 % bootstrap intervals over the samples of every \
@@ -97,7 +97,7 @@ fn views(subject: &Subject<'_>) -> Vec<(&'static str, &'static str, Vec<Figure>)
             order_parameters::crossovers(subject),
         ),
         ("Against p N^(3/2)", "The scaling of Hertzian disks, which Hookean disks do not follow.", as_hertzian),
-        ("Thresholds", "The correlation angle θ* with other thresholds of G.", thresholds),
+        ("Thresholds", "The correlation angle with other thresholds of G.", thresholds),
         (
             "Spectrum by distance",
             "For every series, in the cell whose slope is nearest to 1.5.",
@@ -187,7 +187,8 @@ pub(super) fn pressure(found: TransitionPressure) -> String {
 }
 
 /// p̂_c of every series by every method.
-fn estimates(transition: &Transition) -> String {
+fn estimates(subject: &Subject<'_>) -> String {
+    let transition = subject.transition;
     let mut rows = Vec::new();
     for series in &transition.series {
         for estimate in &series.estimates {
@@ -201,9 +202,14 @@ fn estimates(transition: &Transition) -> String {
             row("θ* at p̂_c by the slope (rad)", at.angle);
         }
     }
+    let by_angle = match subject.dimension() {
+        2 => {
+            " G*, θ*, slope: where the mean passes its value for S ∼ f^(−1.5). f†: where it falls below 0.1, so that S(f) is a power law from f = 1 on."
+        }
+        _ => "",
+    };
     let text = format!(
-        "κ and Δp: where half of the samples have κ above κ₁/2, or Δp below zero. G*, θ*, slope: where the mean passes its value for S ∼ f^(−1.5). \
-         f†: where it falls below 0.1, so that S(f) is a power law from f = 1 on. A cell needs at least {LEAST_SAMPLES} samples."
+        "κ and Δp: where half of the samples have κ above κ₁/2, or Δp below zero.{by_angle} A cell needs at least {LEAST_SAMPLES} samples."
     );
     table("Transition pressure p̂_c", &text, &["Series", "By", "p̂_c or value (interval)"], &rows)
 }
@@ -261,7 +267,8 @@ fn divergences(transition: &Transition) -> String {
     table("Divergence of θ†", &text, &heads, &rows)
 }
 
-fn exponents(transition: &Transition) -> String {
+fn exponents(subject: &Subject<'_>) -> String {
+    let transition = subject.transition;
     let outcome = |outcome: Option<ExponentOutcome>| match outcome {
         None => String::new(),
         Some(ExponentOutcome::Found(found)) => interval(&found),
@@ -279,7 +286,7 @@ fn exponents(transition: &Transition) -> String {
         .map(|one| {
             vec![
                 format!("{}, {}, {} curves", one.law.name(), one.relaxer.description(), one.curve_count),
-                words(one.observable),
+                words(one.observable, subject.angle()),
                 outcome(one.size_exponent),
                 outcome(one.inflation_exponent),
                 quality(one.quality),
@@ -349,7 +356,8 @@ fn phase_counts(phases: &PhaseCounts) -> String {
 }
 
 /// Numbers of samples of every cell, failures, and some numbers.
-fn cells(merged: &Merged) -> String {
+fn cells(subject: &Subject<'_>) -> String {
+    let (merged, angle) = (subject.merged, format!("{}* (rad)", subject.angle()));
     let row = |statistics: &CellStatistics| {
         let cell = &statistics.cell;
         let (name, value) = cell.target.name_and_value();
@@ -386,7 +394,7 @@ fn cells(merged: &Merged) -> String {
         "p",
         "Δp scaled",
         "G*",
-        "θ* (rad)",
+        &angle,
     ];
     table("Cells", "Means over the samples with a result, with standard errors.", &heads, &rows)
 }
