@@ -21,7 +21,7 @@ use crate::transition::lengths::JammingSeries;
 use crate::transition::pressure::{
     Method, MethodEstimate, SCALE_FREE_ANGLE, SCALE_FREE_ANTICORRELATION, SCALE_FREE_SLOPE, TransitionPressure,
 };
-use crate::transition::scaling::{ExponentOutcome, PRESSURE_CHANGE, PressureLaw, Scaling, beta};
+use crate::transition::scaling::{ExponentOutcome, PressureLaw, Scaling, beta};
 use crate::transition::series::Series;
 
 /// A result and the published value.
@@ -274,7 +274,6 @@ fn of_series(one: &Series) -> Vec<Comparison> {
 pub(crate) fn words(observable: &str, angle: &str) -> String {
     match observable.strip_prefix("correlation_angle_at_") {
         Some(threshold) => format!("{angle}*, G = {threshold}"),
-        None if observable == PRESSURE_CHANGE => "Δp/p^((α−2)/(α−1))".into(),
         None => "G*".into(),
     }
 }

@@ -38,9 +38,6 @@ const OBSERVABLES: [&str; 5] = [
     "correlation_angle_at_0.2",
 ];
 
-/// Collapsed for spheres too: Δp/p^((α−2)/(α−1)).
-pub(crate) const PRESSURE_CHANGE: &str = "scaled_pressure_change";
-
 /// The collapse of the curves of one observable, for one law and relaxer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Scaling {
@@ -129,9 +126,7 @@ impl Scaling {
             let is_own = |it: &&Series| (it.cell.law, it.cell.relaxer) == (law, relaxer) && it.points.len() > 1;
             let own: Vec<&Series> = series.iter().filter(is_own).collect();
             let of = |observable: &&'static str| Self::of(merged, (law, relaxer), &own, observable);
-            let of_space = own.iter().any(|one| one.cell.dimension == 3);
-            let further: &[&str] = if of_space { &[PRESSURE_CHANGE] } else { &[] };
-            OBSERVABLES.iter().chain(further).filter_map(of).collect::<Vec<_>>()
+            OBSERVABLES.iter().filter_map(of).collect::<Vec<_>>()
         };
         laws_and_relaxers(series).into_iter().flat_map(of_group).collect()
     }
