@@ -166,7 +166,7 @@ impl Files<'_> {
                 #[cfg(feature = "linear")]
                 DataFile::Protocol => {
                     if let Some(sensitivity) = crate::report::protocol::measured(result) {
-                        self.text(&path, &crate::report::protocol::csv(sensitivity))?;
+                        self.text(&path, &crate::report::protocol::csv(sensitivity, report.scene.dimension))?;
                     }
                 }
             }

@@ -184,7 +184,7 @@ fn section(report: &Report, sample: &SampleReport) -> Result<String, FigureError
     html.push_str(&pictures(figures(report, &sample.name, result)?));
     #[cfg(feature = "linear")]
     if let Some(sensitivity) = crate::report::protocol::measured(result) {
-        html.push_str(&crate::report::protocol::html(sensitivity));
+        html.push_str(&crate::report::protocol::html(sensitivity, report.scene.dimension));
     }
     html.push_str(&links(DataFile::of(report, result).into_iter().map(|file| file.name(&sample.name))));
     html.push_str("</section>\n");

@@ -81,13 +81,3 @@ pub(crate) fn in_dimension<A: Any, B: Any, R>(
         Err(value) => space(value.downcast().expect("three dimensions if not two")),
     }
 }
-
-/// The field as one of the plane, if it is.
-pub(super) fn in_plane<const D: usize>(field: &DisplacementField<D>) -> Option<&DisplacementField<2>> {
-    (field as &dyn Any).downcast_ref()
-}
-
-/// The field as one of spheres, if it is.
-pub(super) fn in_space<const D: usize>(field: &DisplacementField<D>) -> Option<&DisplacementField<3>> {
-    (field as &dyn Any).downcast_ref()
-}
