@@ -49,6 +49,14 @@ impl Detail {
         }
     }
 
+    /// The parts, if they have D dimensions.
+    pub(crate) fn of_dimension<const D: usize>(&self) -> Option<&DetailOf<D>> {
+        match self {
+            Detail::Plane(detail) => (&**detail as &dyn Any).downcast_ref(),
+            Detail::Space(detail) => (&**detail as &dyn Any).downcast_ref(),
+        }
+    }
+
     /// Number of dimensions.
     pub fn dimension(&self) -> usize {
         match self {
