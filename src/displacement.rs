@@ -9,6 +9,8 @@
 //! or after are left out of every observable. An unjammed packing has no backbone: all its disks are rattlers and all
 //! count.
 
+use std::any::Any;
+
 use serde::{Deserialize, Serialize};
 
 use crate::inflation::{Inflated, Rest, displacement};
@@ -122,6 +124,16 @@ impl<const D: usize> DisplacementField<D> {
             first_backbone.iter().zip(second_backbone).map(|(&a, &b)| unjammed || (a && b)).collect();
         let disks = moved(first, centre, &counted, |disk| displacement(first, second, disk));
         DisplacementField { disks, inner_radius, outer_radius, measured_on }
+    }
+
+    /// The field as one of the plane, if it is.
+    pub(crate) fn in_plane(&self) -> Option<&DisplacementField<2>> {
+        (self as &dyn Any).downcast_ref()
+    }
+
+    /// The field as one of spheres, if it is.
+    pub(crate) fn in_space(&self) -> Option<&DisplacementField<3>> {
+        (self as &dyn Any).downcast_ref()
     }
 
     /// The disks that observables include.

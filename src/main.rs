@@ -181,13 +181,7 @@ fn run_scene(arguments: &RunArguments) -> Result<ExitCode, Failure> {
 }
 
 fn run_with(arguments: &RunArguments, inputs: &mut input::Inputs) -> Result<ExitCode, Failure> {
-    let mut scene = match &arguments.scene {
-        Some(path) => scene_file::read_scene(path)?,
-        None => Scene::in_dimension(usize::from(arguments.dimension.unwrap_or(2))),
-    };
-    if let Some(dimension) = arguments.dimension.filter(|&it| usize::from(it) != scene.dimension) {
-        return Err(format!("--dimension {dimension}: the scene has dimension = {}", scene.dimension).into());
-    }
+    let mut scene = scene_of(arguments.scene.as_deref(), arguments.dimension)?;
     if let Some(path) = &arguments.packing {
         let path = inputs.file(path)?;
         scene.sample = vec![sample_of_file(&path, &scene)];
@@ -223,6 +217,20 @@ fn run_with(arguments: &RunArguments, inputs: &mut input::Inputs) -> Result<Exit
     }
     let scene_name = arguments.scene.as_ref().map_or("the built-in scene".into(), |path| path.display().to_string());
     Err(format!("{scene_name}: {failed} of {} samples failed, see above", report.samples.len()).into())
+}
+
+/// The scene of a file, or the built-in one of a dimension; the file must agree with a given dimension.
+fn scene_of(path: Option<&Path>, dimension: Option<u8>) -> Result<Scene, Failure> {
+    let scene = match path {
+        Some(path) => scene_file::read_scene(path)?,
+        None => Scene::in_dimension(usize::from(dimension.unwrap_or(2))),
+    };
+    match dimension.filter(|&it| usize::from(it) != scene.dimension) {
+        Some(dimension) => {
+            Err(format!("--dimension {dimension}: the scene has dimension = {}", scene.dimension).into())
+        }
+        None => Ok(scene),
+    }
 }
 
 /// The law of `--packing`: that of the file, which must be that of the scene, if there is one and the file gives a law.

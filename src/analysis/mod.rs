@@ -5,6 +5,8 @@
 //! Response
 //! ```
 //!
+//! The states are of disks (D = 2, the default) or of spheres (D = 3), inside a circle or a shell.
+//!
 //! Whether the states are at rest is checked: each has a [`Certificate`] with its residual, and a [`RestVerdict`]
 //! decides whether a phase and fits may be reported. The inflated disk is the one whose radius changed, unless it is
 //! given. A state is unjammed by the rule of the relaxers: its contact forces are those of rounding. If R is given or
@@ -32,7 +34,7 @@ use crate::verdict::{Place, RestVerdict, VerdictSettings};
 
 /// Two states and their observables.
 #[derive(Debug, Clone, Serialize)]
-pub struct Analysis {
+pub struct Analysis<const D: usize = 2> {
     /// Its name in reports and file names.
     pub name: String,
     /// The contact law.
@@ -66,7 +68,7 @@ pub struct Analysis {
     pub response: Response,
     /// The matched states.
     #[serde(skip)]
-    pub pair: Pair,
+    pub pair: Pair<D>,
 }
 
 /// Summary of one state.
@@ -84,7 +86,7 @@ pub struct StateAnalysis {
     pub certificate: Certificate,
 }
 
-impl Analysis {
+impl<const D: usize> Analysis<D> {
     /// Measures a pair of states. A phase and fits are included if the states are at rest by `verdict`, or if its
     /// settings require them in any case.
     ///
@@ -92,7 +94,7 @@ impl Analysis {
     /// Two disks with the same centre. The settings must have been [checked](Observables::check).
     pub fn of(
         name: &str,
-        pair: Pair,
+        pair: Pair<D>,
         law: &LawChoice,
         observables: &Observables,
         verdict: &VerdictSettings,
@@ -102,7 +104,7 @@ impl Analysis {
         let state = |packing| State::new(packing, law).map_err(|error| error.with_labels(labels));
         let (before, after) = (state(&pair.before)?, state(&pair.after)?);
         let deflated = pair.deflated.as_ref().map(state).transpose()?;
-        let known = |state: &State<'_, 2>| StateAnalysis::of(state, &pair, law);
+        let known = |state: &State<'_, D>| StateAnalysis::of(state, &pair, law);
         let [first, second] = [known(&before)?, known(&after)?];
         let third = deflated.as_ref().map(known).transpose()?;
         let pressure = PressureChange::between(first.pressure, second.pressure, law.exponent());
@@ -143,14 +145,14 @@ impl Analysis {
 }
 
 impl StateAnalysis {
-    fn of(state: &State<'_, 2>, pair: &Pair, law: &dyn PairLaw) -> Result<Self, PackingError> {
+    fn of<const D: usize>(state: &State<'_, D>, pair: &Pair<D>, law: &dyn PairLaw) -> Result<Self, PackingError> {
         let (packing, network) = (state.packing, &state.network);
         let pressure = match (pair.boundary, packing.domain().volume()) {
             _ if is_unjammed(state, law) => 0.0,
             (Boundary::Periodic, Some(volume)) => network.pressure(volume),
             _ => {
                 let rim = |disk: usize| packing.held()[disk] && disk != pair.centre;
-                network.cluster_pressure(ball_volume::<2>(pair.outer_radius), rim)
+                network.cluster_pressure(ball_volume::<D>(pair.outer_radius), rim)
             }
         };
         Ok(StateAnalysis {
@@ -165,7 +167,7 @@ impl StateAnalysis {
 
 /// Whether a state is unjammed: without a backbone, or with contact forces that count as zero in the sense of
 /// [`UNJAMMED_FORCE`]. Rounding may leave overlaps in an unjammed packing that resemble a backbone.
-fn is_unjammed(state: &State<'_, 2>, law: &dyn PairLaw) -> bool {
+fn is_unjammed<const D: usize>(state: &State<'_, D>, law: &dyn PairLaw) -> bool {
     let network = &state.network;
     let radius = state.packing.radii().iter().copied().fold(f64::INFINITY, f64::min);
     let total: f64 = network.contacts.iter().map(|contact| contact.force).sum();

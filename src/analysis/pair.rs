@@ -94,7 +94,7 @@ pub enum AnalysisError {
         inner_radius: f64,
     },
     /// The boundary of the packing is unknown.
-    #[error("the packing is in the open plane and no disk is held: give the outer radius beyond which disks are held")]
+    #[error("the packing has no box and no disk is held: give the outer radius beyond which disks are held")]
     NoBoundary,
     /// No disk could move.
     #[error("no disk lies within the outer radius {outer_radius}")]
@@ -114,13 +114,13 @@ fn grown_instead(label: Option<u64>) -> String {
 
 /// States of the same disks in the same order.
 #[derive(Debug, Clone)]
-pub struct Pair {
+pub struct Pair<const D: usize = 2> {
     /// State before the inflation.
-    pub before: Packing<2>,
+    pub before: Packing<D>,
     /// State after it.
-    pub after: Packing<2>,
+    pub after: Packing<D>,
     /// State after the deflation, if it is known.
-    pub deflated: Option<Packing<2>>,
+    pub deflated: Option<Packing<D>>,
     /// Index of the inflated disk in all of them.
     pub centre: usize,
     /// R \[length\].
@@ -129,7 +129,7 @@ pub struct Pair {
     pub boundary: Boundary,
 }
 
-impl Pair {
+impl<const D: usize> Pair<D> {
     /// Matches the disks by their labels, identifies the inflated one and sets the held disks.
     ///
     /// Repeated labels, as of images of a disk in a rim, are matched in the order of the disks.
@@ -137,9 +137,9 @@ impl Pair {
     /// # Errors
     /// [`AnalysisError`].
     pub fn new(
-        before: Packing<2>,
-        after: &Packing<2>,
-        deflated: Option<&Packing<2>>,
+        before: Packing<D>,
+        after: &Packing<D>,
+        deflated: Option<&Packing<D>>,
         settings: &PairSettings,
     ) -> Result<Self, AnalysisError> {
         let after = matched(&before, after, "after")?;
@@ -153,7 +153,7 @@ impl Pair {
         if held.iter().all(|&held| held) {
             return Err(AnalysisError::NoMobileDisk { outer_radius });
         }
-        let hold = |packing: Packing<2>| packing.with_held(held.clone());
+        let hold = |packing: Packing<D>| packing.with_held(held.clone());
         Ok(Pair {
             before: hold(before)?,
             after: hold(after)?,
@@ -166,7 +166,11 @@ impl Pair {
 }
 
 /// The disks of a state in the order of the first one.
-fn matched(first: &Packing<2>, second: &Packing<2>, state: &'static str) -> Result<Packing<2>, AnalysisError> {
+fn matched<const D: usize>(
+    first: &Packing<D>,
+    second: &Packing<D>,
+    state: &'static str,
+) -> Result<Packing<D>, AnalysisError> {
     let (before_count, after_count) = (first.len(), second.len());
     if before_count != after_count {
         return Err(AnalysisError::CountsDiffer { state, before_count, after_count });
@@ -185,7 +189,11 @@ fn matched(first: &Packing<2>, second: &Packing<2>, state: &'static str) -> Resu
 }
 
 /// The index in the second state of each disk of the first.
-fn order(first: &Packing<2>, second: &Packing<2>, state: &'static str) -> Result<Vec<usize>, AnalysisError> {
+fn order<const D: usize>(
+    first: &Packing<D>,
+    second: &Packing<D>,
+    state: &'static str,
+) -> Result<Vec<usize>, AnalysisError> {
     if first.labels() == second.labels() {
         return Ok((0..first.len()).collect());
     }
@@ -201,7 +209,7 @@ fn order(first: &Packing<2>, second: &Packing<2>, state: &'static str) -> Result
 }
 
 /// The one disk with a label.
-fn labelled(packing: &Packing<2>, label: u64) -> Result<usize, AnalysisError> {
+fn labelled<const D: usize>(packing: &Packing<D>, label: u64) -> Result<usize, AnalysisError> {
     let all: Vec<usize> = (0..packing.len()).filter(|&disk| packing.labels()[disk] == label).collect();
     match all[..] {
         [centre] => Ok(centre),
@@ -210,7 +218,7 @@ fn labelled(packing: &Packing<2>, label: u64) -> Result<usize, AnalysisError> {
 }
 
 /// The given disk, if its radius changed.
-fn changed(before: &Packing<2>, after: &Packing<2>, centre: usize) -> Result<usize, AnalysisError> {
+fn changed<const D: usize>(before: &Packing<D>, after: &Packing<D>, centre: usize) -> Result<usize, AnalysisError> {
     let radius = before.radii()[centre];
     if radius != after.radii()[centre] {
         return Ok(centre);
@@ -219,13 +227,13 @@ fn changed(before: &Packing<2>, after: &Packing<2>, centre: usize) -> Result<usi
     Err(AnalysisError::CentreUnchanged { label: before.labels()[centre], radius, grown })
 }
 
-fn all_grown(before: &Packing<2>, after: &Packing<2>) -> Vec<usize> {
+fn all_grown<const D: usize>(before: &Packing<D>, after: &Packing<D>) -> Vec<usize> {
     let radii = before.radii().iter().zip(after.radii()).enumerate();
     radii.filter(|(_, (a, b))| a != b).map(|(disk, _)| disk).collect()
 }
 
 /// The disk whose radius changed.
-fn grown(before: &Packing<2>, after: &Packing<2>) -> Result<usize, AnalysisError> {
+fn grown<const D: usize>(before: &Packing<D>, after: &Packing<D>) -> Result<usize, AnalysisError> {
     let changed = all_grown(before, after);
     match changed[..] {
         [] => Err(AnalysisError::NoCentre),
@@ -239,9 +247,13 @@ fn grown(before: &Packing<2>, after: &Packing<2>) -> Result<usize, AnalysisError
 }
 
 /// R and the boundary: given, or from the nearest held disk, or half of the box.
-fn outer(packing: &Packing<2>, centre: usize, given: Option<f64>) -> Result<(f64, Boundary), AnalysisError> {
+fn outer<const D: usize>(
+    packing: &Packing<D>,
+    centre: usize,
+    given: Option<f64>,
+) -> Result<(f64, Boundary), AnalysisError> {
     let lengths = packing.domain().lengths();
-    let shortest = lengths.map(|sides| sides[0].min(sides[1]));
+    let shortest = lengths.and_then(|sides| sides.into_iter().reduce(f64::min));
     // A map of the circle only needs to know that there is a rim.
     let rim = |radius: f64| {
         (radius, Boundary::HeldRim { outer_radius_over_side: shortest.map_or(0.5, |side| (radius / side).min(0.5)) })
@@ -263,7 +275,13 @@ fn outer(packing: &Packing<2>, centre: usize, given: Option<f64>) -> Result<(f64
 }
 
 /// The held disks: those of the packing, or all beyond a given R, and the centre.
-fn held(packing: &Packing<2>, centre: usize, outer_radius: f64, boundary: Boundary, by_radius: bool) -> Vec<bool> {
+fn held<const D: usize>(
+    packing: &Packing<D>,
+    centre: usize,
+    outer_radius: f64,
+    boundary: Boundary,
+    by_radius: bool,
+) -> Vec<bool> {
     if boundary == Boundary::Periodic {
         return vec![false; packing.len()];
     }

@@ -5,10 +5,10 @@ use std::process::ExitCode;
 
 use clap::Args;
 use jamscope::analysis::{Analysis, Pair, PairSettings};
-use jamscope::io::{Contents, Frame, read_contents};
+use jamscope::io::{Contents, Frame, properties_of_frame, read_contents};
 use jamscope::packing::Packing;
 use jamscope::report;
-use jamscope::scene::Observables;
+use jamscope::scene::{Observables, Scene};
 use jamscope::verdict::{Decision, VerdictSettings};
 
 use crate::contact_law::{self, LawName};
@@ -25,6 +25,9 @@ pub struct AnalyseArguments {
     /// Frames of one file that are the states before, after and, optionally, after the deflation: numbers from 0, or `last`.
     #[arg(long, value_name = "A,B[,C]", value_delimiter = ',', num_args = 1, value_parser = input::frame)]
     frames: Option<Vec<Frame>>,
+    /// Dimension of the packings, 2 or 3; by default that of the files, or 2 if they give none.
+    #[arg(long, value_name = "D", value_parser = clap::value_parser!(u8).range(2..=3))]
+    dimension: Option<u8>,
     /// Label of the inflated disk; by default the disk whose radius changed.
     #[arg(long, value_name = "LABEL")]
     centre: Option<u64>,
@@ -63,12 +66,14 @@ enum OuterRadius {
 }
 
 impl OuterRadius {
-    fn in_box(self, packing: &Packing<2>) -> Result<f64, Failure> {
-        match (self, packing.domain().lengths()) {
+    fn in_box<const D: usize>(self, packing: &Packing<D>) -> Result<f64, Failure> {
+        let shortest = packing.domain().lengths().and_then(|sides| sides.into_iter().reduce(f64::min));
+        match (self, shortest) {
             (OuterRadius::Length(length), _) => Ok(length),
-            (OuterRadius::OverSide(share), Some([x, y])) => Ok(share * x.min(y)),
+            (OuterRadius::OverSide(share), Some(side)) => Ok(share * side),
             (OuterRadius::OverSide(share), None) => {
-                Err(format!("--outer-radius {share}L: the packing is in the open plane; give a length").into())
+                let open = if D == 3 { "space" } else { "plane" };
+                Err(format!("--outer-radius {share}L: the packing is in the open {open}; give a length").into())
             }
         }
     }
@@ -103,10 +108,16 @@ impl StateFile {
         Ok(StateFile { path: inputs.file(path)?, shown: path.to_path_buf(), frame: Frame::Last })
     }
 
-    fn read(&self) -> Result<Contents<2>, Failure> {
+    fn read<const D: usize>(&self) -> Result<Contents<D>, Failure> {
         let contents = read_contents(&self.path, self.frame)?;
         warn(&self.shown, &contents.warnings);
         Ok(contents)
+    }
+
+    /// The dimension that the file gives. A file that cannot be read is reported by [`StateFile::read`].
+    fn dimension(&self) -> Option<usize> {
+        let properties = properties_of_frame(&self.path, self.frame).ok()?;
+        properties.iter().find(|(key, _)| key == "dimension").and_then(|(_, value)| value.parse().ok())
     }
 }
 
@@ -162,17 +173,38 @@ pub fn run(arguments: &AnalyseArguments) -> Result<ExitCode, Failure> {
 }
 
 fn run_with(arguments: &AnalyseArguments, inputs: &mut input::Inputs) -> Result<ExitCode, Failure> {
-    let (observables, mut verdict) = match &arguments.scene {
-        Some(path) => {
-            let scene = scene_file::read_scene(path)?;
-            (Some(scene.observables), scene.verdict)
+    let scene = arguments.scene.as_ref().map(|path| scene_file::read_scene(path)).transpose()?;
+    let all = states(arguments, inputs)?;
+    match dimension(arguments, scene.as_ref(), &all)? {
+        3 => run_in::<3>(arguments, scene, &all),
+        _ => run_in::<2>(arguments, scene, &all),
+    }
+}
+
+/// The dimension given, or that of the first file that gives one, or of the scene, or 2.
+fn dimension(arguments: &AnalyseArguments, scene: Option<&Scene>, all: &[Files]) -> Result<usize, Failure> {
+    let of_scene = scene.map(|scene| scene.dimension);
+    let given = arguments.dimension.map(usize::from).or_else(|| all.iter().find_map(|files| files.before.dimension()));
+    match (given, of_scene) {
+        (Some(dimension), Some(other)) if dimension != other => {
+            Err(format!("--scene: the scene has dimension = {other}, but the packings have {dimension}").into())
         }
+        _ => Ok(given.or(of_scene).unwrap_or(2)),
+    }
+}
+
+fn run_in<const D: usize>(
+    arguments: &AnalyseArguments,
+    scene: Option<Scene>,
+    all: &[Files],
+) -> Result<ExitCode, Failure> {
+    let (observables, mut verdict) = match scene {
+        Some(scene) => (Some(scene.observables), scene.verdict),
         None => (None, VerdictSettings::default()),
     };
     override_limit(&mut verdict, arguments.not_at_rest);
-    let all = states(arguments, inputs)?;
     if let Some(out) = &arguments.write {
-        let [files] = &all[..] else {
+        let [files] = all else {
             return Err(format!("--write FILE takes one pair of states; here are {}", all.len()).into());
         };
         for state in [Some(&files.before), Some(&files.after), files.deflated.as_ref()].into_iter().flatten() {
@@ -183,8 +215,8 @@ fn run_with(arguments: &AnalyseArguments, inputs: &mut input::Inputs) -> Result<
     output.try_samples("name of a pair", all.iter().map(|files| files.name.as_str()))?;
     let mut analyses = Vec::new();
     let mut failures = Vec::new();
-    for files in &all {
-        match analyse(files, arguments, observables.as_ref(), &verdict) {
+    for files in all {
+        match analyse::<D>(files, arguments, observables.as_ref(), &verdict) {
             Ok(analysis) => analyses.push(analysis),
             Err(error) => {
                 failures.push(format!("{} and {}: {error}", files.before.path.display(), files.after.path.display()))
@@ -213,13 +245,18 @@ fn run_with(arguments: &AnalyseArguments, inputs: &mut input::Inputs) -> Result<
     Ok(exit_code::of_states(&refused.map(|analysis| analysis.name.clone()).collect::<Vec<_>>()))
 }
 
-fn analyse(
+fn analyse<const D: usize>(
     files: &Files,
     arguments: &AnalyseArguments,
     observables: Option<&Observables>,
     verdict: &VerdictSettings,
-) -> Result<Analysis, Failure> {
-    let (before, after) = (files.before.read()?, files.after.read()?);
+) -> Result<Analysis<D>, Failure> {
+    if let (Some(first), Some(second)) = (files.before.dimension(), files.after.dimension())
+        && first != second
+    {
+        return Err(format!("the files give different dimensions, {first} and {second}").into());
+    }
+    let (before, after) = (files.before.read::<D>()?, files.after.read()?);
     let deflated = files.deflated.as_ref().map(StateFile::read).transpose()?;
     let law = |state: &StateFile| contact_law::law_of(&state.path, state.frame, arguments.law, arguments.stiffness);
     let (first, second) = (law(&files.before)?, law(&files.after)?);
@@ -236,7 +273,8 @@ fn analyse(
         None => outer_radius_of(&before, &files.before.path)?,
     };
     // The lengths of a scene are in the units of the file; those of the defaults are for small disks of diameter 1.
-    let observables = observables.cloned().unwrap_or_else(|| Observables::default().in_units(unit_of(&before.packing)));
+    let observables =
+        observables.cloned().unwrap_or_else(|| Observables::of_dimension(D).in_units(unit_of(&before.packing)));
     let settings = PairSettings { centre_label: arguments.centre, outer_radius };
     let deflated = deflated.as_ref().map(|contents| &contents.packing);
     let pair = Pair::new(before.packing, &after.packing, deflated, &settings)?;
@@ -244,12 +282,12 @@ fn analyse(
     Ok(Analysis::of(&files.name, pair, &law, &observables, verdict)?)
 }
 
-fn says_law(contents: &Contents<2>) -> bool {
+fn says_law<const D: usize>(contents: &Contents<D>) -> bool {
     contents.properties.iter().any(|(key, _)| key.eq_ignore_ascii_case("law"))
 }
 
 /// R, if a file of a run contains it.
-fn outer_radius_of(contents: &Contents<2>, path: &Path) -> Result<Option<f64>, Failure> {
+fn outer_radius_of<const D: usize>(contents: &Contents<D>, path: &Path) -> Result<Option<f64>, Failure> {
     let Some((_, text)) = contents.properties.iter().find(|(key, _)| key == "outer_radius") else { return Ok(None) };
     let wrong = || format!("{}: outer_radius is `{text}`, not a number", path.display());
     Ok(Some(text.parse().map_err(|_| wrong())?))

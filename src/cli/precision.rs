@@ -9,9 +9,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use jamscope::precision::table::terminal_table;
 use jamscope::precision::{PrecisionSettings, Progress, measure, write_into};
 use jamscope::report::{Kind, OutputFolder};
-use jamscope::scene::Scene;
 
-use crate::{Failure, print, sample_of_file, scene_file, threads};
+use crate::{Failure, print, sample_of_file, scene_of, threads};
 
 #[derive(Args)]
 pub struct PrecisionArguments {
@@ -23,6 +22,9 @@ pub struct PrecisionArguments {
     /// Use this packing (extended XYZ, LAMMPS data or dump, NumPy archive) instead of the samples of the scene.
     #[arg(long, value_name = "FILE")]
     packing: Option<PathBuf>,
+    /// Dimension of the packing, if there is no scene file; 2 by default.
+    #[arg(long, value_name = "D", value_parser = clap::value_parser!(u8).range(2..=3))]
+    dimension: Option<u8>,
     /// Folder for the tables, the plots and the page.
     #[arg(long, value_name = "DIR", default_value = "precision")]
     out: PathBuf,
@@ -33,10 +35,7 @@ pub struct PrecisionArguments {
 
 /// Measures, prints the table and writes the files.
 pub fn run(arguments: &PrecisionArguments) -> Result<ExitCode, Failure> {
-    let mut scene = match &arguments.scene {
-        Some(path) => scene_file::read_scene(path)?,
-        None => Scene::default(),
-    };
+    let mut scene = scene_of(arguments.scene.as_deref(), arguments.dimension)?;
     if let Some(path) = &arguments.packing {
         scene.sample = vec![sample_of_file(path, &scene)];
     }

@@ -272,7 +272,7 @@ pub enum ReadError {
 
 /// The dimension to try instead.
 fn other_dimension(dimension: usize) -> &'static str {
-    if dimension == 2 { " (`jamscope inspect --dimension 3` reads three)" } else { "" }
+    if dimension == 2 { " (`--dimension 3` reads three)" } else { "" }
 }
 
 /// The distance from a number to the next larger one in absolute value.

@@ -51,21 +51,21 @@ pub struct Disagreement {
 }
 
 /// The minima found so far, with the data to recognise a new one.
-pub(super) struct Minima<'a> {
-    grown: &'a Grown<2>,
+pub(super) struct Minima<'a, const D: usize> {
+    grown: &'a Grown<D>,
     law: &'a dyn PairLaw,
     observables: &'a Observables,
-    states: Vec<State>,
+    states: Vec<State<D>>,
     /// In the order of the states.
     pub known: Vec<Minimum>,
     pub disagreement: Disagreement,
     reference_count: usize,
 }
 
-impl<'a> Minima<'a> {
+impl<'a, const D: usize> Minima<'a, D> {
     /// Computes both references.
     pub fn new(
-        grown: &'a Grown<2>,
+        grown: &'a Grown<D>,
         law: &'a dyn PairLaw,
         observables: &'a Observables,
         damping: DampingChoice,
@@ -111,14 +111,14 @@ impl<'a> Minima<'a> {
     }
 
     /// The first reference.
-    pub fn first(&self) -> &State {
+    pub fn first(&self) -> &State<D> {
         &self.states[0]
     }
 
     /// The minimum of a state: where gradient flow from it ends. A new minimum is added.
     ///
     /// In an unjammed packing no disk has a fixed position: states are compared with the nearest reference.
-    pub fn of(&mut self, state: &State, found_by: &str) -> Result<usize, PackingError> {
+    pub fn of(&mut self, state: &State<D>, found_by: &str) -> Result<usize, PackingError> {
         let (nearest, distance) = self.nearest(state, self.states.len());
         if distance <= SAME {
             return Ok(nearest);
@@ -144,17 +144,17 @@ impl<'a> Minima<'a> {
     }
 
     /// The errors of a state relative to a minimum.
-    pub fn errors(&self, state: &State, minimum: usize) -> Errors {
+    pub fn errors(&self, state: &State<D>, minimum: usize) -> Errors {
         state.errors(&self.states[minimum])
     }
 
     /// The nearest of the first `count` states, and its distance.
-    fn nearest(&self, state: &State, count: usize) -> (usize, f64) {
+    fn nearest(&self, state: &State<D>, count: usize) -> (usize, f64) {
         let distances = self.states[..count].iter().map(|other| state.distance(other)).enumerate();
         distances.min_by(|a, b| a.1.total_cmp(&b.1)).expect("there is at least one reference")
     }
 
-    fn add(&mut self, end: End, found_by: &str, distance: f64) {
+    fn add(&mut self, end: End<D>, found_by: &str, distance: f64) {
         self.known.push(Minimum {
             label: label(self.known.len()),
             found_by: found_by.into(),
@@ -183,16 +183,16 @@ fn label(index: usize) -> String {
 }
 
 /// The end of a relaxation.
-pub(super) struct End {
-    pub state: State,
+pub(super) struct End<const D: usize> {
+    pub state: State<D>,
     pub stop: Stop,
     pub residual: f64,
 }
 
-impl End {
+impl<const D: usize> End<D> {
     pub fn new(
-        outcome: Outcome<Packing<2>>,
-        grown: &Grown<2>,
+        outcome: Outcome<Packing<D>>,
+        grown: &Grown<D>,
         law: &dyn PairLaw,
         observables: &Observables,
     ) -> Result<Self, PackingError> {

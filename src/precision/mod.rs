@@ -70,18 +70,21 @@ pub fn measure(
     scene.check()?;
     settings.check()?;
     scene.check_memory(Memory::of_machine(), thread_count()).map_err(SceneError::from)?;
-    let samples = of_scene(scene, &scene.law, settings, progress)?;
+    let samples = match scene.dimension {
+        3 => of_scene::<3>(scene, &scene.law, settings, progress)?,
+        _ => of_scene::<2>(scene, &scene.law, settings, progress)?,
+    };
     let (scene, settings) = (scene.clone(), settings.clone());
     Ok(PrecisionReport { jamscope_version: env!("CARGO_PKG_VERSION"), scene, settings, samples })
 }
 
-fn of_scene(
+fn of_scene<const D: usize>(
     scene: &Scene,
     law: &dyn PairLaw,
     settings: &PrecisionSettings,
     progress: &dyn Progress,
 ) -> Result<Vec<SamplePrecision>, PrecisionError> {
-    let of_one = |(sample, packing): (&Sample, Result<Packing<2>, RunError>)| {
+    let of_one = |(sample, packing): (&Sample, Result<Packing<D>, RunError>)| {
         let measured = packing.and_then(|packing| of_sample(scene, sample, &packing, law, settings, progress));
         measured.map_err(|source| PrecisionError::Sample { name: sample.name.clone(), source })
     };
@@ -89,7 +92,7 @@ fn of_scene(
 }
 
 /// The packings of all samples. Only this part is not timed, so it runs in parallel.
-fn packings(scene: &Scene, law: &dyn PairLaw) -> Vec<Result<Packing<2>, RunError>> {
+fn packings<const D: usize>(scene: &Scene, law: &dyn PairLaw) -> Vec<Result<Packing<D>, RunError>> {
     let one = |sample: &Sample| packing_of(scene, sample, law, &mut ()).map(|(packing, _)| packing);
     #[cfg(feature = "parallel")]
     {

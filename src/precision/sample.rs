@@ -15,10 +15,10 @@ use crate::run::RunError;
 use crate::scene::{Sample, Scene};
 
 /// Measures a sample; its disks have sites if its inflation does.
-pub(super) fn of_sample(
+pub(super) fn of_sample<const D: usize>(
     scene: &Scene,
     sample: &Sample,
-    packing: &Packing<2>,
+    packing: &Packing<D>,
     law: &dyn PairLaw,
     settings: &PrecisionSettings,
     progress: &dyn Progress,
@@ -76,13 +76,13 @@ fn can_be_skipped(last: &Run, rung: &Rung) -> bool {
         && rung.value < last.value
 }
 
-fn run_of(
+fn run_of<const D: usize>(
     rung: &Rung,
     what: &str,
-    grown: &Grown<2>,
+    grown: &Grown<D>,
     law: &dyn PairLaw,
     scene: &Scene,
-    minima: &mut Minima<'_>,
+    minima: &mut Minima<'_, D>,
 ) -> Result<Run, PackingError> {
     let outcome = grown.relax(grown.packing.clone(), law, &rung.relaxer, &mut ())?;
     let cost = outcome.cost;

@@ -83,8 +83,8 @@ pub struct Errors {
 
 /// A state of the inflated packing.
 #[derive(Debug, Clone)]
-pub struct State {
-    pub(super) packing: Packing<2>,
+pub struct State<const D: usize> {
+    pub(super) packing: Packing<D>,
     backbone: Vec<bool>,
     contacts: Vec<(u32, u32)>,
     unjammed: bool,
@@ -92,15 +92,15 @@ pub struct State {
     pub measured: Measured,
 }
 
-impl State {
+impl<const D: usize> State<D> {
     /// Measures a state, at rest or not; `criterion` is the limit that it met.
     ///
     /// # Errors
     /// Only conditions that make forces undefined.
     pub fn new(
-        packing: Packing<2>,
+        packing: Packing<D>,
         criterion: Option<Criterion>,
-        grown: &Grown<2>,
+        grown: &Grown<D>,
         law: &dyn PairLaw,
         observables: &Observables,
     ) -> Result<Self, PackingError> {
@@ -130,32 +130,32 @@ impl State {
     }
 
     /// The displacement field from before the inflation to this state.
-    pub(super) fn field(&self, grown: &Grown<2>) -> DisplacementField<2> {
+    pub(super) fn field(&self, grown: &Grown<D>) -> DisplacementField<D> {
         let before = (grown.before.packing.get(), grown.before.backbone.as_slice());
         let states = [before, (&self.packing, self.backbone.as_slice())];
         DisplacementField::of_states(states, self.unjammed, grown.centre, grown.inner_radius, grown.outer_radius)
     }
 
     #[cfg(feature = "fit")]
-    fn fitted(&self, grown: &Grown<2>, observables: &Observables) -> Option<Fitted> {
+    fn fitted(&self, grown: &Grown<D>, observables: &Observables) -> Option<Fitted> {
         let (profile, settings) = (observables.radial_profile?, observables.profile_fit?);
         fit(&self.field(grown), profile.ring_width, &settings)
     }
 
     #[cfg(not(feature = "fit"))]
-    fn fitted(&self, _grown: &Grown<2>, _observables: &Observables) -> Option<Fitted> {
+    fn fitted(&self, _grown: &Grown<D>, _observables: &Observables) -> Option<Fitted> {
         None
     }
 
     /// Largest distance between the two positions of a disk, over the backbone of `other` \[length\].
-    pub fn distance(&self, other: &State) -> f64 {
+    pub fn distance(&self, other: &State<D>) -> f64 {
         let counts = |disk: &usize| !self.packing.held()[*disk] && (other.unjammed || other.backbone[*disk]);
         let distance = |disk: usize| norm(displacement(&other.packing, &self.packing, disk));
         (0..self.packing.len()).filter(counts).map(distance).fold(0.0, larger)
     }
 
     /// The errors of this state relative to another.
-    pub fn errors(&self, other: &State) -> Errors {
+    pub fn errors(&self, other: &State<D>) -> Errors {
         let relative = |ours: f64, theirs: f64| (!other.unjammed).then(|| (ours - theirs).abs() / theirs.abs());
         let fits = self.measured.fitted.zip(other.measured.fitted);
         Errors {
@@ -173,9 +173,13 @@ impl State {
 
 /// Fits a field in rings of a given width; none if the fit is refused.
 #[cfg(feature = "fit")]
-pub(super) fn fit(field: &DisplacementField<2>, ring_width: f64, settings: &ProfileFitSettings) -> Option<Fitted> {
+pub(super) fn fit<const D: usize>(
+    field: &DisplacementField<D>,
+    ring_width: f64,
+    settings: &ProfileFitSettings,
+) -> Option<Fitted> {
     let annulus = Annulus::new(field.inner_radius, field.outer_radius).ok()?;
-    fit_radial_profile::<2>(&RadialProfile::of(field, ring_width), annulus, settings).ok().as_ref().map(Fitted::from)
+    fit_radial_profile::<D>(&RadialProfile::of(field, ring_width), annulus, settings).ok().as_ref().map(Fitted::from)
 }
 
 /// Number of entries in only one of two ascending lists.

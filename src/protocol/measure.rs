@@ -9,6 +9,7 @@ use crate::observe::ContactChanges;
 #[cfg(feature = "fit")]
 use crate::observe::RadialProfile;
 use crate::observe::angular::{AngularCorrelation, CorrelationSettings, RingSample, RingSettings};
+use crate::observe::shell::{SHELL_HALF_WIDTH, SHELL_RADIUS, ShellCorrelation, ShellCorrelationSettings, ShellSample};
 use crate::packing::PackingError;
 #[cfg(feature = "fit")]
 use crate::protocol::ending_fit::EndingFit;
@@ -19,17 +20,17 @@ use crate::protocol::spread::Spreads;
 use crate::reference::Annulus;
 
 #[cfg(feature = "fit")]
-impl Compared<2> {
+impl<const D: usize> Compared<D> {
     /// Fits the response of every ending at rest, relative to the state before the inflation, and adds the spreads.
     ///
     /// An ending whose profile cannot be fitted has no fit.
-    pub fn fit(&mut self, inflated: &Inflated<2>, ring_width: f64, settings: &ProfileFitSettings) {
+    pub fn fit(&mut self, inflated: &Inflated<D>, ring_width: f64, settings: &ProfileFitSettings) {
         let Ok(annulus) = Annulus::new(inflated.inner_radius, inflated.outer_radius) else { return };
         for (ending, state) in self.sensitivity.endings.iter_mut().zip(&self.states) {
             let Some(after) = state else { continue };
             let response = Inflated { after: after.clone(), deflated: None, ..inflated.clone() };
             let profile = RadialProfile::of(&DisplacementField::of_inflation(&response), ring_width);
-            ending.fit = fit_radial_profile::<2>(&profile, annulus, settings).ok().map(EndingFit::from);
+            ending.fit = fit_radial_profile::<D>(&profile, annulus, settings).ok().map(EndingFit::from);
         }
         self.sensitivity.spreads = Spreads::of(&self.sensitivity.endings);
     }
@@ -38,24 +39,23 @@ impl Compared<2> {
 /// The threshold of θ* in the study \[1\].
 const THRESHOLD: f64 = 0.1;
 
-impl Compared<2> {
+impl<const D: usize> Compared<D> {
     /// Measures the response of every ending at rest, relative to the state before the inflation, and adds the spreads.
     ///
     /// # Errors
     /// Only conditions that make forces undefined.
-    pub fn measure_responses(&mut self, inflated: &Inflated<2>, law: &dyn PairLaw) -> Result<(), PackingError> {
-        let settings = CorrelationSettings { thresholds: vec![THRESHOLD], ..CorrelationSettings::default() };
+    pub fn measure_responses(&mut self, inflated: &Inflated<D>, law: &dyn PairLaw) -> Result<(), PackingError> {
         for (ending, state) in self.sensitivity.endings.iter_mut().zip(&self.states) {
             let Some(after) = state else { continue };
             let response = Inflated { after: after.clone(), deflated: None, ..inflated.clone() };
             let field = DisplacementField::of_inflation(&response);
-            let ring = RingSample::of_field(&field, &RingSettings::default());
-            let correlation = ring.and_then(|ring| AngularCorrelation::of(&ring, &settings)).ok();
+            let on_ring = field.in_plane().and_then(on_ring);
+            let [anticorrelation, correlation_angle] =
+                on_ring.or_else(|| field.in_space().and_then(on_shell)).unwrap_or_default();
             let changes = ContactChanges::of_inflation(&response, law)?;
             ending.response = Some(EndingResponse {
-                // A ring without variance gives NaN.
-                anticorrelation: correlation.as_ref().map(|it| it.anticorrelation).filter(|value| value.is_finite()),
-                correlation_angle: correlation.as_ref().and_then(|it| it.crossing(THRESHOLD)),
+                anticorrelation,
+                correlation_angle,
                 made_count: changes.made.len(),
                 broken_count: changes.broken.len(),
             });
@@ -63,4 +63,22 @@ impl Compared<2> {
         self.sensitivity.spreads = Spreads::of(&self.sensitivity.endings);
         Ok(())
     }
+}
+
+/// G* and θ* of the ring r̂ = 0.5 ± 0.03, if it has enough disks.
+fn on_ring(field: &DisplacementField<2>) -> Option<[Option<f64>; 2]> {
+    let settings = CorrelationSettings { thresholds: vec![THRESHOLD], ..CorrelationSettings::default() };
+    let ring = RingSample::of_field(field, &RingSettings::default()).ok()?;
+    let correlation = AngularCorrelation::of(&ring, &settings).ok()?;
+    // A ring without variance gives NaN.
+    let anticorrelation = Some(correlation.anticorrelation).filter(|value| value.is_finite());
+    Some([anticorrelation, correlation.crossing(THRESHOLD)])
+}
+
+/// G* and γ* of the shell r̂ = 0.5 ± 0.03, if it has enough spheres.
+fn on_shell(field: &DisplacementField<3>) -> Option<[Option<f64>; 2]> {
+    let settings = ShellCorrelationSettings { thresholds: vec![THRESHOLD], ..ShellCorrelationSettings::default() };
+    let shell = ShellSample::of_field(field, SHELL_RADIUS, SHELL_HALF_WIDTH).ok()?;
+    let correlation = ShellCorrelation::of(&shell, &settings).ok()?;
+    Some([correlation.anticorrelation.map(|it| it.value), correlation.crossing(THRESHOLD)])
 }

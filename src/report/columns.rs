@@ -91,16 +91,16 @@ impl<const D: usize> ResponseColumns<D> {
 }
 
 /// The response of each disk of an analysis, written with the packing after the inflation.
-pub struct DiskResponse<'a> {
-    analysis: &'a Analysis,
-    columns: ResponseColumns<2>,
+pub struct DiskResponse<'a, const D: usize = 2> {
+    analysis: &'a Analysis<D>,
+    columns: ResponseColumns<D>,
     /// Why there is no linear response; none if there is one.
     pub not_linear: Option<String>,
 }
 
-impl<'a> DiskResponse<'a> {
+impl<'a, const D: usize> DiskResponse<'a, D> {
     /// The response of an analysis. With the feature `linear` it includes the linear response of the state before and the plastic part.
-    pub fn of(analysis: &'a Analysis) -> Self {
+    pub fn of(analysis: &'a Analysis<D>) -> Self {
         #[cfg(feature = "linear")]
         let (plastic, not_linear) = match plastic_part(analysis) {
             Ok(plastic) => (Some(plastic.field), None),
@@ -132,13 +132,13 @@ impl<'a> DiskResponse<'a> {
 
 /// The plastic part of an analysis.
 #[cfg(feature = "linear")]
-fn plastic_part(analysis: &Analysis) -> Result<PlasticPart<2>, LinearError> {
+fn plastic_part<const D: usize>(analysis: &Analysis<D>) -> Result<PlasticPart<D>, LinearError> {
     let pair = &analysis.pair;
     let linear = LinearResponse::of_inflation(&pair.before, pair.centre, &analysis.law, Prestress::Included)?;
     Ok(PlasticPart::of_field(field_of(analysis).clone(), analysis.increase, &linear))
 }
 
-/// An analysis is of the plane.
-fn field_of(analysis: &Analysis) -> &DisplacementField<2> {
-    &analysis.response.detail.plane().expect("an analysis is of the plane").field
+/// The field of an analysis, which has its dimension.
+fn field_of<const D: usize>(analysis: &Analysis<D>) -> &DisplacementField<D> {
+    &analysis.response.detail.of_dimension().expect("the response has the dimension of its states").field
 }

@@ -58,7 +58,7 @@ pub fn write_into(report: &Report, output: OutputFolder) -> Result<Vec<PathBuf>,
 ///
 /// # Errors
 /// [`ReportError`] with the file and the problem.
-pub fn write_analyses(analyses: &[Analysis], folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write_analyses<const D: usize>(analyses: &[Analysis<D>], folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
     write_analyses_into(analyses, OutputFolder::open(folder, Kind::Analysis)?)
 }
 
@@ -66,7 +66,10 @@ pub fn write_analyses(analyses: &[Analysis], folder: &Path) -> Result<Vec<PathBu
 ///
 /// # Errors
 /// [`ReportError`] with the file and the problem.
-pub fn write_analyses_into(analyses: &[Analysis], output: OutputFolder) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write_analyses_into<const D: usize>(
+    analyses: &[Analysis<D>],
+    output: OutputFolder,
+) -> Result<Vec<PathBuf>, ReportError> {
     let mut files = Files { folder: output.inside(), written: Vec::new() };
     let vectors = Processor::own().vectors();
     let document = Analyses { jamscope_version: env!("CARGO_PKG_VERSION"), vectors, analyses };
@@ -107,10 +110,10 @@ pub fn write_study(
 
 /// The content of `analysis.json`.
 #[derive(Serialize)]
-struct Analyses<'a> {
+struct Analyses<'a, const D: usize> {
     jamscope_version: &'static str,
     vectors: Vectors,
-    analyses: &'a [Analysis],
+    analyses: &'a [Analysis<D>],
 }
 
 /// A folder being filled.
@@ -166,7 +169,7 @@ impl Files<'_> {
                 #[cfg(feature = "linear")]
                 DataFile::Protocol => {
                     if let Some(sensitivity) = crate::report::protocol::measured(result) {
-                        self.text(&path, &crate::report::protocol::csv(sensitivity))?;
+                        self.text(&path, &crate::report::protocol::csv(sensitivity, report.scene.dimension))?;
                     }
                 }
             }

@@ -49,7 +49,7 @@ pub fn page(report: &Report) -> Result<String, FigureError> {
 ///
 /// # Errors
 /// A figure whose numbers are not finite.
-pub fn analysis_page(analyses: &[Analysis]) -> Result<String, FigureError> {
+pub fn analysis_page<const D: usize>(analyses: &[Analysis<D>]) -> Result<String, FigureError> {
     let responses: Vec<_> = analyses.iter().map(|analysis| &analysis.response).collect();
     let introduction = format!(
         "Two states of each packing, before and after one disk grew, as they were read. {}",
@@ -70,9 +70,9 @@ pub fn analysis_page(analyses: &[Analysis]) -> Result<String, FigureError> {
             facts.join(", ")
         );
         // A map in the open plane needs no sides of a box.
-        let sides = analysis.pair.before.domain().lengths().unwrap_or([2.0 * analysis.outer_radius; 2]);
+        let sides = analysis.pair.before.domain().lengths().unwrap_or([2.0 * analysis.outer_radius; D]);
         let (radii, boundary) = (analysis.pair.before.radii(), analysis.boundary());
-        let frame = MapFrame::new(boundary, analysis.outer_radius, sides, widest(radii));
+        let frame = MapFrame::new(boundary, analysis.outer_radius, [sides[0], sides[1]], widest(radii));
         html.push_str(&pictures(response_page::figures(&analysis.name, &analysis.response, radii, &frame, true)?));
         let files = crate::report::csv::response::files(&analysis.response);
         html.push_str(&links(files.map(|file| format!("{}.{}", analysis.name, file.ending))));
@@ -184,7 +184,7 @@ fn section(report: &Report, sample: &SampleReport) -> Result<String, FigureError
     html.push_str(&pictures(figures(report, &sample.name, result)?));
     #[cfg(feature = "linear")]
     if let Some(sensitivity) = crate::report::protocol::measured(result) {
-        html.push_str(&crate::report::protocol::html(sensitivity));
+        html.push_str(&crate::report::protocol::html(sensitivity, report.scene.dimension));
     }
     html.push_str(&links(DataFile::of(report, result).into_iter().map(|file| file.name(&sample.name))));
     html.push_str("</section>\n");

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use crate::protocol::{Ending, ProtocolSensitivity, Spread};
 use crate::relax::{Criterion, Stop};
 use crate::report::number::{count, significant};
+use crate::report::rows::pressure_unit;
 use crate::report::rows::section::{Rows, Section};
 use crate::run::{Report, SampleReport, SampleResult};
 
@@ -14,7 +15,8 @@ pub(crate) fn measured(result: &SampleResult) -> Option<&ProtocolSensitivity> {
 }
 
 /// The rows of the table.
-pub(crate) fn section(samples: &[SampleReport]) -> Section {
+pub(crate) fn section(report: &Report, samples: &[SampleReport]) -> Section {
+    let dimension = report.scene.dimension;
     let mut rows = Rows::of_samples(samples);
     let deviation = |spread: Option<Spread>| {
         spread.filter(|spread| spread.count > 1).map(|spread| significant(spread.standard_deviation, 2))
@@ -41,9 +43,13 @@ pub(crate) fn section(samples: &[SampleReport]) -> Section {
     .add("contacts that differ, at most", |it| {
         measured(it)?.endings.iter().filter_map(|ending| ending.contact_difference_count).max().map(count)
     })
-    .add("scatter of minima: Δp [force/length]", |it| deviation(measured(it)?.spreads.pressure_change))
+    .add(format!("scatter of minima: Δp [{}]", pressure_unit(dimension)), |it| {
+        deviation(measured(it)?.spreads.pressure_change)
+    })
     .add("scatter of minima: G*", |it| deviation(measured(it)?.spreads.anticorrelation))
-    .add("scatter of minima: θ* [rad]", |it| deviation(measured(it)?.spreads.correlation_angle))
+    .add(format!("scatter of minima: {} [rad]", angle(dimension)), |it| {
+        deviation(measured(it)?.spreads.correlation_angle)
+    })
     .add("scatter of minima: contact changes", |it| deviation(measured(it)?.spreads.contact_change_count));
     #[cfg(feature = "fit")]
     rows.add("scatter of minima: elastic d_0^eff", |it| deviation(measured(it)?.spreads.elastic_amplitude))
@@ -66,7 +72,7 @@ pub(crate) fn summary(report: &Report) -> Option<String> {
     let bars = [
         ("Δp", all.pressure_change),
         ("G*", all.anticorrelation),
-        ("θ*", all.correlation_angle),
+        (angle(report.scene.dimension), all.correlation_angle),
         ("contact changes", all.contact_change_count),
         #[cfg(feature = "fit")]
         ("elastic d_0^eff", all.elastic_amplitude),
@@ -102,7 +108,12 @@ fn stop(stop: Stop) -> &'static str {
     }
 }
 
-/// Names and units of the columns of the endings.
+/// The angle at which G falls to its threshold, on a ring or a shell.
+fn angle(dimension: usize) -> &'static str {
+    if dimension == 3 { "γ*" } else { "θ*" }
+}
+
+/// Names and units of the columns of the endings; the pressure is that of disks.
 const COLUMNS: [(&str, &str); 18] = [
     ("relaxer", "1"),
     ("stop", "1"),
@@ -125,8 +136,9 @@ const COLUMNS: [(&str, &str); 18] = [
 ];
 
 /// The endings: a row of names, a row of units, one row per ending; missing numbers are empty fields.
-pub(crate) fn csv(sensitivity: &ProtocolSensitivity) -> String {
-    let (names, units): (Vec<_>, Vec<_>) = COLUMNS.into_iter().unzip();
+pub(crate) fn csv(sensitivity: &ProtocolSensitivity, dimension: usize) -> String {
+    let of_dimension = |(name, unit)| (name, if unit == "force/length" { pressure_unit(dimension) } else { unit });
+    let (names, units): (Vec<_>, Vec<_>) = COLUMNS.into_iter().map(of_dimension).unzip();
     let mut text = format!("{}\n{}\n", names.join(","), units.join(","));
     for ending in &sensitivity.endings {
         let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
@@ -159,9 +171,10 @@ pub(crate) fn csv(sensitivity: &ProtocolSensitivity) -> String {
 
 /// The endings as a table of the page.
 #[cfg(feature = "plot")]
-pub(crate) fn html(sensitivity: &ProtocolSensitivity) -> String {
+pub(crate) fn html(sensitivity: &ProtocolSensitivity, dimension: usize) -> String {
     use crate::report::figures::escaped;
 
+    let (pressure, angle) = (format!("Δp [{}]", pressure_unit(dimension)), format!("{} [rad]", angle(dimension)));
     let mut heads = vec![
         "Relaxer",
         "ends by",
@@ -169,9 +182,9 @@ pub(crate) fn html(sensitivity: &ProtocolSensitivity) -> String {
         "distance [length]",
         "disks that differ",
         "contacts that differ",
-        "Δp [force/length]",
+        pressure.as_str(),
         "G*",
-        "θ* [rad]",
+        angle.as_str(),
         "contacts made",
         "broken",
     ];

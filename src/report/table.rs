@@ -45,7 +45,7 @@ pub fn terminal_table(report: &Report) -> String {
 }
 
 /// The numbers of analyses, in the form of a report.
-pub fn analysis_table(analyses: &[Analysis]) -> String {
+pub fn analysis_table<const D: usize>(analyses: &[Analysis<D>]) -> String {
     let law = analyses.first().map_or(String::new(), |first| format!(", {}", crate::report::rows::law(&first.law)));
     let mut lines = not_at_rest(analyses.iter().map(|analysis| (analysis.name.as_str(), &analysis.response.verdict)));
     lines.push(format!("jamscope {}{law}", env!("CARGO_PKG_VERSION")));

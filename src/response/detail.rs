@@ -49,6 +49,14 @@ impl Detail {
         }
     }
 
+    /// The parts, if they have D dimensions.
+    pub(crate) fn of_dimension<const D: usize>(&self) -> Option<&DetailOf<D>> {
+        match self {
+            Detail::Plane(detail) => (&**detail as &dyn Any).downcast_ref(),
+            Detail::Space(detail) => (&**detail as &dyn Any).downcast_ref(),
+        }
+    }
+
     /// Number of dimensions.
     pub fn dimension(&self) -> usize {
         match self {
@@ -80,14 +88,4 @@ pub(crate) fn in_dimension<A: Any, B: Any, R>(
         Ok(value) => plane(value),
         Err(value) => space(value.downcast().expect("three dimensions if not two")),
     }
-}
-
-/// The field as one of the plane, if it is.
-pub(super) fn in_plane<const D: usize>(field: &DisplacementField<D>) -> Option<&DisplacementField<2>> {
-    (field as &dyn Any).downcast_ref()
-}
-
-/// The field as one of spheres, if it is.
-pub(super) fn in_space<const D: usize>(field: &DisplacementField<D>) -> Option<&DisplacementField<3>> {
-    (field as &dyn Any).downcast_ref()
 }

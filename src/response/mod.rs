@@ -40,7 +40,6 @@ use crate::observe::state::State;
 use crate::observe::{AngularProfile, Multipoles, RadialProfile};
 #[cfg(feature = "fit")]
 use crate::reference::{Annulus, poles::pole};
-use crate::response::detail::{in_plane, in_space};
 use crate::response::phase::{by_contact_changes, by_pressure_change};
 use crate::scene::{AngularCorrelationSettings, Observables};
 use crate::verdict::RestVerdict;
@@ -145,7 +144,7 @@ impl Response {
         let increase = after.packing.radii()[centre] - before.packing.radii()[centre];
         let no_fit = no_fit(&verdict, increase);
         let radial_profile = observables.radial_profile.map(|settings| RadialProfile::of(&field, settings.ring_width));
-        let plane = in_plane(&field);
+        let plane = field.in_plane();
         let multipoles: Option<Measurement<Multipoles>> =
             observables.multipoles.zip(plane).map(|(settings, field)| Multipoles::of(field, &settings).into());
         let (contact_summary, contact_changes) =
@@ -188,7 +187,7 @@ impl Response {
             shell_correlation: observables
                 .shell_correlation
                 .as_ref()
-                .zip(in_space(&field))
+                .zip(field.in_space())
                 .map(|(settings, field)| ShellResponse::of(field, settings, observables, no_fit.as_deref()).into()),
             #[cfg(feature = "fit")]
             elastic_modes: observables.elastic_modes.zip(multipoles.as_ref().and_then(Measurement::measured)).map(

@@ -6,8 +6,6 @@ mod plastic_summary;
 mod progress;
 mod report_data;
 
-#[cfg(feature = "linear")]
-use std::any::Any;
 use std::path::Path;
 
 use crate::certificate::Certificate;
@@ -168,12 +166,10 @@ pub(crate) fn measure<const D: usize>(
         None => (None, None),
     };
     #[cfg(feature = "linear")]
-    let protocol = observables.protocol.filter(|settings| takes(scene, sample, settings)).and_then(|settings| {
+    let protocol = observables.protocol.filter(|settings| takes(scene, sample, settings)).map(|settings| {
         let trace = &mut watch("protocols", &sample.relaxer);
-        // A scene of spheres has no protocols.
-        let in_plane = (&inflated as &dyn Any).downcast_ref::<Inflated<2>>()?;
-        let compared = protocol_of(scene, sample, (in_plane, &response.verdict), law, &settings, trace);
-        Some(compared.map(Box::new).into())
+        let compared = protocol_of(scene, sample, (&inflated, &response.verdict), law, &settings, trace);
+        compared.map(Box::new).into()
     });
     let phase_frequency = phase_frequency(scene, sample, &packing, &response);
     Ok(SampleResult {
@@ -263,10 +259,10 @@ fn takes(scene: &Scene, sample: &Sample, settings: &ProtocolSettings) -> bool {
 
 /// Compares the relaxer of the sample with the others, from the same start.
 #[cfg(feature = "linear")]
-fn protocol_of(
+fn protocol_of<const D: usize>(
     scene: &Scene,
     sample: &Sample,
-    (inflated, verdict): (&Inflated<2>, &RestVerdict),
+    (inflated, verdict): (&Inflated<D>, &RestVerdict),
     law: &dyn PairLaw,
     settings: &ProtocolSettings,
     trace: &mut dyn Trace,

@@ -169,8 +169,6 @@ impl Observables {
             ("spectrum_fit", self.spectrum_fit.is_some()),
             #[cfg(feature = "fit")]
             ("elastic_modes", self.elastic_modes.is_some()),
-            #[cfg(feature = "linear")]
-            ("protocol", self.protocol.is_some()),
         ];
         all.into_iter().find(|(_, has)| *has).map(|(name, _)| name)
     }

@@ -25,6 +25,8 @@ mod report;
 mod sizes;
 mod spheres;
 #[cfg(feature = "cli")]
+mod spheres_analysed;
+#[cfg(feature = "cli")]
 mod strain_command;
 mod structure;
 mod study;

@@ -7,7 +7,7 @@ use jamscope::precision::ladder::{Method, Varied, rungs};
 use jamscope::precision::minima::SAME;
 use jamscope::precision::{PrecisionError, PrecisionReport, PrecisionSettings, Run, SamplePrecision, measure, write};
 use jamscope::relax::{RelaxerChoice, Stop};
-use jamscope::scene::{Sample, Scene, Source};
+use jamscope::scene::{Observables, Sample, Scene, Source};
 use serde_json::Value;
 
 fn scene() -> Scene {
@@ -111,6 +111,33 @@ fn another_minimum_is_no_error_of_precision() {
             assert!(run.errors.displacement <= SAME, "{run:?}");
         }
     }
+}
+
+#[test]
+fn spheres_are_measured_like_disks() {
+    let scene = Scene { dimension: 3, disk_count: 500, observables: Observables::of_dimension(3), ..scene() };
+    let settings = PrecisionSettings { force_limits: vec![1e-2, 1e-6, 1e-10], ..settings() };
+    let report = measure(&scene, &settings, &()).expect("a packing at p = 1000");
+    let sample = &report.samples[0];
+    // 237 of 500 spheres lie in a ball of 0.48 of the side.
+    assert!(
+        (sample.mobile_count as f64 / (4.0 / 3.0 * std::f64::consts::PI * 0.48f64.powi(3) * 500.0) - 1.0).abs() < 0.1
+    );
+    // Limits as for disks: see `both_references_are_one_minimum_far_from_jamming`.
+    assert!(sample.references.same_minimum && sample.references.errors.displacement <= 5e-12, "{sample:?}");
+    for method in [Method::Fire, Method::ConjugateGradients, Method::QuasiNewton, Method::Newton] {
+        let runs: Vec<&Run> =
+            sample.runs.iter().filter(|run| (run.method, run.varied) == (method, Varied::ForceLimit)).collect();
+        let (first, last) = (runs[0], runs[runs.len() - 1]);
+        assert!(last.residual <= 1e-10 && last.errors.contacts == 0, "{last:?}");
+        assert!(last.errors.displacement < 1e-4 * first.errors.displacement, "{first:?}, {last:?}");
+    }
+    let table = |name: &str| sample.choices.iter().find(|table| table.name == name);
+    assert!(table("angular_estimator").is_none(), "a ring belongs to the plane");
+    assert!(table("time_step").is_some() && table("skin").is_some());
+    // κR = 2 and 2·10⁻², κa ten times smaller: as a difference j_1 has the relative error 10⁻¹⁶ (κa)⁻³, at most 10⁻⁹.
+    let routes = table("bessel_route").expect("an annulus");
+    assert!(routes.rows[..2].iter().all(|row| row.values[0].is_some_and(|error| error < 1e-9)), "{routes:?}");
 }
 
 /// A report without its seconds.

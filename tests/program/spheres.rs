@@ -115,6 +115,31 @@ fn a_study_of_spheres_is_merged() {
     }
 }
 
+#[cfg(feature = "linear")]
+#[test]
+fn relaxers_of_spheres_share_a_minimum_far_from_jamming() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = SCENE.replace("disk_count = 2000", "disk_count = 1200");
+    let settings = "[observables.shell_correlation]\n[observables.protocol]\nfraction = 1.0\n";
+    std::fs::write(folder.path().join("scene.toml"), scene + settings).expect("written");
+    let printed = done(folder.path(), "run scene.toml --out run");
+    assert!(printed.contains("scatter of minima: Δp [force/length^2]"), "{printed}");
+    let report: Value = serde_json::from_str(&text(&folder.path().join("run/report.json"))).expect("JSON");
+    let sample = &report["samples"][0]["done"];
+    let protocol = &sample["protocol"]["measured"];
+    let endings = protocol["endings"].as_array().expect("endings");
+    assert_eq!((protocol["minimum_count"].as_u64(), endings.len()), (Some(1), 7), "{protocol}");
+    // G* of the shell is that of the run, whose relaxer stops at a residual of 10⁻⁸ of the mean force, the ending 10⁻¹⁰.
+    let own = sample["shell_correlation"]["measured"]["correlation"]["anticorrelation"]["value"].as_f64().expect("G*");
+    for ending in endings {
+        let found = ending["response"]["anticorrelation"].as_f64().expect("G*");
+        assert!((found - own).abs() < 1e-4, "{found} and {own}: {ending}");
+    }
+    let table = text(&folder.path().join("run/dense.protocol.csv"));
+    assert_eq!(table.lines().count(), 2 + 7);
+    assert!(table.lines().nth(1).expect("units").contains(",force/length^2,"), "{table}");
+}
+
 #[test]
 fn what_belongs_to_another_dimension_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");

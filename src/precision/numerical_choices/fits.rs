@@ -11,7 +11,11 @@ use crate::scene::Observables;
 /// Widths of a ring \[length\].
 const RING_WIDTHS: [f64; 8] = [0.25, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0];
 
-pub(super) fn tables(state: &State, grown: &Grown<2>, observables: &Observables) -> Vec<ChoiceTable> {
+pub(super) fn tables<const D: usize>(
+    state: &State<D>,
+    grown: &Grown<D>,
+    observables: &Observables,
+) -> Vec<ChoiceTable> {
     let width = observables.radial_profile.unwrap_or_default().ring_width;
     let settings = observables.profile_fit.unwrap_or_default();
     let field = state.field(grown);

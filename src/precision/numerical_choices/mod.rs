@@ -2,7 +2,8 @@
 //!
 //! Ring widths and the range and search of the fit are varied on the first reference. The time step is varied on one
 //! explicit trajectory from the inflated start; its reference is the same trajectory at a quarter of the shortest step.
-//! The methods for the screened profile are compared on the annulus of the sample.
+//! The methods for the screened profile are compared on the annulus of the sample. Estimators of a ring are those of
+//! disks.
 
 mod angular;
 #[cfg(feature = "fit")]
@@ -42,9 +43,9 @@ pub struct ChoiceRow {
 }
 
 /// All tables of a sample.
-pub(super) fn choice_tables(
-    state: &State,
-    grown: &Grown<2>,
+pub(super) fn choice_tables<const D: usize>(
+    state: &State<D>,
+    grown: &Grown<D>,
     law: &dyn PairLaw,
     damping: DampingChoice,
     observables: &Observables,
@@ -57,7 +58,8 @@ pub(super) fn choice_tables(
     tables.push(trajectory::time_steps(grown, law, &damping)?);
     tables.push(trajectory::skins(grown, law, &damping)?);
     let wavenumber = state.measured.fitted.map_or(0.0, |fitted| fitted.wavenumber);
-    tables.extend(angular::estimators(&state.field(grown)));
+    // A ring belongs to the plane.
+    tables.extend(state.field(grown).in_plane().and_then(angular::estimators));
     tables.extend(routes::routes(grown, wavenumber));
     Ok(tables)
 }

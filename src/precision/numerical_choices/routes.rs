@@ -14,9 +14,18 @@ const POINTS: usize = 400;
 /// Number of timed evaluations of a profile.
 const REPEATS: usize = 20;
 
+/// J_1 and Y_1, or the spherical j_1 and y_1 in three dimensions.
+fn bessel<const D: usize>(x: f64) -> [f64; 2] {
+    if D != 3 {
+        return [libm::j1(x), libm::y1(x)];
+    }
+    let (sine, cosine) = libm::sincos(x);
+    [(sine / x - cosine) / x, -(cosine / x + sine) / x]
+}
+
 /// The closed formula with J and Y of `libm` compared with [`Screened`], on the annulus of the sample, at κ of the fit
 /// and fractions of it. None if the annulus has no screened solution.
-pub(super) fn routes(grown: &Grown<2>, wavenumber: f64) -> Option<ChoiceTable> {
+pub(super) fn routes<const D: usize>(grown: &Grown<D>, wavenumber: f64) -> Option<ChoiceTable> {
     let annulus = Annulus::new(grown.inner_radius, grown.outer_radius).ok()?;
     let (inner, outer) = (grown.inner_radius, grown.outer_radius);
     let radii: Vec<f64> = (0..POINTS).map(|i| inner + (i as f64 + 0.5) / POINTS as f64 * (outer - inner)).collect();
@@ -25,10 +34,10 @@ pub(super) fn routes(grown: &Grown<2>, wavenumber: f64) -> Option<ChoiceTable> {
     let largest = if wavenumber > 0.0 { wavenumber } else { 2.0 / outer };
     for share in [1.0, 1e-2, 1e-4, 1e-6] {
         let wavenumber = share * largest;
-        let Ok(medium) = Screened::<2>::new(annulus, 1.0, wavenumber) else { continue };
+        let Ok(medium) = Screened::<D>::new(annulus, 1.0, wavenumber) else { continue };
         let bracket = |radius: f64| {
-            let (x, rim) = (wavenumber * radius, wavenumber * outer);
-            libm::y1(x) * libm::j1(rim) - libm::j1(x) * libm::y1(rim)
+            let ([j, y], [rim_j, rim_y]) = (bessel::<D>(wavenumber * radius), bessel::<D>(wavenumber * outer));
+            y * rim_j - j * rim_y
         };
         let at_disk = bracket(inner);
         let timed = |profile: &dyn Fn(f64) -> f64| {
@@ -49,7 +58,11 @@ pub(super) fn routes(grown: &Grown<2>, wavenumber: f64) -> Option<ChoiceTable> {
     }
     (!rows.is_empty()).then(|| ChoiceTable {
         name: "bessel_route",
-        title: "Screened profile: the closed formula with J and Y of libm against the route used",
+        title: if D == 3 {
+            "Screened profile: the closed formula with j and y of libm's sine and cosine against the route used"
+        } else {
+            "Screened profile: the closed formula with J and Y of libm against the route used"
+        },
         columns: vec![
             "κ (1/length)",
             "largest difference over largest value (1)",

@@ -17,13 +17,13 @@ const FEWEST_STEPS: usize = 200;
 /// Longest step over the stability limit at the start \[1\].
 const LONGEST_STEP: f64 = 0.5;
 
-pub(super) fn time_steps(
-    grown: &Grown<2>,
+pub(super) fn time_steps<const D: usize>(
+    grown: &Grown<D>,
     law: &dyn PairLaw,
     damping: &ContactDamping,
 ) -> Result<ChoiceTable, PackingError> {
     let longest = LONGEST_STEP * Motion::new(&grown.packing, law, damping)?.stable_step();
-    let place = |division: usize| -> Result<(Packing<2>, f64), PackingError> {
+    let place = |division: usize| -> Result<(Packing<D>, f64), PackingError> {
         let start = Instant::now();
         let mut motion = Motion::new(&grown.packing, law, damping)?;
         for _ in 0..division * FEWEST_STEPS {
@@ -60,13 +60,13 @@ const SKINS: [f64; 6] = [0.05, 0.1, 0.15, 0.35, 0.5, 1.0];
 const STEPS: usize = 2000;
 
 /// The skin changes no contact, so the largest difference from the skin in use must be 0 or rounding.
-pub(super) fn skins(
-    grown: &Grown<2>,
+pub(super) fn skins<const D: usize>(
+    grown: &Grown<D>,
     law: &dyn PairLaw,
     damping: &ContactDamping,
 ) -> Result<ChoiceTable, PackingError> {
     let time_step = LONGEST_STEP * Motion::new(&grown.packing, law, damping)?.stable_step();
-    let go = |skin: f64| -> Result<(Packing<2>, [f64; 3]), PackingError> {
+    let go = |skin: f64| -> Result<(Packing<D>, [f64; 3]), PackingError> {
         let start = Instant::now();
         let mut motion = Motion::of(Assembly::with_skin(&grown.packing, law, skin)?, damping);
         let pairs = motion.assembly.pairs().len() as f64 / motion.assembly.mobile_count() as f64;

@@ -66,7 +66,7 @@ pub(crate) fn sections(report: &Report, samples: &[SampleReport], times: Times) 
     all.extend(response::sections(responses));
     all.push(phase_frequency::section(samples));
     #[cfg(feature = "linear")]
-    all.extend([states::plastic(report, samples), crate::report::protocol::section(samples)]);
+    all.extend([states::plastic(report, samples), crate::report::protocol::section(report, samples)]);
     all.retain(|section| !section.rows.is_empty());
     all
 }
@@ -74,6 +74,11 @@ pub(crate) fn sections(report: &Report, samples: &[SampleReport], times: Times) 
 /// The entry of a sample in the scene.
 pub(crate) fn settings<'a>(report: &'a Report, name: &str) -> Option<&'a Sample> {
     report.scene.sample.iter().find(|sample| sample.name == name)
+}
+
+/// Unit of a pressure.
+pub(crate) fn pressure_unit(dimension: usize) -> &'static str {
+    if dimension == 3 { "force/length^2" } else { "force/length" }
 }
 
 /// Wall time of all relaxations of an inflation \[s\].

@@ -8,12 +8,12 @@ use crate::observe::pressure_change::pressure_exponent;
 use crate::relax::Criterion;
 use crate::report::number::{count, significant};
 use crate::report::rows::section::{Rows, Section, done};
-use crate::report::rows::{Times, inflation_seconds, settings};
+use crate::report::rows::{Times, inflation_seconds, pressure_unit, settings};
 use crate::run::{Report, RestSummary, SampleReport, SampleResult};
 
 pub(super) fn packing(report: &Report, samples: &[SampleReport]) -> Section {
     let mut rows = Rows::of_samples(samples);
-    let unit = pressure_unit(report);
+    let unit = pressure_unit(report.scene.dimension);
     let (inside, radius) = match report.scene.inflation.boundary {
         Boundary::HeldRim { .. } if report.scene.dimension == 3 => {
             ("spheres within the shell, N", "radius of the shell, R [length]")
@@ -64,7 +64,7 @@ pub(super) fn inflation(report: &Report, samples: &[SampleReport], times: Times)
         settings(report, &sample.name).map(|sample| sample.relaxer.name().into())
     };
     let exponent = pressure_exponent(report.scene.law.exponent());
-    let (coupling, unit) = (report.scene.inflation.on_site_coupling, pressure_unit(report));
+    let (coupling, unit) = (report.scene.inflation.on_site_coupling, pressure_unit(report.scene.dimension));
     rows.add("on-site coupling, Γ [force/length]", |_| coupling.map(|value| significant(value, 5)));
     rows.add("relaxer", relaxer)
         .add("at rest by", |it| Some(criterion(&it.inflation.after.rest).into()))
@@ -156,7 +156,7 @@ pub(super) fn plastic(report: &Report, samples: &[SampleReport]) -> Section {
         Measurement::Refused(_) => Some("none".into()),
     })
     .add("linear: contact opens at d_0 [length]", |it| measured(it)?.first_opening.map(|at| significant(at, 3)))
-    .add(format!("linear: Δp [{}]", pressure_unit(report)), |it| {
+    .add(format!("linear: Δp [{}]", pressure_unit(report.scene.dimension)), |it| {
         Some(significant(measured(it)?.linear_pressure_change, 4))
     })
     .add("plastic share, |d − d_0 u|/|d|", |it| measured(it).map(|plastic| significant(plastic.share, 3)))
@@ -170,11 +170,6 @@ fn scaled_label(exponent: f64, unit: &str) -> String {
     } else {
         format!("Δp/p^{0} [({unit})^{1}]", significant(exponent, 3), significant(1.0 - exponent, 3))
     }
-}
-
-/// Unit of a pressure.
-fn pressure_unit(report: &Report) -> &'static str {
-    if report.scene.dimension == 3 { "force/length^2" } else { "force/length" }
 }
 
 /// Number of factorisations, if the relaxer made any.
