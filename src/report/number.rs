@@ -51,6 +51,11 @@ pub(crate) fn count(integer: usize) -> String {
     digits.chars().enumerate().flat_map(|(i, digit)| gap(i).then_some(' ').into_iter().chain([digit])).collect()
 }
 
+/// Unit of a pressure.
+pub(crate) fn pressure_unit(dimension: usize) -> &'static str {
+    if dimension == 3 { "force/length^2" } else { "force/length" }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

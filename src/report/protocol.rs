@@ -4,8 +4,7 @@ use std::fmt::Write as _;
 
 use crate::protocol::{Ending, ProtocolSensitivity, Spread};
 use crate::relax::{Criterion, Stop};
-use crate::report::number::{count, significant};
-use crate::report::rows::pressure_unit;
+use crate::report::number::{count, pressure_unit, significant};
 use crate::report::rows::section::{Rows, Section};
 use crate::run::{Report, SampleReport, SampleResult};
 

@@ -1,9 +1,9 @@
 //! The rows of analyses.
 
 use crate::analysis::{Analysis, StateAnalysis};
-use crate::report::number::{count, significant};
+use crate::report::number::{count, pressure_unit, significant};
+use crate::report::rows::response;
 use crate::report::rows::section::{Rows, Section};
-use crate::report::rows::{pressure_unit, response};
 
 /// All rows; sections without rows are left out.
 pub(crate) fn sections<const D: usize>(analyses: &[Analysis<D>]) -> Vec<Section> {

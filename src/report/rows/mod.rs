@@ -76,11 +76,6 @@ pub(crate) fn settings<'a>(report: &'a Report, name: &str) -> Option<&'a Sample>
     report.scene.sample.iter().find(|sample| sample.name == name)
 }
 
-/// Unit of a pressure.
-pub(crate) fn pressure_unit(dimension: usize) -> &'static str {
-    if dimension == 3 { "force/length^2" } else { "force/length" }
-}
-
 /// Wall time of all relaxations of an inflation \[s\].
 pub(crate) fn inflation_seconds(result: &SampleResult) -> f64 {
     let states = [Some(&result.inflation.before), Some(&result.inflation.after), result.inflation.deflated.as_ref()];

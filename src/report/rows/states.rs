@@ -6,9 +6,9 @@ use crate::certificate::Stability;
 use crate::inflation::Boundary;
 use crate::observe::pressure_change::pressure_exponent;
 use crate::relax::Criterion;
-use crate::report::number::{count, significant};
+use crate::report::number::{count, pressure_unit, significant};
 use crate::report::rows::section::{Rows, Section, done};
-use crate::report::rows::{Times, inflation_seconds, pressure_unit, settings};
+use crate::report::rows::{Times, inflation_seconds, settings};
 use crate::run::{Report, RestSummary, SampleReport, SampleResult};
 
 pub(super) fn packing(report: &Report, samples: &[SampleReport]) -> Section {
