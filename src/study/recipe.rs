@@ -355,7 +355,7 @@ fn spheres(scale: Scale) -> Study {
     let parts = match scale {
         Scale::Small => vec![part(1000, &all[..4], 16), part(4000, &all[..4], 4)],
         Scale::Medium => {
-            vec![part(1000, &all, 24), part(4000, &all[..5], 8), part(16_000, &all[..4], 4), part(64_000, &all[..3], 2)]
+            vec![part(1000, &all, 16), part(4000, &all[..5], 8), part(16_000, &all[..4], 4), part(64_000, &all[..3], 2)]
         }
         Scale::Full => vec![
             part(4000, &all, 400),
