@@ -111,7 +111,9 @@ fn a_study_of_spheres_is_merged() {
         assert_eq!(transition["comparisons"], serde_json::json!([]));
         let methods = transition["series"][0]["estimates"].as_array().expect("methods");
         let names: Vec<_> = methods.iter().map(|one| one["method"].as_str().expect("a name")).collect();
-        assert_eq!(names, ["wavenumber", "pressure_change"], "G*, γ* and S(ℓ) have no known level");
+        // κ too, where two cells have a fit. G*, γ* and S(ℓ) have no known level.
+        assert!(names.contains(&"pressure_change"), "{names:?}");
+        assert!(names.iter().all(|name| ["wavenumber", "pressure_change"].contains(name)), "{names:?}");
     }
 }
 
