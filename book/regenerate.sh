@@ -27,6 +27,7 @@ lorentzian_routes    table  lorentzian_routes
 angular_estimators   table  angular_estimators
 rounding_floor       table  rounding_floor
 orderings            table  orderings
+sphere_factors       table  sphere_factors
 hand_over            table  hand_over
 protocol             table  protocol
 stability_map        table  stability_map

@@ -139,7 +139,7 @@ pub enum LinearError {
         /// Factorisations made.
         factorisation_count: usize,
     },
-    /// Not enough memory for the factors.
+    /// Not enough memory for the factors: they would take more than a third of that of the machine.
     #[error("the factors of a matrix of {dimension} rows do not fit in memory")]
     OutOfMemory {
         /// Its number of rows.

@@ -14,6 +14,8 @@
 //! faer 0.24 (sparse simplicial and supernodal factorisations). Backward error: Rigal, Gaches (1967), J. ACM 14, 543;
 //! refinement in fixed precision: Skeel (1980), Math. Comput. 35, 817.
 
+use std::sync::OnceLock;
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::LdltError;
 use faer::linalg::cholesky::llt::factor::LltError;
@@ -30,6 +32,7 @@ use crate::linear::error::LinearError;
 use crate::linear::hessian::Hessian;
 use crate::linear::ordering;
 use crate::linear::solution::{ACCURACY, Solution};
+use crate::memory::Memory;
 use crate::sparse::SymmetricMatrix;
 use crate::vector::larger;
 
@@ -40,6 +43,11 @@ const SINGULAR: f64 = 64.0 * f64::EPSILON;
 /// Products per entry of the factor, over 40, above which factors are computed by dense panels (supernodes): half of
 /// faer's default.
 const BY_PANELS_FROM: SupernodalThreshold = SupernodalThreshold(0.5);
+
+/// Largest share of the memory of the machine that a factor and its workspace may take \[1\]. Vibrational modes hold two
+/// factors, and some memory is left for all else. Without a limit, a system that promises more memory than it has ends
+/// the process.
+const MEMORY_SHARE: f64 = 1.0 / 3.0;
 
 /// Sparsity pattern of a matrix, its elimination order, and the buffers of its factors.
 pub struct Analysis {
@@ -64,7 +72,7 @@ impl Analysis {
     /// factors. It serves every matrix with the same pattern of entries, such as one with another diagonal.
     ///
     /// # Errors
-    /// Not enough memory.
+    /// Not enough memory: the factor would take more than a third of that of the machine.
     ///
     /// # Cost
     /// 50 % to 90 % of a factorisation, from 1 000 to 89 000 disks in two dimensions (`cargo bench --features measurements --bench linear`).
@@ -77,7 +85,7 @@ impl Analysis {
     /// # Errors
     /// Not enough memory.
     pub fn new(matrix: &SymmetricMatrix) -> Result<Self, LinearError> {
-        Self::with(matrix, SymmetricOrdering::Amd)
+        Self::with(matrix, SymmetricOrdering::Amd, largest_size())
     }
 
     /// Like [`Analysis::new`], with a given elimination order: the row to eliminate at each place. See [`ordering`].
@@ -96,10 +104,16 @@ impl Analysis {
         if order.len() != dimension {
             return Err(LinearError::NotAnOrder { dimension, place: order.len(), row: dimension });
         }
-        Self::with(matrix, SymmetricOrdering::Custom(PermRef::new_checked(order, &place, dimension)))
+        let ordering = SymmetricOrdering::Custom(PermRef::new_checked(order, &place, dimension));
+        Self::with(matrix, ordering, largest_size())
     }
 
-    fn with(matrix: &SymmetricMatrix, ordering: SymmetricOrdering<'_, usize>) -> Result<Self, LinearError> {
+    /// An analysis whose factor and workspace take at most `largest` bytes.
+    fn with(
+        matrix: &SymmetricMatrix,
+        ordering: SymmetricOrdering<'_, usize>,
+        largest: usize,
+    ) -> Result<Self, LinearError> {
         let dimension = matrix.dimension();
         let out_of_memory = |_: FaerError| LinearError::OutOfMemory { dimension };
         let (starts, rows) = (matrix.starts.clone(), matrix.rows.clone());
@@ -112,6 +126,9 @@ impl Analysis {
             .factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default())
             .or(symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default()))
             .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        if scratch.unaligned_bytes_required().saturating_add(8 * symbolic.len_val()) > largest {
+            return Err(LinearError::OutOfMemory { dimension });
+        }
         let memory = MemBuffer::try_new(scratch).map_err(|_| LinearError::OutOfMemory { dimension })?;
         let mut factor = Vec::new();
         factor.try_reserve_exact(symbolic.len_val()).map_err(|_| LinearError::OutOfMemory { dimension })?;
@@ -276,6 +293,12 @@ impl Analysis {
     }
 }
 
+/// The largest size of a factor with its workspace on this machine \[bytes\].
+fn largest_size() -> usize {
+    static LARGEST: OnceLock<usize> = OnceLock::new();
+    *LARGEST.get_or_init(|| (MEMORY_SHARE * Memory::of_machine().bytes as f64) as usize)
+}
+
 fn view(matrix: &SymmetricMatrix) -> SparseColMatRef<'_, usize, f64> {
     let dimension = matrix.dimension();
     let pattern = SymbolicSparseColMatRef::new_checked(dimension, dimension, &matrix.starts, None, &matrix.rows);
@@ -372,5 +395,28 @@ impl Factorisation<'_> {
         let largest = |column: &[f64]| column.iter().fold(0.0, |most, value| larger(value.abs(), most));
         let scale = self.norm * largest(solution) + largest(right_side);
         if scale == 0.0 { 0.0 } else { largest(residual) / scale }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lattice::Lattice;
+    use crate::law::Hertzian;
+    use crate::linear::hessian::{Members, Prestress};
+
+    #[test]
+    fn a_factor_beyond_the_memory_is_refused_before_it_is_allocated() {
+        let circle = Lattice::triangular(0.5, 0.05).and_then(|lattice| lattice.circle(8.0)).expect("a lattice");
+        let hessian = Hessian::new(&circle.packing, &Hertzian::default(), Members::Backbone, Prestress::Included)
+            .expect("separate disks");
+        let matrix = hessian.matrix();
+        let bytes = 8 * Analysis::of(&hessian).expect("a small factor").factor_count();
+        let within = |largest| Analysis::with(matrix, SymmetricOrdering::Amd, largest).map(drop);
+        assert_eq!(within(bytes / 2), Err(LinearError::OutOfMemory { dimension: matrix.dimension() }));
+        // The workspace of a factor is smaller than the factor; that of few disks is a few columns.
+        assert_eq!(within(4 * bytes), Ok(()));
+        let machine = Memory::of_machine().bytes as f64;
+        assert!((largest_size() as f64 / machine - MEMORY_SHARE).abs() < 1e-6);
     }
 }

@@ -6,7 +6,10 @@
 //!
 //! The incomplete factor may not exist although A is positive definite; α is then raised until it does. If the factor
 //! fits in memory, [`Analysis`](crate::linear::Analysis) is much faster in two dimensions. In three dimensions the
-//! factor is many times larger than the matrix (`cargo run --release --features measurements --example orderings`).
+//! time of a factor grows as N², that of the iterations as N^(4/3): [`is_faster`] has the number of spheres from which
+//! they take less (`cargo run --release --features measurements --example sphere_factors`). Newton's method uses them
+//! from there on. They do not count negative eigenvalues, so responses, moduli, modes, certificates and implicit steps
+//! need a factor.
 //!
 //! # Source
 //! Hestenes, Stiefel (1952), J. Res. Natl. Bur. Stand. 49, 409; Meijerink, van der Vorst (1977), Math. Comput. 31, 148
@@ -15,6 +18,17 @@
 use crate::linear::error::LinearError;
 use crate::sparse::SymmetricMatrix;
 use crate::vector::larger;
+
+/// Spheres from which conjugate gradients solve one system in less time than a factor and one solution: packings of
+/// 1000 to 64000 spheres, from about 1500 on at p = 1000 and from 4000 on at p = 10; more iterations are needed the closer
+/// to jamming (`benches/NOTES.md`, *Factors of spheres*).
+const FASTER_FROM: usize = 6_000;
+
+/// Whether conjugate gradients solve a single system with the matrix of a packing faster than a factor. Never in two
+/// dimensions; for several systems a factor is the better, the more of them it serves.
+pub fn is_faster<const D: usize>(disk_count: usize) -> bool {
+    D == 3 && disk_count >= FASTER_FROM
+}
 
 /// An incomplete Cholesky factor, with columns as in the matrix.
 #[derive(Debug, Clone)]
@@ -248,4 +262,15 @@ fn not_positive(value: f64) -> bool {
 
 fn product_of(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_spheres_are_iterated_and_disks_never() {
+        assert!(is_faster::<3>(FASTER_FROM) && !is_faster::<3>(FASTER_FROM - 1));
+        assert!(!is_faster::<2>(1_000_000));
+    }
 }

@@ -1,11 +1,12 @@
 //! Newton's method and the staged relaxer: closed forms, the way down, agreement with the other relaxers, the rounding floor and
-//! the work it takes, and named ends.
+//! the work it takes, spheres without a factor, and named ends.
 
 mod agreement;
 mod closed_forms;
 mod depth;
 mod descent;
 mod outcomes;
+mod spheres;
 
 use jamscope::law::PairLaw;
 use jamscope::linear::Analysis;

@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 use jamscope::observe::angular::{CrossingOutcome, Leakage};
 use jamscope::observe::shell::synthetic::{DirectionLayout, SyntheticSettings, gaussian_shells};
 use jamscope::observe::shell::{
-    ShellCorrelation, ShellCorrelationSettings, ShellError, ShellSpectrum, ShellSpectrumSettings,
+    MOST_PAIRED, ShellCorrelation, ShellCorrelationSettings, ShellError, ShellSpectrum, ShellSpectrumSettings,
 };
 use jamscope::vector::dot;
 
@@ -198,4 +198,116 @@ fn rotation_keeps_pairs_and_bad_settings_are_refused() {
         ShellError::ThresholdNotBelowOne { threshold: 1.0 }
     );
     assert!(matches!(refused(ShellCorrelationSettings { bin_count: 1 << 20, ..usual }), ShellError::TooLarge(_)));
+}
+
+/// Pairs of a shell as a plain list: cosine, product of the fluctuations, and the blocks of both spheres.
+struct Pair {
+    cosine: f64,
+    product: f64,
+    blocks: [usize; 2],
+}
+
+/// G in every bin, at π, and where it falls to the thresholds.
+struct Replica {
+    curve: Vec<f64>,
+    opposite: f64,
+    crossings: Vec<f64>,
+}
+
+/// The nearest of the twelve vertices of an icosahedron.
+fn block(n: [f64; 3]) -> usize {
+    let golden = 0.5 * (1.0 + 5f64.sqrt());
+    let mut vertices = Vec::new();
+    for (one, other) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
+        vertices.extend([[0.0, one, other], [other, 0.0, one], [one, other, 0.0]]);
+    }
+    let nearest = (0..12).max_by(|&a, &b| dot(n, vertices[a]).total_cmp(&dot(n, vertices[b])));
+    nearest.expect("twelve")
+}
+
+#[test]
+fn stated_errors_are_those_of_blocks_left_out_one_after_the_other() {
+    let (count, bins, cap) = (150, 12, PI / 6.0);
+    let sample = shell(&clustered_directions(count, 12), |n| n[0] + 2.0 * n[1] * n[2] + 0.4 * (9.0 * n[2]).sin());
+    let settings = ShellCorrelationSettings { bin_count: bins, thresholds: vec![0.1, 0.3], cap };
+    let found = ShellCorrelation::of(&sample, &settings).expect("sound settings");
+    let (n, delta) = (sample.directions(), sample.fluctuations());
+    let blocks: Vec<usize> = n.iter().map(|&n| block(n)).collect();
+    let mut pairs = Vec::new();
+    for i in 0..count {
+        for j in 0..i {
+            let (cosine, product) = (dot(n[i], n[j]), delta[i] * delta[j]);
+            pairs.push(Pair { cosine, product, blocks: [blocks[i], blocks[j]] });
+        }
+    }
+    // Everything without one block, or with all for the block 12.
+    let without = |left_out: usize| -> Replica {
+        let others: Vec<&Pair> = pairs.iter().filter(|pair| !pair.blocks.contains(&left_out)).collect();
+        let rest: Vec<f64> = (0..count).filter(|&i| blocks[i] != left_out).map(|i| delta[i] * delta[i]).collect();
+        let variance = rest.iter().sum::<f64>() / rest.len() as f64;
+        let mean = |chosen: &dyn Fn(&Pair) -> bool, value: &dyn Fn(&Pair) -> f64| -> f64 {
+            let chosen: Vec<f64> = others.iter().filter(|pair| chosen(pair)).map(|pair| value(pair)).collect();
+            chosen.iter().sum::<f64>() / chosen.len() as f64
+        };
+        let bin = |pair: &Pair| ((pair.cosine.acos() / PI * bins as f64) as usize).min(bins - 1);
+        let mut curve: Vec<f64> = vec![1.0];
+        curve.extend((0..bins).map(|k| mean(&|pair| bin(pair) == k, &|pair| pair.product) / variance));
+        // The straight line through the cap, by means and covariances.
+        let inside = |pair: &Pair| pair.cosine.acos() >= PI - cap;
+        let [u, p] = [mean(&inside, &|pair| 1.0 + pair.cosine), mean(&inside, &|pair| pair.product)];
+        let slope = mean(&inside, &|pair| (1.0 + pair.cosine - u) * (pair.product - p))
+            / mean(&inside, &|pair| (1.0 + pair.cosine - u).powi(2));
+        let crossings = settings.thresholds.iter().map(|threshold| {
+            let k = (1..=bins).find(|&k| curve[k] <= *threshold).expect("it falls below");
+            let share = (curve[k - 1] - threshold) / (curve[k - 1] - curve[k]);
+            found.angles[k - 1] + share * (found.angles[k] - found.angles[k - 1])
+        });
+        let crossings = crossings.collect();
+        Replica { curve, opposite: (p - slope * u) / variance, crossings }
+    };
+    let all = without(12);
+    let replicas: Vec<Replica> = (0..12).map(without).collect();
+    let scatter = |value: &dyn Fn(&Replica) -> f64| {
+        let mean = replicas.iter().map(value).sum::<f64>() / 12.0;
+        (11.0 / 12.0 * replicas.iter().map(|replica| (value(replica) - mean).powi(2)).sum::<f64>()).sqrt()
+    };
+    // Sums of up to 11175 products of order 1, whose differences keep nine digits and more.
+    let close = |a: f64, b: f64| (a - b).abs() < 1e-9;
+    for bin in 1..=bins {
+        assert!(close(found.values[bin], all.curve[bin]), "{bin}");
+        let error = scatter(&|replica| replica.curve[bin]);
+        assert!(close(found.standard_errors[bin], error), "{bin}: {} {error}", found.standard_errors[bin]);
+    }
+    let anticorrelation = found.anticorrelation.expect("pairs in the cap");
+    assert_eq!(anticorrelation.pair_count, pairs.iter().filter(|pair| pair.cosine.acos() >= PI - cap).count());
+    assert!(close(anticorrelation.value, -all.opposite), "{anticorrelation:?} {}", all.opposite);
+    let error = scatter(&|replica| replica.opposite);
+    assert!(close(anticorrelation.standard_error.expect("twelve blocks"), error), "{anticorrelation:?} {error}");
+    for (k, crossing) in found.crossings.iter().enumerate() {
+        assert!(close(crossing.outcome.angle().expect("it falls"), all.crossings[k]), "{crossing:?}");
+        let error = scatter(&|replica| replica.crossings[k]);
+        assert!(close(crossing.standard_error.expect("every replica falls"), error), "{crossing:?} {error}");
+    }
+}
+
+#[test]
+fn a_bin_is_at_the_mean_angle_of_uniform_directions() {
+    let found = correlation(&shell(&random_directions(40, 3), |n| n[0]), 9);
+    for bin in 0..9 {
+        // ∫ γ sin γ = sin γ − γ cos γ, ∫ sin γ = −cos γ.
+        let [low, high] = [bin, bin + 1].map(|edge| PI * f64::from(edge) / 9.0);
+        let integral = (high.sin() - high * high.cos()) - (low.sin() - low * low.cos());
+        let exact = integral / (low.cos() - high.cos());
+        // Differences of numbers up to π, over 0.06.
+        assert!((found.angles[bin as usize + 1] - exact).abs() < 1e-13, "{bin}");
+    }
+}
+
+#[test]
+fn more_spheres_than_can_be_paired_are_refused_at_once() {
+    let count = MOST_PAIRED + 1;
+    let sample = shell(&random_directions(count, 1), |n| n[0]);
+    let refused = ShellCorrelation::of(&sample, &ShellCorrelationSettings::default()).expect_err("some minutes");
+    let ShellError::TooLarge(refused) = refused else { panic!("{refused}") };
+    assert_eq!((refused.value, refused.limit), (count, MOST_PAIRED as u64));
 }

@@ -1,7 +1,7 @@
 use jamscope::observe::angular::Leakage;
 use jamscope::observe::shell::{
-    DegreeLimit, ShellAnalysis, ShellError, ShellSample, ShellSettings, ShellSpectrum, ShellSpectrumSettings,
-    ShellWindow,
+    DegreeLimit, MOST_DEGREES, ShellAnalysis, ShellError, ShellSample, ShellSettings, ShellSpectrum,
+    ShellSpectrumSettings, ShellWindow,
 };
 use jamscope::vector::{dot, larger};
 
@@ -214,4 +214,89 @@ fn the_shell_of_a_field_holds_the_spheres_of_its_radii_that_count() {
     let written = serde_json::to_string(&settings).expect("plain data");
     assert_eq!(serde_json::from_str::<ShellSettings>(&written).expect("the same"), settings);
     settings.check().expect("sound settings");
+}
+
+/// The inverse of a matrix, by elimination with pivots.
+fn inverse(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let n = rows.len();
+    for (k, row) in rows.iter_mut().enumerate() {
+        row.extend((0..n).map(|j| if j == k { 1.0 } else { 0.0 }));
+    }
+    for k in 0..n {
+        let pivot = (k..n).max_by(|&a, &b| rows[a][k].abs().total_cmp(&rows[b][k].abs())).expect("rows left");
+        rows.swap(k, pivot);
+        let top = rows[k].iter().map(|x| x / rows[k][k]).collect::<Vec<f64>>();
+        for (_, row) in rows.iter_mut().enumerate().filter(|&(j, _)| j != k) {
+            let factor = row[k];
+            row.iter_mut().zip(&top).for_each(|(x, y)| *x -= factor * y);
+        }
+        rows[k] = top;
+    }
+    rows.into_iter().map(|row| row[n..].to_vec()).collect()
+}
+
+#[test]
+fn stated_errors_are_those_of_normal_amplitudes_times_the_response() {
+    let (count, limit) = (200, 7);
+    let directions = clustered_directions(count, 15);
+    let sample = shell(&directions, |n| n[0] + 2.0 * n[1] * n[2] + (9.0 * n[2]).sin());
+    let kept = ShellSpectrum::of(&sample, &up_to(limit, Leakage::Kept)).expect("enough spheres");
+    let removed = ShellSpectrum::of(&sample, &up_to(limit, Leakage::Removed)).expect("enough spheres");
+    let window = ShellWindow::new(&sample, limit, limit).expect("few degrees");
+    // K P + ρ N = P measured; Σ (2g+1) (1 − B_g) P_g + ρ (1 − 1/n) = V.
+    let mut rows: Vec<Vec<f64>> =
+        (1..=limit).map(|l| (1..=limit).map(|g| window.coupling(l, g)).chain([window.white(l)]).collect()).collect();
+    let shares = (1..=limit).map(|g| (2 * g + 1) as f64 * window.variance_share(g));
+    rows.push(shares.chain([1.0 - 1.0 / count as f64]).collect());
+    let inverse = inverse(rows);
+    assert_eq!((kept.standard_errors[0], removed.standard_errors[0]), (0.0, 0.0));
+    let mut farthest = 0.0;
+    for l in 1..=limit {
+        // A mean of 2ℓ+1 squares of normal amplitudes.
+        let error = (2.0 / (2 * l + 1) as f64).sqrt() * kept.power[l];
+        assert!((kept.standard_errors[l] / error - 1.0).abs() < 1e-14, "{l}");
+        let response = inverse[l - 1][l - 1].abs();
+        farthest = larger(farthest, (response - 1.0).abs());
+        assert!((removed.standard_errors[l] / (error * response) - 1.0).abs() < 1e-11, "{l}");
+    }
+    // At clustered directions the response differs from 1, which this test needs.
+    assert!(farthest > 0.02, "{farthest}");
+}
+
+#[test]
+fn a_slightly_negative_rest_counts_as_none_in_the_correlation() {
+    let sample = shell(&random_directions(100, 2), |n| n[0]);
+    let mut spectrum = ShellSpectrum::of(&sample, &up_to(2, Leakage::Kept)).expect("enough spheres");
+    spectrum.power = vec![0.0, 0.1, 0.02];
+    // Σ (2ℓ+1) P = 0.4; a twentieth of it is 0.02.
+    for (unresolved, at_zero) in [(0.1, 0.8), (0.0, 1.0), (-0.019, 1.0), (-0.021, 0.4 / 0.379), (-0.2, 2.0)] {
+        spectrum.unresolved = unresolved;
+        let found = spectrum.correlation(0.0).expect("positive");
+        assert!((found - at_zero).abs() < 1e-14, "{unresolved}: {found}");
+    }
+    spectrum.unresolved = -0.41;
+    assert_eq!(spectrum.correlation(0.0), None);
+}
+
+#[test]
+fn more_degrees_than_the_recursion_takes_are_refused_at_once() {
+    let highest = MOST_DEGREES / 2;
+    let sample = shell(&random_directions((highest + 2) * (highest + 2), 1), |n| n[0]);
+    let refused = ShellSpectrum::of(&sample, &up_to(highest + 1, Leakage::Kept)).expect_err("an overflow");
+    let ShellError::TooLarge(refused) = refused else { panic!("{refused}") };
+    assert_eq!((refused.value, refused.limit), (highest + 1, highest as u64));
+}
+
+#[test]
+fn degrees_that_a_small_cap_hardly_separates_are_refused() {
+    // In a cap of angle α, P_1 and P_2 differ in shape by α⁴: the response grows as α⁻⁴.
+    let within = |angle: f64| {
+        let squeezed = |n: &[f64; 3]| [angle * n[0], angle * n[1], 1.0];
+        let directions: Vec<_> = random_directions(60, 9).iter().map(squeezed).collect();
+        let values: Vec<f64> = (0..60).map(rough).collect();
+        let sample = ShellSample::new(&directions, &values).expect("sound");
+        ShellSpectrum::of(&sample, &up_to(2, Leakage::Removed)).map(drop)
+    };
+    assert_eq!(within(0.1), Ok(()));
+    assert_eq!(within(2e-3), Err(ShellError::NotSeparable { disk_count: 60, degree_limit: 2 }));
 }

@@ -7,7 +7,7 @@ use jamscope::reference::angular_modes::AngularModeError;
 use jamscope::reference::angular_modes::spherical::{SphericalAmplitudes, SphericalMode};
 use jamscope::reference::elastic::Elastic;
 use jamscope::reference::{Annulus, RadialSolution};
-use jamscope::vector::{norm, scaled};
+use jamscope::vector::{difference, norm, scaled};
 use serde_json::Value;
 
 use crate::{Worst, annulus, fixture, number, rows};
@@ -238,6 +238,41 @@ fn condition_is_the_loss_of_digits_by_cancellation() {
         let change = (changed / cancelling.at(radius).value.radial - 1.0).abs() / 1e-7;
         assert!(change > 0.1 * condition && change < condition, "{change:.1e}, {condition:.1e} at {radius}");
     }
+}
+
+#[test]
+fn at_the_inner_sphere_the_condition_is_that_of_the_two_combinations() {
+    // K is the identity there: |T⁻¹| |T| |b| over |b|, T = (1, −ℓ; 1, ℓ+1), T⁻¹ = (ℓ+1, ℓ; −1, 1)/(2ℓ+1).
+    for (degree, [u, v]) in [(1, [1.0, 1.0]), (2, [1.0, -1.0]), (2, [0.0, 1.0]), (7, [0.3, 0.2])] {
+        let l = f64::from(degree);
+        let [s, d] = [f64::abs(u) + l * f64::abs(v), f64::abs(u) + (l + 1.0) * f64::abs(v)];
+        let terms = (((l + 1.0) * s + l * d) + (l * (l + 1.0)).sqrt() * (s + d)) / (2.0 * l + 1.0);
+        let exact = terms / (f64::abs(u) + (l * (l + 1.0)).sqrt() * f64::abs(v));
+        let found = mode(annulus(0.5, 42.0), 0.3, degree, spheroidal(u, v)).condition(0.5);
+        // Factors of the type, each within the accuracy of a mode.
+        assert!((found / exact - 1.0).abs() < 2.0 * CLAIMED, "{degree}: {found} {exact}");
+    }
+}
+
+#[test]
+fn torsion_turns_about_the_gradient_and_loses_no_digits() {
+    // W = 1, Y = z: r̂×∇Y = r̂×ẑ, the velocity of a turn about −z, for every direction.
+    for direction in [[1.0, 0.0, 0.0], [0.0, 0.6, -0.8], [2.0 / 3.0, -2.0 / 3.0, 1.0 / 3.0]] {
+        let [x, y, z] = direction;
+        let gradient: [f64; 3] = std::array::from_fn(|d| if d == 2 { 1.0 - z * z } else { -z * direction[d] });
+        let found = TORSION.along(direction, z, gradient);
+        let off = norm(difference(found, [y, -x, 0.0]));
+        assert!(off < 1e-15, "{found:?}");
+    }
+    // One term, W_a times a positive factor; at the rim nothing moves.
+    let medium = mode(annulus(0.5, 42.0), 0.3, 2, TORSION);
+    for radius in [0.5, 0.7, 20.0, 41.0] {
+        assert_eq!(medium.condition(radius), 1.0, "{radius}");
+    }
+    assert!(medium.condition(42.0).is_nan());
+    let inflated = mode(annulus(0.5, 42.0), 0.3, 0, spheroidal(0.1, 0.0));
+    assert_eq!(inflated.condition(7.0), 1.0);
+    assert!(inflated.condition(42.0).is_nan() && inflated.condition(0.4).is_nan());
 }
 
 #[test]
