@@ -286,17 +286,3 @@ fn more_degrees_than_the_recursion_takes_are_refused_at_once() {
     let ShellError::TooLarge(refused) = refused else { panic!("{refused}") };
     assert_eq!((refused.value, refused.limit), (highest + 1, highest as u64));
 }
-
-#[test]
-fn degrees_that_a_small_cap_hardly_separates_are_refused() {
-    // In a cap of angle α, P_1 and P_2 differ in shape by α⁴: the response grows as α⁻⁴.
-    let within = |angle: f64| {
-        let squeezed = |n: &[f64; 3]| [angle * n[0], angle * n[1], 1.0];
-        let directions: Vec<_> = random_directions(60, 9).iter().map(squeezed).collect();
-        let values: Vec<f64> = (0..60).map(rough).collect();
-        let sample = ShellSample::new(&directions, &values).expect("sound");
-        ShellSpectrum::of(&sample, &up_to(2, Leakage::Removed)).map(drop)
-    };
-    assert_eq!(within(0.1), Ok(()));
-    assert_eq!(within(2e-3), Err(ShellError::NotSeparable { disk_count: 60, degree_limit: 2 }));
-}
