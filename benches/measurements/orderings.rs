@@ -9,18 +9,19 @@
 use std::error::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use jamscope::io::read_packing;
 use jamscope::law::Hertzian;
-use jamscope::linear::Analysis;
 use jamscope::linear::iterative::{IncompleteFactor, IterationLimits, conjugate_gradients};
-use jamscope::linear::ordering::{minimum_degree, nested_dissection};
 use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::{Fire, ForceLimit};
 use jamscope::sparse::SymmetricMatrix;
+
+#[path = "scenes/elimination.rs"]
+mod elimination;
+use elimination::{Clock, Elimination, ORDERS};
 
 /// Repeats of every measurement.
 const REPEATS: usize = 3;
@@ -74,29 +75,14 @@ fn compare<const D: usize>(packing: &Packing<D>, folder: Option<&Path>) -> Resul
     }
     let right = vec![1.0; matrix.dimension()];
     let mut solution = right.clone();
-    for name in ["minimum degree on rows", "minimum degree", "nested dissection"] {
+    for name in ORDERS {
         let mut least = [f64::INFINITY; 4];
         let mut value_count = 0;
         for _ in 0..REPEATS {
-            let mut clock = Clock(Instant::now());
-            let order = match name {
-                "minimum degree" => Some(minimum_degree(&hessian)?),
-                "nested dissection" => Some(nested_dissection(&hessian)),
-                _ => None,
-            };
-            let ordered = clock.lap();
-            // On rows the order is part of the analysis.
-            let mut analysis = match order {
-                Some(order) => Analysis::in_order(matrix, &order)?,
-                None => Analysis::new(matrix)?,
-            };
-            let analysed = clock.lap();
-            value_count = analysis.factor_count();
-            let mut factorisation = analysis.cholesky(matrix)?;
-            let factorised = clock.lap();
-            let _ = factorisation.solve(&right, &mut solution)?;
-            let laps = [ordered, analysed, factorised, clock.lap()];
-            least.iter_mut().zip(laps).for_each(|(least, lap)| *least = least.min(lap));
+            let found = Elimination::of(&hessian, &right, name)?;
+            assert!(found.backward_error < 1e-13, "{name}: {:e}", found.backward_error);
+            value_count = found.value_count;
+            least.iter_mut().zip(found.laps).for_each(|(least, lap)| *least = least.min(lap));
         }
         let [ordered, analysed, factorised, solved] = least;
         println!(
@@ -104,7 +90,7 @@ fn compare<const D: usize>(packing: &Packing<D>, folder: Option<&Path>) -> Resul
             hessian.disks().len()
         );
     }
-    let mut clock = Clock(Instant::now());
+    let mut clock = Clock::start();
     let incomplete = IncompleteFactor::new(matrix)?;
     let prepared = clock.lap();
     solution.fill(0.0);
@@ -132,15 +118,4 @@ fn write(matrix: &SymmetricMatrix, path: &Path) -> Result<(), Box<dyn Error>> {
         writeln!(file, "{} {} {value:e}", row + 1, column + 1)?;
     }
     Ok(file.flush()?)
-}
-
-/// Milliseconds since the last lap.
-struct Clock(Instant);
-
-impl Clock {
-    fn lap(&mut self) -> f64 {
-        let seconds = self.0.elapsed().as_secs_f64();
-        self.0 = Instant::now();
-        1e3 * seconds
-    }
 }

@@ -19,14 +19,17 @@ use std::time::Instant;
 use jamscope::io::{read_packing, write_packing};
 use jamscope::law::Hertzian;
 use jamscope::linear::iterative::{IncompleteFactor, IterationLimits, conjugate_gradients};
-use jamscope::linear::ordering::{minimum_degree, nested_dissection};
-use jamscope::linear::{Analysis, Hessian, Members, Prestress};
+use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Domain, Mixture, Packing};
 use jamscope::preparation::{Preparation, Target, prepare_with};
 use jamscope::relax::{Fire, ForceLimit, Relaxer, Staged};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+
+#[path = "scenes/elimination.rs"]
+mod elimination;
+use elimination::{Clock, Elimination, ORDERS};
 
 /// Spheres from which everything is measured once instead of three times.
 const ONCE_FROM: usize = 10_000;
@@ -120,32 +123,16 @@ fn compare(packing: &Packing<3>) -> Result<(), Box<dyn Error>> {
             "| {count} | {pressure:.3} | {method} | {values} | {memory:.0} | {ordered:.1} | {analysed:.1} | {factorised:.1} | {solved:.1} | {error:.1e} |"
         );
     };
-    for name in ["minimum degree on rows", "minimum degree", "nested dissection"] {
+    for name in ORDERS {
         if count >= DISSECTION_FROM && name != "nested dissection" {
             continue;
         }
         let (mut least, mut values, mut memory, mut error) = ([f64::INFINITY; 4], 0, 0.0, 0.0);
         for _ in 0..repeats {
             let before = Peak::start();
-            let mut clock = Clock(Instant::now());
-            let order = match name {
-                "minimum degree" => Some(minimum_degree(&hessian)?),
-                "nested dissection" => Some(nested_dissection(&hessian)),
-                _ => None,
-            };
-            let ordered = clock.lap();
-            // On rows the order is part of the analysis.
-            let mut analysis = match order {
-                Some(order) => Analysis::in_order(matrix, &order)?,
-                None => Analysis::new(matrix)?,
-            };
-            let analysed = clock.lap();
-            values = analysis.factor_count();
-            let mut factorisation = analysis.cholesky(matrix)?;
-            let factorised = clock.lap();
-            error = factorisation.solve(&right, &mut solution)?.backward_error;
-            let laps = [ordered, analysed, factorised, clock.lap()];
-            least.iter_mut().zip(laps).for_each(|(least, lap)| *least = least.min(lap));
+            let found = Elimination::of(&hessian, &right, name)?;
+            (values, error) = (found.value_count, found.backward_error);
+            least.iter_mut().zip(found.laps).for_each(|(least, lap)| *least = least.min(lap));
             memory = before.mebibytes().max(memory);
         }
         row(name, values, memory, least, error);
@@ -155,7 +142,7 @@ fn compare(packing: &Packing<3>) -> Result<(), Box<dyn Error>> {
     for target in [IterationLimits::default().backward_error, 1e-13] {
         let (mut prepared, mut solved, mut error, mut iterations) = (f64::INFINITY, f64::INFINITY, 0.0, 0);
         for _ in 0..repeats {
-            let mut clock = Clock(Instant::now());
+            let mut clock = Clock::start();
             let incomplete = IncompleteFactor::new(matrix)?;
             prepared = prepared.min(clock.lap());
             solution.fill(0.0);
@@ -201,15 +188,4 @@ fn memory(name: &str) -> f64 {
     let table = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let number = |line: &str| line.split_ascii_whitespace().nth(1)?.parse::<f64>().ok();
     table.lines().find(|line| line.starts_with(name)).and_then(number).map_or(f64::NAN, |kibibytes| kibibytes / 1024.0)
-}
-
-/// Milliseconds since the last lap.
-struct Clock(Instant);
-
-impl Clock {
-    fn lap(&mut self) -> f64 {
-        let seconds = self.0.elapsed().as_secs_f64();
-        self.0 = Instant::now();
-        1e3 * seconds
-    }
 }

@@ -310,6 +310,7 @@ fn problems(what: &str, problems: &[Problem]) -> String {
 
 /// The cost of a plan.
 mod cost {
+    use jamscope::packing::particles;
     use jamscope::study::Task;
 
     use super::{Path, Plan, Shard};
@@ -325,7 +326,7 @@ mod cost {
                 "{} {} {}, {} {value}: {} packings, {} inflations each, {} done, {} each {}, {} left on one core\n",
                 first.law.name(),
                 first.disk_count,
-                if first.dimension() == 3 { "spheres" } else { "disks" },
+                particles(first.dimension()),
                 target.replace('_', " "),
                 cell.count,
                 first.scene_count(),

@@ -18,7 +18,7 @@ use crate::memory::{Limit, TooLarge};
 use crate::observe::ForceDistribution;
 use crate::observe::force_distribution::PERCENTILES;
 use crate::observe::state::State;
-use crate::packing::{Packing, PackingError};
+use crate::packing::{Packing, PackingError, particles};
 use crate::vector::larger;
 use crate::verdict::{RestVerdict, VerdictSettings};
 
@@ -281,7 +281,7 @@ impl std::fmt::Display for Inspection {
         for paragraph in self.verdict.paragraphs() {
             writeln!(f, "{paragraph}")?;
         }
-        let disks = if self.dimension == 2 { "disks" } else { "balls" };
+        let disks = particles(self.dimension);
         writeln!(f, "{disks:<28} {}", self.disk_count)?;
         let law = match self.law {
             LawChoice::Hertzian(law) => format!("Hertzian, stiffness {}", law.stiffness),

@@ -16,7 +16,12 @@ pub use mixture::{Component, Mixture};
 
 use crate::vector::{Vector, dot, extended_sum, two_sum};
 
-/// Disks (D = 2) or balls (D = 3) in a domain.
+/// What a packing of this dimension consists of: disks or spheres.
+pub fn particles(dimension: usize) -> &'static str {
+    if dimension == 3 { "spheres" } else { "disks" }
+}
+
+/// Disks (D = 2) or spheres (D = 3) in a domain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Packing<const D: usize> {
     domain: Domain<D>,

@@ -10,6 +10,7 @@ use crate::inflation::{Boundary, InflationError};
 use crate::law::choice::LawChoice;
 use crate::observe::isostatic::IsostaticOutcome;
 use crate::observe::multipoles::MultipoleFit;
+use crate::packing::particles;
 use crate::preparation::PreparationError;
 use crate::relax::{RelaxerChoice, Stop};
 use crate::response::{PhaseDecision, Response};
@@ -49,7 +50,7 @@ impl Cell {
 
     /// What its packings consist of: disks or spheres.
     pub fn particles(&self) -> &'static str {
-        if self.dimension == 3 { "spheres" } else { "disks" }
+        particles(self.dimension)
     }
 
     /// N, the number of disks in the circle by area (spheres in the shell by volume), or of the whole periodic box.

@@ -5,6 +5,9 @@
 //! y(x) = (h_∥(r)/h_∥(1.5)) x, x = r ΔZ, of the means over samples        ℓ_iso: the smallest r with y ≥ 1.3
 //! ```
 //!
+//! The threshold is of disks. For spheres, whose y is (h_∥(r)/h_∥(1.5)) x², none is known: ℓ_iso is that of single samples
+//! only, in their records.
+//!
 //! The interval of ℓ_iso is from resampling the samples of the cell, each with its h_∥ and ΔZ. The radii of rings are
 //! fixed: means over all samples.
 //!
@@ -52,7 +55,7 @@ pub struct Lengths {
     /// ℓ_iso ΔZ \[length\], with ΔZ of the resampled samples.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scaled_isostatic: Option<Sampled>,
-    /// r \[length\], x, y, h_r/h_r(1.5) x \[1\].
+    /// r \[length\], x, y, h_r/h_r(1.5) x^(D−1) \[1\].
     #[serde(skip)]
     pub curve: Vec<[f64; 4]>,
 }
@@ -95,6 +98,9 @@ impl Lengths {
 
 /// ℓ_iso and ℓ_iso ΔZ with their intervals.
 fn isostatic(samples: &CellSamples) -> [Option<Sampled>; 2] {
+    if samples.cell.dimension != 2 {
+        return [None, None];
+    }
     let (rows, radii) = (&samples.stretching, ring_radii(samples));
     let found = bootstrap_all(&[rows.len()], RESAMPLINGS, |groups| {
         let [length, excess] = isostatic_of(rows, &radii, &groups[0])?;
@@ -131,8 +137,9 @@ fn isostatic_of(rows: &[StretchingRow], radii: &[(usize, f64)], chosen: &[usize]
 /// p where ℓ_iso falls to the longest screening length, by linear interpolation in logarithms; the samples of all cells
 /// are resampled.
 pub(super) fn matching(points: &[SeriesPoint], samples: &[&CellSamples]) -> Option<Sampled> {
-    let radii = samples.first()?.numbers.get("outer_radius")?;
-    let longest = NumberStatistics::of(radii).mean / poles(samples.first()?.cell.dimension)[0];
+    let first = samples.first().filter(|samples| samples.cell.dimension == 2)?;
+    let radii = first.numbers.get("outer_radius")?;
+    let longest = NumberStatistics::of(radii).mean / poles(2)[0];
     let pressures: Vec<f64> = points.iter().map(|point| point.pressure).collect();
     let rings: Vec<Vec<(usize, f64)>> = samples.iter().map(|samples| ring_radii(samples)).collect();
     let matched_of = |groups: &[Vec<usize>]| {
@@ -174,7 +181,9 @@ fn curve(samples: &CellSamples, excess: f64) -> Vec<[f64; 4]> {
         .filter_map(|point| {
             let other = radial.iter().find(|other| other.x.floor() == point.x.floor())?;
             let x = point.x * excess;
-            Some([point.x, x, point.y / units[0] * x, other.y / units[1] * x])
+            // An inflated disk is held: its strain falls as 1/r^(D−1).
+            let factor = x.powi(samples.cell.dimension as i32 - 1);
+            Some([point.x, x, point.y / units[0] * factor, other.y / units[1] * factor])
         })
         .collect()
 }
@@ -356,6 +365,23 @@ mod tests {
         // Four times the samples: half the width, to a fifth.
         let share = (high - low) / (wide_high - wide_low);
         assert!((0.35..0.7).contains(&share), "{share}");
+    }
+
+    #[test]
+    fn spheres_have_the_square_of_the_scaled_distance_and_no_threshold() {
+        let (point, mut samples) = cell_of(1, 10, 1.0, 0.3);
+        let plane = Lengths::of(&point, &samples).curve;
+        samples.cell.dimension = 3;
+        let lengths = Lengths::of(&point, &samples);
+        for (row, other) in lengths.curve.iter().zip(&plane) {
+            assert_eq!(row[..2], other[..2]);
+            for place in [2, 3] {
+                // y = (h/h_0) x² in place of (h/h_0) x, three rounded products.
+                assert!((row[place] / (other[place] * row[1]) - 1.0).abs() < 1e-15);
+            }
+        }
+        assert!(lengths.isostatic.is_none() && lengths.scaled_isostatic.is_none());
+        assert!(matching(&[point], &[&samples]).is_none());
     }
 
     #[test]

@@ -32,7 +32,7 @@ pub struct Series {
     pub at_published: Option<AtPressure>,
     /// ℓ_s and ℓ_iso of every cell.
     pub lengths: Vec<Lengths>,
-    /// p where ℓ_iso equals 1/κ_1 (R/3.83, spheres R/4.49), the longest screening length, by linear interpolation in logarithms. Its
+    /// p where ℓ_iso equals R/3.83 = 1/κ_1, the longest screening length, by linear interpolation in logarithms. Its
     /// interval is from resampling all cells \[force / length\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub matching: Option<Sampled>,

@@ -5,12 +5,12 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-fn jamscope(folder: &Path, arguments: &str) -> Output {
+pub fn jamscope(folder: &Path, arguments: &str) -> Output {
     let program = Command::new(env!("CARGO_BIN_EXE_jamscope")).args(arguments.split(' ')).current_dir(folder).output();
     program.expect("the program starts")
 }
 
-fn done(folder: &Path, arguments: &str) -> String {
+pub fn done(folder: &Path, arguments: &str) -> String {
     let output = jamscope(folder, arguments);
     assert!(output.status.success(), "{arguments}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).expect("Unicode")
@@ -24,7 +24,7 @@ fn refused(folder: &Path, scene: &str, part: &str) {
     assert!(message.contains(part), "no `{part}` in: {message}");
 }
 
-fn text(path: &Path) -> String {
+pub fn text(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
@@ -99,10 +99,11 @@ fn a_study_of_spheres_is_merged() {
     assert_eq!(means("anticorrelation").len(), 2, "{summary}");
     // Mean curves of the shell, r² d_r, and nothing that was published for disks.
     let page = text(&folder.path().join("s/report.html"));
-    for word in ["2000 spheres", "r²·dᵣ", "G(γ), 2000", "S(ℓ), 2000", "γ* / π"] {
+    for word in ["2000 spheres", "r²·dᵣ", "G(γ), 2000", "S(ℓ), 2000", "γ* / π", "(r ΔZ)²"] {
         assert!(page.contains(word), "{word}");
     }
-    for word in ["2000 disks", "r·dᵣ", "θ*", "Published", "published", "f^−1.5"] {
+    for word in ["2000 disks", "of disks", "rings", ") r ΔZ /", "r·dᵣ", "θ*", "Published", "published", "f^−1.5"]
+    {
         assert!(!page.contains(word), "{word}");
     }
     #[cfg(feature = "fit")]

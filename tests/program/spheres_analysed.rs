@@ -3,23 +3,13 @@
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::path::Path;
-use std::process::{Command, Output};
 
 use jamscope::reference::elastic::Elastic;
 use jamscope::reference::screened::Screened;
 use jamscope::reference::{Annulus, RadialSolution};
 use serde_json::Value;
 
-fn jamscope(folder: &Path, arguments: &str) -> Output {
-    let program = Command::new(env!("CARGO_BIN_EXE_jamscope")).args(arguments.split(' ')).current_dir(folder).output();
-    program.expect("the program starts")
-}
-
-fn done(folder: &Path, arguments: &str) -> String {
-    let output = jamscope(folder, arguments);
-    assert!(output.status.success(), "{arguments}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).expect("Unicode")
-}
+use crate::spheres::{done, jamscope, text};
 
 fn refused(folder: &Path, arguments: &str, parts: &[&str]) {
     let output = jamscope(folder, arguments);
@@ -28,10 +18,6 @@ fn refused(folder: &Path, arguments: &str, parts: &[&str]) {
     for part in parts {
         assert!(message.contains(part), "{arguments}: no `{part}` in: {message}");
     }
-}
-
-fn text(path: &Path) -> String {
-    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
 fn analysis(folder: &Path) -> Value {

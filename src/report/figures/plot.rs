@@ -12,6 +12,12 @@ const LEGEND_LINE: f64 = 17.0;
 /// Number of legend lines that fit above the axes.
 const LEGEND_LINES: usize = 5;
 
+/// Width of the sign of a series before its label \[px\].
+const SIGN_WIDTH: f64 = 30.0;
+
+/// Mean width of a letter over the font size \[1\].
+const LETTER_WIDTH: f64 = 0.5;
+
 /// Margin beyond the outermost points: a share of a linear axis, or a power of ten on a logarithmic one.
 const MARGIN: f64 = 0.05;
 
@@ -160,11 +166,14 @@ impl Plot {
         Some(Figure { title: self.title, description: self.description, elements: svg })
     }
 
-    /// The legend, in as many columns as needed.
+    /// The legend, in as many columns as needed, and in smaller letters where the longest label would not fit.
     fn legend(&self, svg: &mut String) {
         let named: Vec<&Series> = self.series.iter().filter(|series| !series.label.is_empty()).collect();
         let columns = named.len().div_ceil(LEGEND_LINES).max(1);
         let lines = named.len().div_ceil(columns);
+        let longest = named.iter().map(|series| series.label.chars().count()).max().unwrap_or(0);
+        let room = (RIGHT - LEFT) / columns as f64 - SIGN_WIDTH;
+        let size = f64::from(FONT_SIZE).min((room / (LETTER_WIDTH * longest as f64)).floor());
         for (index, series) in named.iter().enumerate() {
             let (column, line) = (index / lines, index % lines);
             let x = LEFT + 2.0 + column as f64 * (RIGHT - LEFT) / columns as f64;
@@ -172,8 +181,8 @@ impl Plot {
             series.sign(svg, x, y);
             let _ = writeln!(
                 svg,
-                "<text x=\"{}\" y=\"{}\" font-size=\"{FONT_SIZE}\" fill=\"{INK}\">{}</text>",
-                x + 30.0,
+                "<text x=\"{}\" y=\"{}\" font-size=\"{size}\" fill=\"{INK}\">{}</text>",
+                x + SIGN_WIDTH,
                 y + 4.5,
                 series.label
             );

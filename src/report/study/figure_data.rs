@@ -1,5 +1,6 @@
 //! The data of figures, and words for cells and series.
 
+use crate::packing::particles;
 use crate::report::figures::plot::{PlotPoint, colour};
 use crate::report::number::significant;
 use crate::study::{Cell, CellSamples, Merged, NumberStatistics, Target};
@@ -19,7 +20,7 @@ impl<'a> Subject<'a> {
 
     /// What the packings consist of: disks or spheres.
     pub fn particles(&self) -> &'static str {
-        if self.dimension() == 3 { "spheres" } else { "disks" }
+        particles(self.dimension())
     }
 
     /// The symbol of an angle: θ in a ring, γ in a shell.

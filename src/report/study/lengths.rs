@@ -25,25 +25,24 @@ pub(super) fn matching(subject: &Subject<'_>) -> Vec<Figure> {
             series.points.iter().map(|point| (point.pressure, 75.0 * libm::pow(point.pressure, -1.0 / 3.0)));
         let radius = series.points.iter().find_map(|point| subject.number(point.cell, "outer_radius"))?.mean;
         let some = !isostatic.is_empty();
-        let mut curves = vec![
+        // ℓ_iso of a cell is of disks, and so is the figure.
+        let curves = vec![
             Curve { label: "ℓₛ = 1/κ".into(), points: screening.collect(), style: Style::Points, colour },
             Curve { label: "ℓ_iso".into(), points: isostatic, style: Style::Joined, colour: [0x22; 3] },
-        ];
-        if subject.dimension() == 2 {
-            curves.push(Curve {
+            Curve {
                 label: "75 p^(−1/3), published".into(),
                 points: bare(published),
                 style: Style::Dashed,
                 colour: [0x77; 3],
-            });
-        }
+            },
+        ];
         some.then(|| Plot {
             title: format!("Screening and isostatic length, {}", short(series, all)),
             description: "Screening length of the screened samples and isostatic length against the pressure".into(),
             x: PlotAxis::logarithmic("p (force / length)"),
             y: PlotAxis::logarithmic("length"),
             series: curves,
-            guides: vec![Guide::Horizontal(radius / poles(subject.dimension())[0], "1/κ₁".into())],
+            guides: vec![Guide::Horizontal(radius / poles(2)[0], "1/κ₁".into())],
         })?
         .draw()
     };
@@ -55,7 +54,8 @@ pub(super) fn fluctuations(subject: &Subject<'_>) -> Vec<Figure> {
     let all = &subject.transition.series;
     let mut figures = Vec::new();
     for series in all {
-        for (place, symbol, word) in [(2, "∥", "bonds"), (3, "ᵣ", "disks")] {
+        let is_plane = subject.dimension() == 2;
+        for (place, symbol, word) in [(2, "∥", "bonds"), (3, "ᵣ", subject.particles())] {
             let curves =
                 series.lengths.iter().enumerate().filter(|(_, it)| !it.curve.is_empty()).map(|(index, it)| Curve {
                     label: reduced(it.point.reduced_pressure),
@@ -66,12 +66,15 @@ pub(super) fn fluctuations(subject: &Subject<'_>) -> Vec<Figure> {
             let plot = Plot {
                 title: format!("Fluctuations of {word}, {}", short(series, all)),
                 description: format!(
-                    "Rescaled fluctuation of the displacement of {word} around rings against rescaled distance, means over samples"
+                    "Rescaled fluctuation of the displacement of {word} at one distance against rescaled distance, means over samples"
                 ),
                 x: PlotAxis::logarithmic("r ΔZ"),
-                y: PlotAxis::logarithmic(format!("h{symbol}(r) r ΔZ / h{symbol}(1.5)")),
+                y: PlotAxis::logarithmic(format!(
+                    "h{symbol}(r) {} / h{symbol}(1.5)",
+                    if is_plane { "r ΔZ" } else { "(r ΔZ)²" }
+                )),
                 series: curves.collect(),
-                guides: vec![Guide::Horizontal(ISOSTATIC_THRESHOLD, "1.3".into())],
+                guides: is_plane.then(|| Guide::Horizontal(ISOSTATIC_THRESHOLD, "1.3".into())).into_iter().collect(),
             };
             figures.extend(plot.draw());
         }

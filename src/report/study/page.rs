@@ -109,8 +109,8 @@ fn views(subject: &Subject<'_>) -> Vec<(&'static str, &'static str, Vec<Figure>)
             lengths::matching(subject),
         ),
         (
-            "Fluctuations around rings",
-            "Fluctuations of the stretching of bonds and of the displacement of disks, divided by their value next to the inflated disk.",
+            "Fluctuations",
+            "Fluctuations of the stretching of bonds and of displacements at one distance, divided by their value next to the inflated disk or sphere.",
             lengths::fluctuations(subject),
         ),
         ("Inflations", "Axes rescaled with N, d₀ and the published exponents.", scaled),

@@ -8,6 +8,7 @@ use crate::report::figures::plot::{Guide, Plot, PlotAxis, PlotPoint, Series as C
 use crate::report::study::figure_data::{Subject, series_colour, short, target, with_relaxer};
 use crate::study::{CellSamples, Single};
 use crate::transition::{Series, poles};
+use crate::vector::larger;
 
 /// Number of points of a fitted curve.
 const CURVE_POINTS: u32 = 120;
@@ -24,7 +25,8 @@ pub(super) fn singles(subject: &Subject<'_>) -> Vec<Figure> {
     let mut curves = Vec::new();
     for (index, samples) in spread(&cells).into_iter().enumerate() {
         let Some(single) = samples.singles.first() else { continue };
-        let unit = single.profile.iter().map(|&[r, d]| (weight(r) * d).abs()).fold(0.0, f64::max);
+        // Stored profiles are finite.
+        let unit = single.profile.iter().map(|&[r, d]| (weight(r) * d).abs()).fold(0.0, larger);
         let radius = single.numbers.get("outer_radius").copied().unwrap_or(f64::NAN);
         let colour = colour(index, cells.len().clamp(5, MOST_CELLS));
         let points = bare(single.profile.iter().map(|&[r, d]| (r / radius, weight(r) * d / unit)));
@@ -228,10 +230,10 @@ pub(super) fn contacts(subject: &Subject<'_>) -> Vec<Figure> {
     let along = |series: &Series, name: &str| subject.along(series, name, |point| point.reduced_pressure);
     let (mut changes, mut returns) = (Vec::new(), Vec::new());
     for (index, series) in all.iter().enumerate() {
-        for (name, word, style) in
-            [("contacts_made", "made", Style::Joined), ("contacts_broken", "broken", Style::Hollow)]
-        {
-            let label = format!("{word}, {}", short(series, all));
+        // Both have the colour of the series.
+        let named =
+            [("contacts_made", short(series, all), Style::Joined), ("contacts_broken", String::new(), Style::Hollow)];
+        for (name, label, style) in named {
             changes.push(Curve { label, points: along(series, name), style, colour: series_colour(index, all) });
         }
         let points = along(series, "contacts_returned_share");
@@ -245,13 +247,17 @@ pub(super) fn contacts(subject: &Subject<'_>) -> Vec<Figure> {
     let plot = |title: &str, label: &str, series, logarithmic| Plot {
         title: title.into(),
         description: format!("{title}: means over samples with bootstrap intervals against the reduced pressure"),
-        x: PlotAxis::logarithmic("p̂ (force / length)"),
+        x: PlotAxis::logarithmic(if subject.dimension() == 3 {
+            "p̂ (force / length²)"
+        } else {
+            "p̂ (force / length)"
+        }),
         y: if logarithmic { PlotAxis::logarithmic(label) } else { PlotAxis::linear(label).within(0.0, 1.05) },
         series,
         guides: Vec::new(),
     };
     let both = [
-        plot("Contacts changed by the inflation", "contacts per sample", changes, true),
+        plot("Contacts changed by the inflation", "contacts made (broken, hollow) per sample", changes, true),
         plot("Share of changed contacts that return on deflation", "share", returns, false),
     ];
     both.into_iter().filter_map(Plot::draw).collect()

@@ -286,3 +286,18 @@ fn more_degrees_than_the_recursion_takes_are_refused_at_once() {
     let ShellError::TooLarge(refused) = refused else { panic!("{refused}") };
     assert_eq!((refused.value, refused.limit), (highest + 1, highest as u64));
 }
+
+#[test]
+fn degrees_that_a_small_cap_hardly_separates_are_refused() {
+    // In a cap of angle α, 1 − P_1 = α²/2 and 1 − P_2 = 3 α²/2 differ in shape only by terms of α⁴. Both are squared in
+    // the window, so the response of a power to another grows as α⁻⁸, by a factor of 256 from one cap to the next.
+    let within = |angle: f64| {
+        let squeezed = |n: &[f64; 3]| [angle * n[0], angle * n[1], 1.0];
+        let directions: Vec<_> = random_directions(60, 9).iter().map(squeezed).collect();
+        let values: Vec<f64> = (0..60).map(rough).collect();
+        let sample = ShellSample::new(&directions, &values).expect("sound");
+        ShellSpectrum::of(&sample, &up_to(2, Leakage::Removed)).map(drop)
+    };
+    assert_eq!(within(0.2), Ok(()));
+    assert_eq!(within(0.1), Err(ShellError::NotSeparable { disk_count: 60, degree_limit: 2 }));
+}
