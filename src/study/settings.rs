@@ -281,11 +281,11 @@ impl Study {
                 return Err(StudyError::NotPositive { field: "targets.reduced_pressure", value });
             }
         }
-        twice("disk_counts", &self.disk_counts)?;
-        twice("targets", &self.targets)?;
-        twice("increases", &self.increases)?;
-        twice("laws", &self.laws)?;
-        twice("relaxers", &self.relaxers)?;
+        twice("disk_counts", &self.disk_counts, usize::to_string)?;
+        twice("targets", &self.targets, |target| format!("{target:?}"))?;
+        twice("increases", &self.increases, f64::to_string)?;
+        twice("laws", &self.laws, |law| law.name().to_string())?;
+        twice("relaxers", &self.relaxers, RelaxerChoice::description)?;
         // One scene for every combination except the seeds.
         for law in self.laws() {
             for disk_count in self.disk_counts() {
@@ -351,10 +351,10 @@ impl Study {
     }
 }
 
-fn twice<T: PartialEq + std::fmt::Debug>(list: &'static str, values: &[T]) -> Result<(), StudyError> {
+fn twice<T: PartialEq>(list: &'static str, values: &[T], words: impl Fn(&T) -> String) -> Result<(), StudyError> {
     let repeated = (1..values.len()).find(|&place| values[..place].contains(&values[place]));
     match repeated {
-        Some(place) => Err(StudyError::Twice { list, value: format!("{:?}", values[place]) }),
+        Some(place) => Err(StudyError::Twice { list, value: words(&values[place]) }),
         None => Ok(()),
     }
 }
