@@ -20,7 +20,7 @@ use crate::sparse::SymmetricMatrix;
 use crate::vector::larger;
 
 /// Spheres from which conjugate gradients solve one system in less time than a factor and one solution: packings of
-/// 1000 to 64000 spheres, from about 1500 on at p = 1000 and from 4000 on at p = 10; more iterations are needed the closer
+/// 1000 to 64000 spheres, from about 1000 on at p = 1000 and from 4000 on at p = 10; more iterations are needed the closer
 /// to jamming (`benches/NOTES.md`, *Factors of spheres*).
 const FASTER_FROM: usize = 6_000;
 
