@@ -10,10 +10,11 @@
 //! count.
 
 use std::any::Any;
+use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use crate::inflation::{Inflated, Rest, displacement};
+use crate::inflation::{Inflated, Rest, Strip, displacement};
 #[cfg(feature = "linear")]
 use crate::linear::LinearResponse;
 use crate::packing::Packing;
@@ -27,7 +28,7 @@ pub struct Moved<const D: usize> {
     pub disk: usize,
     /// Position before, relative to the centre of the inflated disk \[length\].
     pub position: Vector<D>,
-    /// Distance before to that centre \[length\].
+    /// Distance before to that centre, or to the line of a strip \[length\].
     pub distance: f64,
     /// Displacement \[length\].
     pub displacement: Vector<D>,
@@ -49,17 +50,45 @@ impl Moved<2> {
     }
 }
 
-/// The displacements of the mobile disks, without the inflated disk.
+/// The shape of the region of a displacement field.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Shape {
+    /// A circle, a sphere or a box: distances and radial parts are from the inflated disk.
+    #[default]
+    Round,
+    /// A strip along the first axis, of this length and periodic along it: distances and radial parts are from the line
+    /// through the inflated disk, across the strip \[length\].
+    Strip {
+        /// Period along the strip \[length\].
+        length: f64,
+    },
+}
+
+/// The displacements of the mobile disks, without the inflated disks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DisplacementField<const D: usize> {
     /// Mobile disks in the order of the packing.
     pub disks: Vec<Moved<D>>,
     /// Radius of the inflated disk before, a \[length\].
     pub inner_radius: f64,
-    /// R, the radius of the rim \[length\].
+    /// R, the radius of the rim; H, the distance of the walls, in a strip \[length\].
     pub outer_radius: f64,
+    /// The shape of the region.
+    pub shape: Shape,
     /// Which disks count.
     pub measured_on: MeasuredOn,
+}
+
+/// The inflated disks and the region around them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Region<'a> {
+    /// The disk, or that of the row through which the line runs.
+    pub centre: usize,
+    /// All inflated disks.
+    pub grown: &'a [usize],
+    pub inner_radius: f64,
+    pub outer_radius: f64,
+    pub shape: Shape,
 }
 
 /// Which disks the observables of a field include.
@@ -83,7 +112,7 @@ impl<const D: usize> DisplacementField<D> {
         inflated.deflated.as_ref().map(|deflated| Self::between(inflated, &inflated.before, deflated))
     }
 
-    /// The linear response to an inflation by `increase`. The disks that were solved for count.
+    /// The linear response to an inflation of one disk by `increase`. The disks that were solved for count.
     ///
     /// `packing` is the one of the response. `outer_radius` is the R of its circle or box.
     ///
@@ -97,17 +126,19 @@ impl<const D: usize> DisplacementField<D> {
         outer_radius: f64,
     ) -> Self {
         assert_eq!(packing.len(), response.displacements.len(), "a response belongs to the packing it was made from");
-        let centre = response.growing.expect("a field has a disk that grows in its middle");
+        let &[centre] = response.growing.as_slice() else { panic!("a field has one disk that grows in its middle") };
         let displacement = |disk: usize| scaled(increase, response.displacements[disk]);
-        let disks = moved(packing, centre, &response.solved, displacement);
-        let inner_radius = packing.radii()[centre];
-        DisplacementField { disks, inner_radius, outer_radius, measured_on: MeasuredOn::Backbone }
+        let (inner_radius, shape) = (packing.radii()[centre], Shape::Round);
+        let region = Region { centre, grown: &[centre], inner_radius, outer_radius, shape };
+        let disks = moved(packing, region, &response.solved, displacement);
+        DisplacementField { disks, inner_radius, outer_radius, shape, measured_on: MeasuredOn::Backbone }
     }
 
     fn between(inflated: &Inflated<D>, before: &Rest<D>, after: &Rest<D>) -> Self {
         let unjammed = [before, after].iter().any(|rest| rest.criterion == Criterion::Unjammed);
         let states = [(before.packing.get(), before.backbone.as_slice()), (after.packing.get(), &after.backbone)];
-        Self::of_states(states, unjammed, inflated.centre, inflated.inner_radius, inflated.outer_radius)
+        let Inflated { centre, ref grown, inner_radius, outer_radius, shape, .. } = *inflated;
+        Self::of_states(states, unjammed, Region { centre, grown, inner_radius, outer_radius, shape })
     }
 
     /// The field from two states with their backbones. The caller ensures that both are at rest, or states that they
@@ -115,15 +146,23 @@ impl<const D: usize> DisplacementField<D> {
     pub(crate) fn of_states(
         [(first, first_backbone), (second, second_backbone)]: [(&Packing<D>, &[bool]); 2],
         unjammed: bool,
-        centre: usize,
-        inner_radius: f64,
-        outer_radius: f64,
+        region: Region<'_>,
     ) -> Self {
         let measured_on = if unjammed { MeasuredOn::AllDisks } else { MeasuredOn::Backbone };
         let counted: Vec<bool> =
             first_backbone.iter().zip(second_backbone).map(|(&a, &b)| unjammed || (a && b)).collect();
-        let disks = moved(first, centre, &counted, |disk| displacement(first, second, disk));
-        DisplacementField { disks, inner_radius, outer_radius, measured_on }
+        let disks = moved(first, region, &counted, |disk| displacement(first, second, disk));
+        let Region { inner_radius, outer_radius, shape, .. } = region;
+        DisplacementField { disks, inner_radius, outer_radius, shape, measured_on }
+    }
+
+    /// Number of dimensions in which the field spreads: D in a circle, 1 in a strip. The exact solutions are those of
+    /// that number.
+    pub fn spreading_dimension(&self) -> usize {
+        match self.shape {
+            Shape::Round => D,
+            Shape::Strip { .. } => 1,
+        }
     }
 
     /// The field as one of the plane, if it is.
@@ -142,19 +181,36 @@ impl<const D: usize> DisplacementField<D> {
     }
 }
 
+impl DisplacementField<2> {
+    /// The place of a disk along a ring, as an angle in (−π, π]: θ of its position, or 2πx/L along a strip of length L
+    /// \[rad\].
+    pub fn angle(&self, disk: &Moved<2>) -> f64 {
+        match self.shape {
+            Shape::Round => disk.angle(),
+            Shape::Strip { length } => 2.0 * PI * disk.position[0] / length,
+        }
+    }
+}
+
 fn moved<const D: usize>(
     before: &Packing<D>,
-    centre: usize,
+    region: Region<'_>,
     counted: &[bool],
     displacement: impl Fn(usize) -> Vector<D>,
 ) -> Vec<Moved<D>> {
+    let mut apart = vec![false; before.len()];
+    region.grown.iter().for_each(|&disk| apart[disk] = true);
     (0..before.len())
-        .filter(|&disk| disk != centre && !before.held()[disk])
+        .filter(|&disk| !apart[disk] && !before.held()[disk])
         .map(|disk| {
-            let position = before.separation(disk, centre);
-            let distance = norm(position);
+            let position = before.separation(disk, region.centre);
             let displacement = displacement(disk);
-            let radial = dot(displacement, scaled(1.0 / distance, position));
+            let from = match region.shape {
+                Shape::Round => position,
+                Shape::Strip { .. } => std::array::from_fn(|d| if d == Strip::<D>::ACROSS { position[d] } else { 0.0 }),
+            };
+            let distance = norm(from);
+            let radial = dot(displacement, scaled(1.0 / distance, from));
             Moved { disk, position, distance, displacement, radial, counted: counted[disk] }
         })
         .collect()

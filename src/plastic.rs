@@ -171,7 +171,9 @@ pub fn linear_range<const D: usize>(
 ) -> Result<LinearRange, PlasticError> {
     let packing = packing.get();
     let disk_count = packing.len();
-    let centre = response.growing.ok_or(PlasticError::NothingGrows)?;
+    if response.growing.is_empty() {
+        return Err(PlasticError::NothingGrows);
+    }
     let links = |packing: &Packing<D>| -> Result<Vec<(u32, u32)>, PlasticError> {
         let network = ContactNetwork::new(packing, law)?;
         Ok(network.backbone_contacts().map(|contact| (contact.first, contact.second)).collect())
@@ -181,7 +183,10 @@ pub fn linear_range<const D: usize>(
     let mut cost = Cost::default();
     // Whether an inflation is linear, and whether it changes no contact.
     let mut probe = |increase: f64| -> Result<(bool, bool), PlasticError> {
-        let grown = packing.clone().with_radius(centre, packing.radii()[centre] + increase)?;
+        let mut grown = packing.clone();
+        for &disk in &response.growing {
+            grown = grown.with_radius(disk, packing.radii()[disk] + increase)?;
+        }
         let outcome = relaxer.relax(grown, law, &mut ())?;
         cost = cost.plus(outcome.cost);
         let (stop, step_count) = (outcome.stop, outcome.cost.step_count);

@@ -25,6 +25,7 @@ use crate::law::pair_law::PairLaw;
 use crate::network::ContactNetwork;
 use crate::packing::{Domain, Mixture, Packing, PackingError, ball_volume};
 use crate::relax::{Cost, Criterion, Fire, Outcome, Relaxed, Relaxer, Residual, Stop, Trace};
+use crate::vector::Vector;
 
 /// What the packing is prepared for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -49,13 +50,15 @@ pub struct Preparation {
     pub tolerance: f64,
     /// Seed of the random points.
     pub seed: u64,
+    /// Side of the box along the first axis over the others \[1\].
+    pub side_ratio: f64,
 }
 
 impl Default for Preparation {
     /// 1000 disks of the usual mixture at p = 100, seed 1: jammed, below the transition.
     fn default() -> Self {
         let (mixture, target) = (Mixture::default(), Target::Pressure(100.0));
-        Preparation { disk_count: 1000, mixture, target, tolerance: 0.01, seed: 1 }
+        Preparation { disk_count: 1000, mixture, target, tolerance: 0.01, seed: 1, side_ratio: 1.0 }
     }
 }
 
@@ -113,6 +116,12 @@ pub enum PreparationError {
         /// Estimate of the pressure at φ = 4.
         largest: f64,
     },
+    /// The sides of a box must be positive.
+    #[error("side_ratio is {side_ratio}, not a positive number")]
+    SideRatioNotPositive {
+        /// The ratio given.
+        side_ratio: f64,
+    },
     /// The tolerance on the pressure must lie between 0 and 1.
     #[error("pressure tolerance is {tolerance}, not a number between 0 and 1")]
     ToleranceOutOfRange {
@@ -167,7 +176,7 @@ fn jamming_fraction<const D: usize>() -> f64 {
 }
 
 /// x^(1/D), the same on every system (the power function of the standard library depends on the system).
-fn side_ratio<const D: usize>(x: f64) -> f64 {
+fn root_of_dimension<const D: usize>(x: f64) -> f64 {
     if D == 2 { x.sqrt() } else { libm::cbrt(x) }
 }
 
@@ -181,13 +190,31 @@ pub fn random_points<const D: usize>(
     packing_fraction: f64,
     seed: u64,
 ) -> Result<Packing<D>, PreparationError> {
+    random_points_in(1.0, disk_count, mixture, packing_fraction, seed)
+}
+
+/// Uniformly random points in a periodic box whose first side is `side_ratio` times the others.
+///
+/// # Errors
+/// As [`random_points`]; a ratio of sides that is not positive.
+pub fn random_points_in<const D: usize>(
+    side_ratio: f64,
+    disk_count: usize,
+    mixture: &Mixture,
+    packing_fraction: f64,
+    seed: u64,
+) -> Result<Packing<D>, PreparationError> {
     check_fraction(packing_fraction)?;
+    if !(side_ratio > 0.0 && side_ratio.is_finite()) {
+        return Err(PreparationError::SideRatioNotPositive { side_ratio });
+    }
     let radii = mixture.radii(disk_count)?;
     let solid: f64 = radii.iter().map(|&radius| ball_volume::<D>(radius)).sum();
-    let side = side_ratio::<D>(solid / packing_fraction);
+    let side = root_of_dimension::<D>(solid / packing_fraction / side_ratio);
+    let lengths: Vector<D> = std::array::from_fn(|d| if d == 0 { side_ratio * side } else { side });
     let mut generator = Pcg64::seed_from_u64(seed);
-    let positions = radii.iter().map(|_| std::array::from_fn(|_| side * generator.random::<f64>())).collect();
-    Ok(Packing::new(Domain::cube(side), positions, radii)?)
+    let positions = radii.iter().map(|_| lengths.map(|length| length * generator.random::<f64>())).collect();
+    Ok(Packing::new(Domain::rectangular([0.0; D], lengths), positions, radii)?)
 }
 
 /// Prepares a packing of Hertzian disks by FIRE.
@@ -218,10 +245,10 @@ pub fn prepare_with<const D: usize>(
     relaxer: &impl Relaxer,
     trace: &mut dyn Trace,
 ) -> Result<Prepared<D>, PreparationError> {
-    let Preparation { disk_count, mixture, target, tolerance, seed } = preparation;
+    let Preparation { disk_count, mixture, target, tolerance, seed, side_ratio } = preparation;
     match *target {
         Target::PackingFraction(packing_fraction) => {
-            let points = random_points::<D>(*disk_count, mixture, packing_fraction, *seed)?;
+            let points = random_points_in::<D>(*side_ratio, *disk_count, mixture, packing_fraction, *seed)?;
             Ok(Search { law, cost: Cost::default(), count: 0, quench: packing_fraction }
                 .rest(points, relaxer, trace)?
                 .0)
@@ -229,7 +256,7 @@ pub fn prepare_with<const D: usize>(
         Target::Pressure(pressure) => {
             check_pressure(pressure, *tolerance)?;
             let quench = quench_fraction::<D>(law, mixture, pressure)?;
-            let points = random_points::<D>(*disk_count, mixture, quench, *seed)?;
+            let points = random_points_in::<D>(*side_ratio, *disk_count, mixture, quench, *seed)?;
             Search { law, cost: Cost::default(), count: 0, quench }.meet(points, (pressure, *tolerance), relaxer, trace)
         }
     }
@@ -255,7 +282,7 @@ pub fn compress<const D: usize>(
     match target {
         Target::PackingFraction(packing_fraction) => {
             check_fraction(packing_fraction)?;
-            let scaled = packing.rescaled(side_ratio::<D>(fraction / packing_fraction));
+            let scaled = packing.rescaled(root_of_dimension::<D>(fraction / packing_fraction));
             Ok(search.rest(scaled, relaxer, trace)?.0)
         }
         Target::Pressure(pressure) => {
@@ -290,7 +317,7 @@ fn affine_pressure<const D: usize>(law: &dyn PairLaw, mixture: &Mixture, packing
     let radius = mean(&|r| r);
     let density = packing_fraction / mean(&|r| ball_volume::<D>(r));
     let reach = 2.0 * radius;
-    let overlap = reach * (side_ratio::<D>(packing_fraction / jamming_fraction::<D>()) - 1.0).max(0.0);
+    let overlap = reach * (root_of_dimension::<D>(packing_fraction / jamming_fraction::<D>()) - 1.0).max(0.0);
     // Z / (2 D) contacts per disk and dimension, Z slightly above isostatic.
     1.15 * density * reach * law.force(law.coefficient(radius, radius), overlap)
 }
@@ -406,7 +433,7 @@ impl Search<'_> {
                 step = 0.5 * (unjammed_above - fraction);
             }
             let next = fraction + step;
-            let packing = state.prepared.packing.get().clone().rescaled(side_ratio::<D>(fraction / next));
+            let packing = state.prepared.packing.get().clone().rescaled(root_of_dimension::<D>(fraction / next));
             let (prepared, root) = self.rest(packing, intermediate.as_ref().unwrap_or(relaxer), trace)?;
             if root == 0.0 {
                 if state.root == 0.0 {

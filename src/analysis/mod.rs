@@ -20,7 +20,7 @@ use serde::Serialize;
 pub use pair::{AnalysisError, Pair, PairSettings};
 
 use crate::certificate::Certificate;
-use crate::displacement::DisplacementField;
+use crate::displacement::{DisplacementField, Region, Shape};
 use crate::inflation::Boundary;
 use crate::law::choice::LawChoice;
 use crate::law::pair_law::PairLaw;
@@ -111,7 +111,8 @@ impl<const D: usize> Analysis<D> {
         let inner_radius = pair.before.radii()[centre];
         let unjammed = [&before, &after].iter().any(|state| is_unjammed(state, law));
         let states = [(before.packing, before.network.backbone.as_slice()), (after.packing, &after.network.backbone)];
-        let field = DisplacementField::of_states(states, unjammed, centre, inner_radius, outer_radius);
+        let region = Region { centre, grown: &[centre], inner_radius, outer_radius, shape: Shape::Round };
+        let field = DisplacementField::of_states(states, unjammed, region);
         let held = matches!(pair.boundary, Boundary::HeldRim { .. });
         let place = Place { centre, outer_radius: held.then_some(outer_radius) };
         let mut named = vec![("before", &before), ("after", &after)];

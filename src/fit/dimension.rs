@@ -7,6 +7,8 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// Number of dimensions of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Dimension {
+    /// Disks in a strip.
+    One,
     /// Disks in an annulus.
     Two,
     /// Spheres in a shell.
@@ -16,13 +18,18 @@ pub(crate) enum Dimension {
 impl Dimension {
     /// `D` as a value.
     pub(crate) const fn of<const D: usize>() -> Self {
-        const { assert!(D == 2 || D == 3, "an annulus has D = 2, a shell D = 3") };
-        if D == 2 { Dimension::Two } else { Dimension::Three }
+        const { assert!(D >= 1 && D <= 3, "a strip has D = 1, an annulus D = 2, a shell D = 3") };
+        match D {
+            1 => Dimension::One,
+            2 => Dimension::Two,
+            _ => Dimension::Three,
+        }
     }
 
     /// `r^(D−1)`, the factor by which displacements are rescaled.
     pub(crate) fn rescaling(self, radius: f64) -> f64 {
         match self {
+            Dimension::One => 1.0,
             Dimension::Two => radius,
             Dimension::Three => radius * radius,
         }
@@ -35,6 +42,7 @@ impl Dimension {
         wavenumber: f64,
     ) -> Result<Box<dyn RadialSolution>, ReferenceError> {
         Ok(match self {
+            Dimension::One => Box::new(RimSolution::<1>::new(annulus, wavenumber)?),
             Dimension::Two => Box::new(RimSolution::<2>::new(annulus, wavenumber)?),
             Dimension::Three => Box::new(RimSolution::<3>::new(annulus, wavenumber)?),
         })
@@ -43,6 +51,7 @@ impl Dimension {
     /// [`pole_count_below`].
     pub(crate) fn pole_count_below(self, annulus: Annulus, wavenumber: f64) -> usize {
         match self {
+            Dimension::One => pole_count_below::<1>(annulus, wavenumber),
             Dimension::Two => pole_count_below::<2>(annulus, wavenumber),
             Dimension::Three => pole_count_below::<3>(annulus, wavenumber),
         }

@@ -1,6 +1,6 @@
 //! Fits of the elastic and the screened solution to the radial profile of one sample: [`fit_radial_profile`].
 //!
-//! The fit is to the rescaled displacement `r^(D−1) d_r` of every ring, in D = 2 or 3 dimensions:
+//! The fit is to the rescaled displacement `r^(D−1) d_r` of every ring, in D = 2 or 3 dimensions, or D = 1 for a strip:
 //!
 //! ```text
 //! elastic          r^(D−1) d_r = d_0^eff a^(D−1) (R^D − r^D)/(R^D − a^D)                       one parameter
@@ -8,7 +8,8 @@
 //! screened, D = 3      r² d_r  = d_0^eff r² [y_1(κr)j_1(κR) − j_1(κr)y_1(κR)] / [same at a]    two parameters
 //! ```
 //!
-//! In two dimensions a ring is a part of the annulus, in three a part of the shell.
+//! In two dimensions a ring is a part of the annulus, in three a part of the shell. In a strip a ring is a row at one
+//! distance from the line, d = d_0^eff (R − r)/(R − a) or d_0^eff sin κ(R−r)/sin κ(R−a).
 //!
 //! These describe the curve of a single sample. A mean over samples mixes amplitudes and wavenumbers and is not such a
 //! curve.

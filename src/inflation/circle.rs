@@ -7,7 +7,7 @@
 
 use crate::inflation::error::InflationError;
 use crate::network::ContactNetwork;
-use crate::packing::{Domain, Packing, ball_volume};
+use crate::packing::{Domain, Packing, PackingError, ball_volume};
 use crate::vector::{Vector, extended_sum, norm};
 
 /// A circular (D = 2) or spherical (D = 3) piece of a packing with a held rim.
@@ -78,7 +78,17 @@ impl<const D: usize> Circle<D> {
         Ok(Circle { packing: cut, centre: middle, outer_radius })
     }
 
-    /// Number of mobile disks.
+    /// The same circle with a centre that moves with its neighbours.
+    ///
+    /// # Errors
+    /// None for a circle that was [cut](Circle::cut).
+    pub fn with_free_centre(mut self) -> Result<Self, PackingError> {
+        let held = (0..self.packing.len()).map(|disk| disk > self.centre).collect();
+        self.packing = self.packing.with_held(held)?;
+        Ok(self)
+    }
+
+    /// Number of mobile disks, without the centre.
     pub fn mobile_count(&self) -> usize {
         self.centre
     }

@@ -22,8 +22,18 @@ pub enum InflationError {
         /// Half the shortest side.
         half_side: f64,
     },
+    /// The walls of a strip must be so thick that disks on both sides of them do not meet.
+    #[error(
+        "wall distance {wall_distance}: must be above 0 and below {largest}, so that the wall between the images of the strip is four of the largest radii thick"
+    )]
+    WallDistanceOutOfRange {
+        /// The distance of either wall from the line.
+        wall_distance: f64,
+        /// Its upper limit.
+        largest: f64,
+    },
     /// No disk could move.
-    #[error("no disk lies within the outer radius {outer_radius}")]
+    #[error("no disk could move within the distance {outer_radius}")]
     NoMobileDisk {
         /// The outer radius given.
         outer_radius: f64,

@@ -1,10 +1,12 @@
 //! [`Grown`]: a packing whose disk has grown, before any disk has moved.
 
+use crate::displacement::{Region, Shape};
 use crate::inflation::choose_centre::choose_centre;
 use crate::inflation::circle::Circle;
 use crate::inflation::error::InflationError;
 use crate::inflation::rest::{Rest, Stage};
 use crate::inflation::settings::{Boundary, Inflation};
+use crate::inflation::strip::Strip;
 use crate::law::pair_law::PairLaw;
 use crate::network::ContactNetwork;
 use crate::packing::{Packing, PackingError};
@@ -17,17 +19,19 @@ use crate::vector::{norm, scaled, sum};
 #[derive(Debug, Clone)]
 pub struct Grown<const D: usize> {
     experiment: Experiment<D>,
-    /// Index of the inflated disk in the packings below.
+    /// Index of the inflated disk in the packings below; in a strip, of the chosen one, through which the line runs.
     pub centre: usize,
-    /// Radius of the inflated disk before \[length\].
+    /// Indices of all inflated disks: the centre, or the row of a strip.
+    pub grown: Vec<usize>,
+    /// Radius of the centre before \[length\].
     pub inner_radius: f64,
-    /// R, the radius of the rim; half the shortest side in the periodic variant \[length\].
+    /// R, the radius of the rim; half the shortest side in the periodic box; H in a strip \[length\].
     pub outer_radius: f64,
     /// Number of mobile disks.
     pub mobile_count: usize,
     /// The state at rest before the inflation.
     pub before: Rest<D>,
-    /// The same disks at the same positions, one of them larger.
+    /// The same disks at the same positions, one of them or a row larger.
     pub packing: Packing<D>,
 }
 
@@ -46,24 +50,40 @@ impl<const D: usize> Grown<D> {
     ) -> Result<Self, InflationError> {
         let chosen = choose_centre(packing, law, inflation.centre, seed)?;
         let inner_radius = packing.radii()[chosen];
-        let increase = inflation.increase;
-        if !(increase.is_finite() && inner_radius + increase > 0.0) {
-            return Err(InflationError::IncreaseNotPossible { increase, radius: inner_radius });
-        }
-        let nearest = (0..packing.len())
-            .filter(|&disk| disk != chosen)
-            .map(|disk| norm(packing.separation(disk, chosen)))
-            .fold(f64::INFINITY, f64::min);
-        if inner_radius + increase >= nearest {
-            return Err(InflationError::IncreaseTooLarge { increase, radius: inner_radius, nearest });
-        }
-        let experiment = Experiment::new(inflation.boundary, packing, chosen)?;
+        let experiment = Experiment::new(inflation, packing, chosen)?;
         let start = experiment.start();
-        let centre = experiment.centre();
+        let (centre, grown) = (experiment.centre(), experiment.grown());
+        grown.iter().try_for_each(|&disk| check_increase(&start, disk, inflation.increase))?;
         let before = experiment.rest(Stage::Before, start, law, relaxer, trace)?;
-        let grown = before.packing.get().clone().with_radius(centre, inner_radius + increase)?;
+        let mut packing = before.packing.get().clone();
+        for &disk in &grown {
+            let radius = packing.radii()[disk] + inflation.increase;
+            packing = packing.with_radius(disk, radius)?;
+        }
         let (outer_radius, mobile_count) = experiment.extent();
-        Ok(Grown { experiment, centre, inner_radius, outer_radius, mobile_count, before, packing: grown })
+        Ok(Grown { experiment, centre, grown, inner_radius, outer_radius, mobile_count, before, packing })
+    }
+
+    /// The shape of the region, for displacement fields.
+    pub fn shape(&self) -> Shape {
+        match &self.experiment {
+            Experiment::HeldWalls(strip) => Shape::Strip { length: strip.length() },
+            Experiment::HeldRim(_) | Experiment::Periodic { .. } => Shape::Round,
+        }
+    }
+
+    /// The inflated disks and the region around them.
+    pub(crate) fn region(&self) -> Region<'_> {
+        let Grown { centre, ref grown, inner_radius, outer_radius, .. } = *self;
+        Region { centre, grown, inner_radius, outer_radius, shape: self.shape() }
+    }
+
+    /// A packing with the radii before the inflation.
+    pub(super) fn deflated(&self, mut packing: Packing<D>) -> Result<Packing<D>, PackingError> {
+        for &disk in &self.grown {
+            packing = packing.with_radius(disk, self.before.packing.get().radii()[disk])?;
+        }
+        Ok(packing)
     }
 
     /// Relaxes disks in the geometry of this inflation. The outcome need not be at rest.
@@ -102,17 +122,37 @@ impl<const D: usize> Grown<D> {
 enum Experiment<const D: usize> {
     HeldRim(Circle<D>),
     Periodic { packing: Packing<D>, centre: usize },
+    HeldWalls(Strip<D>),
+}
+
+/// Checks that a disk can grow by `increase`.
+fn check_increase<const D: usize>(packing: &Packing<D>, disk: usize, increase: f64) -> Result<(), InflationError> {
+    let radius = packing.radii()[disk];
+    if !(increase.is_finite() && radius + increase > 0.0) {
+        return Err(InflationError::IncreaseNotPossible { increase, radius });
+    }
+    let others = (0..packing.len()).filter(|&other| other != disk);
+    let nearest = others.map(|other| norm(packing.separation(other, disk))).fold(f64::INFINITY, f64::min);
+    if radius + increase >= nearest {
+        return Err(InflationError::IncreaseTooLarge { increase, radius, nearest });
+    }
+    Ok(())
 }
 
 impl<const D: usize> Experiment<D> {
-    fn new(boundary: Boundary, packing: &Packing<D>, chosen: usize) -> Result<Self, InflationError> {
+    fn new(inflation: &Inflation, packing: &Packing<D>, chosen: usize) -> Result<Self, InflationError> {
         let lengths = packing.domain().lengths().ok_or(InflationError::NotPeriodic)?;
-        match boundary {
+        match inflation.boundary {
             Boundary::HeldRim { outer_radius_over_side } => {
                 let side = lengths.iter().copied().fold(f64::INFINITY, f64::min);
-                Ok(Experiment::HeldRim(Circle::cut(packing, chosen, outer_radius_over_side * side)?))
+                let circle = Circle::cut(packing, chosen, outer_radius_over_side * side)?;
+                Ok(Experiment::HeldRim(if inflation.centre_held { circle } else { circle.with_free_centre()? }))
             }
             Boundary::Periodic => Ok(Experiment::Periodic { packing: packing.clone(), centre: chosen }),
+            Boundary::HeldWalls { distance_over_side, .. } => {
+                let wall_distance = distance_over_side * lengths[Strip::<D>::ACROSS];
+                Ok(Experiment::HeldWalls(Strip::cut(packing, chosen, wall_distance, inflation.centre_held)?))
+            }
         }
     }
 
@@ -121,6 +161,15 @@ impl<const D: usize> Experiment<D> {
             Experiment::HeldRim(circle) => circle.packing.clone(),
             // Sites of an earlier relaxation do not apply here.
             Experiment::Periodic { packing, .. } => packing.clone().without_sites(),
+            Experiment::HeldWalls(strip) => strip.packing.clone(),
+        }
+    }
+
+    /// The disks that grow.
+    fn grown(&self) -> Vec<usize> {
+        match self {
+            Experiment::HeldRim(_) | Experiment::Periodic { .. } => vec![self.centre()],
+            Experiment::HeldWalls(strip) => strip.row.clone(),
         }
     }
 
@@ -128,6 +177,7 @@ impl<const D: usize> Experiment<D> {
         match self {
             Experiment::HeldRim(circle) => circle.centre,
             Experiment::Periodic { centre, .. } => *centre,
+            Experiment::HeldWalls(strip) => strip.centre,
         }
     }
 
@@ -135,6 +185,7 @@ impl<const D: usize> Experiment<D> {
     fn extent(&self) -> (f64, usize) {
         match self {
             Experiment::HeldRim(circle) => (circle.outer_radius, circle.mobile_count()),
+            Experiment::HeldWalls(strip) => (strip.wall_distance, strip.mobile_count()),
             Experiment::Periodic { packing, .. } => {
                 let lengths = packing.domain().lengths().unwrap_or([f64::INFINITY; D]);
                 (0.5 * lengths.iter().copied().fold(f64::INFINITY, f64::min), packing.len())
@@ -164,6 +215,7 @@ impl<const D: usize> Experiment<D> {
     fn pressure_of(&self, network: &ContactNetwork<D>) -> f64 {
         match self {
             Experiment::HeldRim(circle) => circle.pressure_of(network),
+            Experiment::HeldWalls(strip) => strip.pressure_of(network),
             Experiment::Periodic { packing, .. } => {
                 network.pressure(packing.domain().volume().unwrap_or(f64::INFINITY))
             }
@@ -188,6 +240,11 @@ impl<const D: usize> Experiment<D> {
             && let Some((label, distance)) = circle.beyond_rim(packing.get())
         {
             return Err(InflationError::BeyondRim { stage, label, distance, outer_radius: circle.outer_radius });
+        }
+        if let Experiment::HeldWalls(strip) = self
+            && let Some((label, distance)) = strip.beyond_wall(packing.get())
+        {
+            return Err(InflationError::BeyondRim { stage, label, distance, outer_radius: strip.wall_distance });
         }
         let network = ContactNetwork::new(packing.get(), law)?;
         Ok(Rest {

@@ -1,8 +1,9 @@
 //! One disk is inflated; the other disks relax.
 //!
-//! There are two geometries: a [`Circle`] with a held rim, in which the centre is held at the origin (the experiment of
-//! the study), and the whole periodic box, in which nothing is held and the centre of mass does not move. Deflation
-//! starts from the inflated state, restores the radius of the disk and relaxes again.
+//! There are three geometries: a [`Circle`] with a held rim, in which the centre is held at the origin (the experiment of
+//! the study) or free; the whole periodic box, in which nothing is held and the centre of mass does not move; and a
+//! [`Strip`] between held walls, in which a row of disks is inflated. Deflation starts from the inflated state, restores
+//! the radii and relaxes again.
 
 mod choose_centre;
 pub mod circle;
@@ -10,6 +11,7 @@ mod error;
 pub(crate) mod grown;
 mod rest;
 mod settings;
+pub mod strip;
 
 pub use choose_centre::choose_centre;
 pub use circle::Circle;
@@ -18,21 +20,28 @@ pub use grown::Grown;
 pub(crate) use grown::displacement;
 pub use rest::{Rest, Stage};
 pub use settings::{Boundary, Centre, Inflation};
+pub use strip::Strip;
 
+use crate::displacement::Shape;
 use crate::law::choice::LawChoice;
 use crate::law::pair_law::PairLaw;
-use crate::packing::Packing;
+use crate::packing::{Domain, Packing};
 use crate::relax::{Fire, Relaxer, Trace};
 
 /// The result of an inflation: the states before and after it, and after the deflation if there was one.
 #[derive(Debug, Clone)]
 pub struct Inflated<const D: usize> {
-    /// Index of the inflated disk in the packings below.
+    /// Index of the inflated disk in the packings below; in a strip, of the chosen one, through which the line runs.
     pub centre: usize,
-    /// Radius of the inflated disk before \[length\].
+    /// Indices of all inflated disks: the centre, or the row of a strip.
+    pub grown: Vec<usize>,
+    /// Radius of the centre before \[length\].
     pub inner_radius: f64,
-    /// R, the radius of the rim; half the shortest side in the periodic variant \[length\].
+    /// R, the radius of the rim; half the shortest side in the periodic box; H, the distance of the walls from the line in
+    /// a strip \[length\].
     pub outer_radius: f64,
+    /// The shape of the region, for displacement fields.
+    pub shape: Shape,
     /// Number of mobile disks.
     pub mobile_count: usize,
     /// The state at rest before the inflation.
@@ -41,6 +50,13 @@ pub struct Inflated<const D: usize> {
     pub after: Rest<D>,
     /// The state at rest after the deflation.
     pub deflated: Option<Rest<D>>,
+}
+
+impl<const D: usize> Inflated<D> {
+    /// Area between the walls of a strip in this box \[length^D\].
+    pub(crate) fn area(&self, domain: &Domain<D>) -> f64 {
+        strip::area(domain, self.outer_radius)
+    }
 }
 
 /// Inflates a disk of a packing of Hertzian disks and relaxes the rest by FIRE; the disk is drawn with seed 1.
@@ -79,11 +95,12 @@ pub fn inflate_with<const D: usize>(
     let grown = Grown::new(inflation, packing, law, relaxer, seed, trace)?;
     let after = grown.rest(Stage::Inflated, grown.packing.clone(), law, relaxer, trace)?;
     let deflated = if inflation.deflate {
-        let shrunk = after.packing.get().clone().with_radius(grown.centre, grown.inner_radius)?;
+        let shrunk = grown.deflated(after.packing.get().clone())?;
         Some(grown.rest(Stage::Deflated, shrunk, law, relaxer, trace)?)
     } else {
         None
     };
-    let Grown { centre, inner_radius, outer_radius, mobile_count, before, .. } = grown;
-    Ok(Inflated { centre, inner_radius, outer_radius, mobile_count, before, after, deflated })
+    let shape = grown.shape();
+    let Grown { centre, grown, inner_radius, outer_radius, mobile_count, before, .. } = grown;
+    Ok(Inflated { centre, grown, inner_radius, outer_radius, shape, mobile_count, before, after, deflated })
 }

@@ -19,6 +19,29 @@ pub enum Boundary {
     },
     /// The periodic box. Nothing is held; the centre of mass does not move.
     Periodic,
+    /// A strip along the first axis, periodic along it; in two dimensions. Instead of one disk, the row of disks that a
+    /// line along the strip through the chosen disk cuts is inflated. Disks farther than H from the line are held.
+    HeldWalls {
+        /// H, the distance of either wall from the line, over the side of the box across the strip; below 1/2 \[1\].
+        distance_over_side: f64,
+        /// Sides of a box that is prepared for it: along the strip over across \[1\].
+        length_over_side: f64,
+    },
+}
+
+impl Boundary {
+    /// Sides of a prepared box: that along the first axis over the others \[1\].
+    pub fn side_ratio(self) -> f64 {
+        match self {
+            Boundary::HeldRim { .. } | Boundary::Periodic => 1.0,
+            Boundary::HeldWalls { length_over_side, .. } => length_over_side,
+        }
+    }
+
+    /// Whether a row of disks is inflated between walls.
+    pub fn is_strip(self) -> bool {
+        matches!(self, Boundary::HeldWalls { .. })
+    }
 }
 
 impl Default for Boundary {
@@ -51,12 +74,21 @@ pub struct Inflation {
     pub boundary: Boundary,
     /// Which disk is inflated.
     pub centre: Centre,
+    /// Whether the inflated disk, or the row, is held in a circle or a strip; true by default. A held disk passes the net
+    /// force of its neighbours on to the rim: a dipole in the response. In a periodic box nothing is held.
+    #[serde(skip_serializing_if = "is_true")]
+    pub centre_held: bool,
     /// Whether the disk is deflated again afterwards.
     pub deflate: bool,
     /// Γ of an energy −Γu²/2 of every mobile disk, u its displacement from its position in the packing given
     /// \[force / length\]. The packing itself is prepared without it. Absent: no such energy.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub on_site_coupling: Option<f64>,
+}
+
+/// Whether a setting has its default, true.
+fn is_true(setting: &bool) -> bool {
+    *setting
 }
 
 impl Inflation {
@@ -87,6 +119,7 @@ impl Default for Inflation {
             increase: 0.1,
             boundary: Boundary::default(),
             centre: Centre::default(),
+            centre_held: true,
             deflate: false,
             on_site_coupling: None,
         }

@@ -39,6 +39,10 @@ impl ContactChange {
 }
 
 impl<const D: usize> LinearResponse<D> {
+    fn grows(&self, disk: usize) -> bool {
+        self.growing.binary_search(&disk).is_ok()
+    }
+
     /// The changes of all contacts, in ascending order of (first, second).
     ///
     /// `packing` and `law` are those of the response.
@@ -53,8 +57,7 @@ impl<const D: usize> LinearResponse<D> {
         let network = ContactNetwork::new(packing, law)?;
         let (radii, held) = (packing.radii(), packing.held());
         // A disk pinned for the solution has no row of its own; the growing disk is always included.
-        let there =
-            |disk: usize| self.solved[disk] || held[disk] || self.growing == Some(disk) || network.backbone[disk];
+        let there = |disk: usize| self.solved[disk] || held[disk] || self.grows(disk) || network.backbone[disk];
         let changes = network.contacts.iter().filter_map(|contact| {
             let (i, j) = (contact.first as usize, contact.second as usize);
             if !(there(i) && there(j)) {
@@ -63,11 +66,11 @@ impl<const D: usize> LinearResponse<D> {
             let distance = norm(contact.separation);
             let moved = difference(self.displacements[i], self.displacements[j]);
             let distance_change = dot(moved, contact.separation) / distance;
-            let (growth, coefficient_growth) = match self.growing {
-                Some(disk) if disk == i => (1.0, law.coefficient_growth(radii[i], radii[j])),
-                Some(disk) if disk == j => (1.0, law.coefficient_growth(radii[j], radii[i])),
-                _ => (0.0, 0.0),
-            };
+            let (mut growth, mut coefficient_growth) = (0.0, 0.0);
+            for (disk, other) in [(i, j), (j, i)].into_iter().filter(|&(disk, _)| self.grows(disk)) {
+                growth += 1.0;
+                coefficient_growth += law.coefficient_growth(radii[disk], radii[other]);
+            }
             let overlap_change = growth - distance_change;
             let force_change =
                 law.stiffness(contact.force, contact.overlap) * overlap_change + contact.force * coefficient_growth;

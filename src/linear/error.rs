@@ -25,6 +25,9 @@ pub enum LinearError {
         /// The disk: its index, from 0, or its label if a report contains the error.
         disk: usize,
     },
+    /// No disk is to grow.
+    #[error("no disk is given to grow")]
+    NothingGrows,
     /// No disk has this index.
     #[error("disk {disk} does not exist: there are {disk_count} disks, counted from 0")]
     NoSuchDisk {

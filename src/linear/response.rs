@@ -25,8 +25,8 @@ use crate::vector::{Vector, difference, scaled, sum};
 /// Displacements of all disks of a packing per unit load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinearResponse<const D: usize> {
-    /// Index of the growing disk; none for other loads.
-    pub growing: Option<usize>,
+    /// Indices of the growing disks, ascending; empty for other loads.
+    pub growing: Vec<usize>,
     /// Displacement of each disk, 0 for those off the backbone: per d_0 \[1\] if a disk grows, otherwise \[length\].
     pub displacements: Vec<Vector<D>>,
     /// Whether each disk is among the unknowns.
@@ -58,9 +58,26 @@ impl<const D: usize> LinearResponse<D> {
         law: &dyn PairLaw,
         prestress: Prestress,
     ) -> Result<Self, LinearError> {
-        exists(packing, centre)?;
-        with_solver(packing, Some(centre), (law, prestress), |assembly, hessian, solve| {
-            Ok(LinearResponse { growing: Some(centre), ..solve(&push_of(assembly, hessian, centre)?)? })
+        Self::of_growth(packing, &[centre], law, prestress)
+    }
+
+    /// The response of a packing at rest to the growth of several disks at once, such as the row of a strip: each grows by
+    /// d_0.
+    ///
+    /// # Errors
+    /// See [`LinearResponse::of_inflation`]; no disk given, or one twice.
+    pub fn of_growth(
+        packing: &Packing<D>,
+        growing: &[usize],
+        law: &dyn PairLaw,
+        prestress: Prestress,
+    ) -> Result<Self, LinearError> {
+        growing.iter().try_for_each(|&disk| exists(packing, disk))?;
+        let mut growing = growing.to_vec();
+        growing.sort_unstable();
+        with_solver(packing, growing.first().copied(), (law, prestress), |assembly, hessian, solve| {
+            let push = push_of(assembly, hessian, &growing)?;
+            Ok(LinearResponse { growing: growing.clone(), ..solve(&push)? })
         })
     }
 
@@ -83,7 +100,7 @@ impl<const D: usize> LinearResponse<D> {
         centres.iter().try_for_each(|&centre| exists(packing, centre))?;
         with_solver(packing, None, (law, prestress), |assembly, hessian, solve| {
             centres.iter().try_for_each(|&centre| {
-                visit(LinearResponse { growing: Some(centre), ..solve(&push_of(assembly, hessian, centre)?)? });
+                visit(LinearResponse { growing: vec![centre], ..solve(&push_of(assembly, hessian, &[centre])?)? });
                 Ok(())
             })
         })
@@ -220,7 +237,7 @@ fn with_solver<const D: usize, T>(
             }
         }
         Ok(LinearResponse {
-            growing: None,
+            growing: Vec::new(),
             displacements,
             solved: solved.clone(),
             unknown_count: push.len(),
@@ -231,18 +248,18 @@ fn with_solver<const D: usize, T>(
     })
 }
 
-/// Forces per d_0 on the unknowns when the disk `centre` grows.
+/// Forces per d_0 on the unknowns when these disks grow.
 ///
 /// # Errors
-/// The disk has no contact with the backbone.
+/// The disks have no contact with the backbone.
 fn push_of<const D: usize>(
     assembly: &Assembly<D>,
     hessian: &Hessian<D>,
-    centre: usize,
+    growing: &[usize],
 ) -> Result<Vec<f64>, LinearError> {
     let (pairs, law, radii) = (assembly.pairs(), assembly.law(), assembly.radii());
     let mut push = vec![0.0; hessian.matrix().dimension()];
-    let grows = |disk: u32| assembly.order()[disk as usize] as usize == centre;
+    let grows = |disk: u32| growing.binary_search(&(assembly.order()[disk as usize] as usize)).is_ok();
     for pair in pairs.numbers() {
         let (first, second) = (pairs.first[pair], pairs.second[pair]);
         if !(grows(first) || grows(second)) {
@@ -254,10 +271,14 @@ fn push_of<const D: usize>(
         if overlap <= 0.0 || absent(first) || absent(second) {
             continue;
         }
-        let (growing, other) = if grows(first) { (first, second) } else { (second, first) };
         let force = law.force(pairs.coefficient(pair), overlap);
-        let growth = law.coefficient_growth(radii[growing as usize], radii[other as usize]);
-        let push_on_first = scaled((law.stiffness(force, overlap) + force * growth) / distance, apart);
+        // Two growing disks in contact add both their growths.
+        let mut magnitude = 0.0;
+        for (disk, other) in [(first, second), (second, first)].into_iter().filter(|&(disk, _)| grows(disk)) {
+            let growth = law.coefficient_growth(radii[disk as usize], radii[other as usize]);
+            magnitude += law.stiffness(force, overlap) + force * growth;
+        }
+        let push_on_first = scaled(magnitude / distance, apart);
         for (disk, sign) in [(first, 1.0), (second, -1.0)] {
             if let Some(row) = hessian.row_of(disk) {
                 for d in 0..D {
@@ -267,5 +288,9 @@ fn push_of<const D: usize>(
         }
     }
     let touched = push.iter().any(|&value| value != 0.0);
-    if touched { Ok(push) } else { Err(LinearError::CentreTouchesNothing { disk: centre }) }
+    match growing.first() {
+        Some(_) if touched => Ok(push),
+        Some(&disk) => Err(LinearError::CentreTouchesNothing { disk }),
+        None => Err(LinearError::NothingGrows),
+    }
 }

@@ -108,7 +108,7 @@ impl<const D: usize> BondChanges<D> {
             response.displacements.len(),
             "a response belongs to the packing it was made from"
         );
-        let centre = response.growing.expect("bonds are seen from the disk that grows");
+        let &[centre] = response.growing.as_slice() else { panic!("bonds are seen from the disk that grows") };
         let moved = |disk: usize| scaled(increase, response.displacements[disk]);
         let counts = &before.network.backbone;
         let bonds = before.network.contacts.iter();

@@ -133,7 +133,7 @@ impl<const D: usize> State<D> {
     pub(super) fn field(&self, grown: &Grown<D>) -> DisplacementField<D> {
         let before = (grown.before.packing.get(), grown.before.backbone.as_slice());
         let states = [before, (&self.packing, self.backbone.as_slice())];
-        DisplacementField::of_states(states, self.unjammed, grown.centre, grown.inner_radius, grown.outer_radius)
+        DisplacementField::of_states(states, self.unjammed, grown.region())
     }
 
     #[cfg(feature = "fit")]

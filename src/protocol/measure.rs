@@ -29,8 +29,13 @@ impl<const D: usize> Compared<D> {
         for (ending, state) in self.sensitivity.endings.iter_mut().zip(&self.states) {
             let Some(after) = state else { continue };
             let response = Inflated { after: after.clone(), deflated: None, ..inflated.clone() };
-            let profile = RadialProfile::of(&DisplacementField::of_inflation(&response), ring_width);
-            ending.fit = fit_radial_profile::<D>(&profile, annulus, settings).ok().map(EndingFit::from);
+            let field = DisplacementField::of_inflation(&response);
+            let profile = RadialProfile::of(&field, ring_width);
+            let fit = match field.spreading_dimension() {
+                1 => fit_radial_profile::<1>(&profile, annulus, settings),
+                _ => fit_radial_profile::<D>(&profile, annulus, settings),
+            };
+            ending.fit = fit.ok().map(EndingFit::from);
         }
         self.sensitivity.spreads = Spreads::of(&self.sensitivity.endings);
     }

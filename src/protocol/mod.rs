@@ -27,6 +27,7 @@ mod sensitivity;
 mod settings;
 mod spread;
 
+use crate::displacement::Shape;
 use crate::inflation::{Inflated, Inflation};
 use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError, ball_volume};
@@ -84,13 +85,21 @@ impl<const D: usize> Compared<D> {
         trace: &mut dyn Trace,
     ) -> Result<Self, PackingError> {
         let centre = inflated.centre;
-        let radius = inflated.after.packing.get().radii()[centre];
-        let start = inflated.before.packing.get().clone().with_radius(centre, radius)?;
+        let mut start = inflated.before.packing.get().clone();
+        for &disk in &inflated.grown {
+            start = start.with_radius(disk, inflated.after.packing.get().radii()[disk])?;
+        }
         let before = inflated.before.pressure;
-        let domain = *start.domain();
-        let pressure = |network: &crate::network::ContactNetwork<D>| match domain.volume() {
-            Some(volume) => network.pressure(volume),
-            None => network.cluster_pressure(ball_volume::<D>(inflated.outer_radius), |disk| disk > centre),
+        let (domain, held) = (*start.domain(), start.held().to_vec());
+        let is_row = |disk: usize| inflated.grown.binary_search(&disk).is_ok();
+        let pressure = |network: &crate::network::ContactNetwork<D>| match (inflated.shape, domain.volume()) {
+            (Shape::Strip { .. }, _) => {
+                network.cluster_pressure(inflated.area(&domain), |disk| held[disk] && !is_row(disk))
+            }
+            (Shape::Round, Some(volume)) => network.pressure(volume),
+            (Shape::Round, None) => {
+                network.cluster_pressure(ball_volume::<D>(inflated.outer_radius), |disk| disk > centre)
+            }
         };
         let law = inflation.law_with_sites(law);
         Self::of_start(&start, law.as_ref(), protocols, settings, before, pressure, trace)

@@ -1,4 +1,4 @@
-//! [`Elastic`]: the elastic medium between an inflated disk and a held rim, annulus (D = 2) or shell (D = 3).
+//! [`Elastic`]: the elastic medium between an inflated disk and a held rim, annulus (D = 2), shell (D = 3) or strip (D = 1).
 
 use crate::reference::{Annulus, RadialSolution, ReferenceError};
 
@@ -7,6 +7,7 @@ use crate::reference::{Annulus, RadialSolution, ReferenceError};
 /// ```text
 /// d(r) = d_0 (a/r)^(D−1) (R^D − r^D) / (R^D − a^D)
 ///
+/// D = 1:  d_0 (R − r) / (R − a)
 /// D = 2:  d_0 (a/r) (r² − R²) / (a² − R²)
 /// D = 3:  d_0 (a/r)² (R³ − r³) / (R³ − a³)
 /// ```
@@ -45,7 +46,7 @@ impl<const D: usize> Elastic<D> {
     /// # Errors
     /// An amplitude that is not finite.
     pub fn new(annulus: Annulus, amplitude: f64) -> Result<Self, ReferenceError> {
-        const { assert!(D == 2 || D == 3, "an annulus has D = 2, a shell D = 3") };
+        const { assert!(D >= 1 && D <= 3, "a strip has D = 1, an annulus D = 2, a shell D = 3") };
         if !amplitude.is_finite() {
             return Err(ReferenceError::AmplitudeNotFinite { amplitude });
         }

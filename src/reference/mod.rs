@@ -7,6 +7,8 @@
 //! d'' + (D−1) d'/r − (D−1) d/r² + κ² d = 0
 //! ```
 //!
+//! With D = 1 this is a strip: r is the distance from an inflated row of disks, R that of a straight wall.
+//!
 //! With κ = 0 this is the elastic medium, [`Elastic`](elastic::Elastic). With a screening wavenumber κ > 0 plastic
 //! events screen the elastic field, [`Screened`](screened::Screened). Both implement [`RadialSolution`]. Start from
 //! [`Annulus::new`].
@@ -55,6 +57,7 @@ pub mod screened;
 mod sensitivity;
 mod small_wavenumber;
 mod spherical;
+mod straight;
 
 use serde::Serialize;
 use thiserror::Error;

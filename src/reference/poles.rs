@@ -8,7 +8,7 @@
 //! ```
 //!
 //! with θ the phase of J_1 + i Y_1 ([`bessel`](crate::reference::bessel)); in three dimensions the same with j_1 + i
-//! y_1. With θ(x) = x + φ(x) + constant the condition is
+//! y_1. In a strip, D = 1, they are n π/(R − a). With θ(x) = x + φ(x) + constant the condition is
 //!
 //! ```text
 //! F(κ) = κ(R − a) + φ(κR) − φ(κa) = n π
@@ -29,7 +29,7 @@ use crate::reference::rim_distance::RimDistance;
 /// Limit of Newton steps; 3 to 6 are needed, but rounding may make the last ones alternate.
 const STEP_LIMIT: usize = 40;
 
-/// Pole number `index` \[1/length\] in two (`D = 2`) or three (`D = 3`) dimensions, counted from 1.
+/// Pole number `index` \[1/length\] in two (`D = 2`) or three (`D = 3`) dimensions or a strip (`D = 1`), counted from 1.
 ///
 /// `index` 0 gives 0, where F also vanishes: not a pole, but the lower end of the first branch.
 ///
@@ -104,7 +104,11 @@ pub(crate) fn pole_at<const D: usize>(annulus: Annulus, wavenumber: f64) -> Opti
 
 /// φ(0).
 fn largest_shift<const D: usize>() -> f64 {
-    if D == 2 { FRAC_PI_4 } else { FRAC_PI_2 }
+    match D {
+        1 => 0.0,
+        2 => FRAC_PI_4,
+        _ => FRAC_PI_2,
+    }
 }
 
 /// F at one κ.
@@ -138,7 +142,10 @@ impl Phase {
 
 /// φ(x) and x φ'(x).
 fn shift_and_slope<const D: usize>(x: f64) -> (f64, f64) {
-    if D == 2 {
+    if D == 1 {
+        // κ_n (R − a) = n π.
+        (0.0, 0.0)
+    } else if D == 2 {
         let here = modulus_phase(x);
         // θ' = 1/P.
         (here.shift, x * (1.0 / here.reduced_square - 1.0))

@@ -6,6 +6,7 @@ use crate::reference::cylindrical::Cylindrical;
 use crate::reference::elastic::power_gap;
 use crate::reference::sensitivity::RimResponse;
 use crate::reference::spherical::Spherical;
+use crate::reference::straight::{self, Straight};
 use crate::reference::{Annulus, RadialSolution, ReferenceError};
 
 /// Up to this κR the elastic solution is used instead of the screened one. The relative error is (κR)²/8 ≤ 1.3·10⁻¹⁷ in
@@ -19,6 +20,7 @@ pub const ELASTIC_BELOW: f64 = 1e-8;
 /// v'' + (D−1) v'/r − (D−1) v/r² + κ² v = 0
 ///
 /// κ = 0:  v = (R^D − r^D) / (D r^(D−1))
+/// D = 1:  v = sin κ(R−r) / κ
 /// D = 2:  v = (π R / 2) [J_1(κr) Y_1(κR) − Y_1(κr) J_1(κR)]
 /// D = 3:  v = κ R² [j_1(κr) y_1(κR) − y_1(κr) j_1(κR)]
 /// ```
@@ -47,6 +49,7 @@ pub struct RimSolution<const D: usize> {
 #[derive(Debug, Clone)]
 enum Form {
     Elastic,
+    Straight(Straight),
     Cylindrical(Cylindrical),
     Spherical(Spherical),
 }
@@ -57,11 +60,13 @@ impl<const D: usize> RimSolution<D> {
     /// # Errors
     /// A wavenumber that is negative or not finite.
     pub fn new(annulus: Annulus, wavenumber: f64) -> Result<Self, ReferenceError> {
-        const { assert!(D == 2 || D == 3, "an annulus has D = 2, a shell D = 3") };
+        const { assert!(D >= 1 && D <= 3, "a strip has D = 1, an annulus D = 2, a shell D = 3") };
         let argument = checked_wavenumber(annulus, wavenumber)?;
         let outer = annulus.outer_radius();
         let form = if argument <= ELASTIC_BELOW {
             Form::Elastic
+        } else if D == 1 {
+            Form::Straight(Straight::new(wavenumber, outer))
         } else if D == 2 {
             Form::Cylindrical(Cylindrical::new(wavenumber, outer))
         } else {
@@ -82,6 +87,9 @@ impl<const D: usize> RimSolution<D> {
         }
         if self.wavenumber == 0.0 {
             return 0.0;
+        }
+        if D == 1 {
+            return straight::rim_response(self.wavenumber, self.annulus.outer_radius(), radius);
         }
         let response =
             self.response.get_or_init(|| Box::new(RimResponse::new(self.annulus.outer_radius(), self.wavenumber)));
@@ -113,6 +121,7 @@ impl<const D: usize> RadialSolution for RimSolution<D> {
                 let outer = self.annulus.outer_radius();
                 power_gap::<D>(outer, radius) * (outer / radius).powi(D as i32 - 1) / D as f64
             }
+            Form::Straight(solution) => solution.value(radius),
             Form::Cylindrical(solution) => solution.value(radius),
             Form::Spherical(solution) => solution.value(radius),
         }
@@ -127,6 +136,7 @@ impl<const D: usize> RadialSolution for RimSolution<D> {
                 let power = (self.annulus.outer_radius() / radius).powi(D as i32);
                 -((D - 1) as f64 * power + 1.0) / D as f64
             }
+            Form::Straight(solution) => solution.derivative(radius),
             Form::Cylindrical(solution) => solution.derivative(radius),
             Form::Spherical(solution) => solution.derivative(radius),
         }

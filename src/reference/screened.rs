@@ -7,11 +7,13 @@ use crate::reference::local_series::Sign;
 use crate::reference::poles::{pole, pole_at};
 use crate::reference::rim::RimSolution;
 use crate::reference::sensitivity::{Profile, Sensitivity};
+use crate::reference::straight;
 use crate::reference::{Annulus, RadialSolution, ReferenceError};
 
 /// Radial displacement of a medium with dipole screening.
 ///
 /// ```text
+/// D = 1:  d(r) = d_0 sin κ(R−r) / sin κ(R−a)
 /// D = 2:  d(r) = d_0 [Y_1(κr) J_1(κR) − J_1(κr) Y_1(κR)] / [Y_1(κa) J_1(κR) − J_1(κa) Y_1(κR)]
 /// D = 3:  the same with the spherical j_1 and y_1
 /// ```
@@ -124,6 +126,9 @@ impl<const D: usize> Screened<D> {
         }
         if self.wavenumber == 0.0 {
             return 0.0;
+        }
+        if D == 1 {
+            return self.amplitude * straight::profile_response(self.annulus, self.wavenumber, radius);
         }
         let sensitivity = self.sensitivity.get_or_init(|| {
             Box::new(Sensitivity::new(&Profile {

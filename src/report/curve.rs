@@ -22,7 +22,7 @@ pub(crate) struct Curve {
 
 /// D − 1: r^(D−1) d_r is constant in an incompressible medium without a rim.
 pub(crate) fn power(response: &Response) -> i32 {
-    response.detail.dimension() as i32 - 1
+    response.detail.spreading_dimension() as i32 - 1
 }
 
 impl Curve {
@@ -45,7 +45,8 @@ pub(crate) fn curves(response: &Response) -> Vec<Curve> {
     let Ok(annulus) = Annulus::new(response.detail.radii()[0], response.detail.radii()[1]) else {
         return Vec::new();
     };
-    match response.detail.dimension() {
+    match response.detail.spreading_dimension() {
+        1 => curves_of::<1>(fit, annulus),
         3 => curves_of::<3>(fit, annulus),
         _ => curves_of::<2>(fit, annulus),
     }

@@ -151,11 +151,12 @@ fn widest(radii: &[f64]) -> f64 {
 fn introduction(report: &Report) -> String {
     let scene = &report.scene;
     let place = match scene.inflation.boundary {
-        Boundary::HeldRim { .. } => "at the centre of a circle whose rim is held",
-        Boundary::Periodic => "in a periodic box",
+        Boundary::HeldRim { .. } => "A disk at the centre of a circle whose rim is held grows",
+        Boundary::Periodic => "A disk in a periodic box grows",
+        Boundary::HeldWalls { .. } => "The disks of a row in the middle of a strip between held walls grow",
     };
     let mut text = format!(
-        "A disk {place} grows in radius by d<sub>0</sub> = {} and the packing around it comes to rest again. ",
+        "{place} in radius by d<sub>0</sub> = {} and the packing around comes to rest again. ",
         significant(scene.inflation.increase, 3)
     );
     let responses: Vec<_> = report.samples.iter().filter_map(done).map(|result| &result.response).collect();

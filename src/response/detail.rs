@@ -65,6 +65,14 @@ impl Detail {
         }
     }
 
+    /// Number of dimensions in which the field spreads: 1 in a strip.
+    pub fn spreading_dimension(&self) -> usize {
+        match self {
+            Detail::Plane(detail) => detail.field.spreading_dimension(),
+            Detail::Space(detail) => detail.field.spreading_dimension(),
+        }
+    }
+
     /// a and R \[length\].
     pub fn radii(&self) -> [f64; 2] {
         match self {

@@ -161,7 +161,10 @@ impl Response {
                     return Measurement::Refused(reason.clone());
                 }
                 match Annulus::new(field.inner_radius, field.outer_radius) {
-                    Ok(annulus) => fit_radial_profile::<D>(profile, annulus, &settings).into(),
+                    Ok(annulus) => match field.spreading_dimension() {
+                        1 => fit_radial_profile::<1>(profile, annulus, &settings).into(),
+                        _ => fit_radial_profile::<D>(profile, annulus, &settings).into(),
+                    },
                     Err(error) => Measurement::Refused(error.to_string()),
                 }
             }),
@@ -274,7 +277,11 @@ fn by_profile(response: &Response) -> Option<Phase> {
             let [inner, outer] = response.detail.radii();
             let annulus = Annulus::new(inner, outer).ok()?;
             let bound = fit.elastic.wavenumber_bound?;
-            let first = if response.detail.dimension() == 3 { pole::<3>(annulus, 1) } else { pole::<2>(annulus, 1) };
+            let first = match response.detail.spreading_dimension() {
+                1 => pole::<1>(annulus, 1),
+                3 => pole::<3>(annulus, 1),
+                _ => pole::<2>(annulus, 1),
+            };
             (bound < first).then_some(Phase::Quasielastic)
         }
         Decision::Neither => None,

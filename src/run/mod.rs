@@ -198,8 +198,8 @@ fn phase_frequency(
     packing: &PackingSummary,
     response: &Response,
 ) -> Option<PhaseFrequency> {
-    // The ensembles are of disks.
-    if scene.dimension != 2 {
+    // The ensembles are of disks around a held one.
+    if scene.dimension != 2 || scene.inflation.boundary.is_strip() || !scene.inflation.centre_held {
         return None;
     }
     let relaxer = sample.relaxer.description();
@@ -300,6 +300,7 @@ pub(crate) fn packing_of<const D: usize>(
         target,
         tolerance: scene.preparation.pressure_tolerance,
         seed: sample.seed,
+        side_ratio: scene.inflation.boundary.side_ratio(),
     };
     let prepared = prepare_with::<D>(&preparation, law, &scene.preparation.relaxer, trace)?;
     let quench_packing_fraction = Some(prepared.quench_packing_fraction);

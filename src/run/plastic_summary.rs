@@ -20,7 +20,7 @@ pub(super) fn of<const D: usize>(
 ) -> Result<(PlasticSummary, DisplacementField<D>), LinearError> {
     let law = &*inflation.law_with_sites(law);
     let (before, centre) = (inflated.before.packing.get(), inflated.centre);
-    let response = LinearResponse::of_inflation(before, centre, law, Prestress::Included)?;
+    let response = LinearResponse::of_growth(before, &inflated.grown, law, Prestress::Included)?;
     let plastic = PlasticPart::of(inflated, &response);
     let changes = response.contact_changes(before, law)?;
     let increase = inflated.after.packing.get().radii()[centre] - inflated.inner_radius;
@@ -32,6 +32,11 @@ pub(super) fn of<const D: usize>(
         }
         Boundary::Periodic => {
             pressure_change::<D>(&changes, before.domain().volume().unwrap_or(f64::INFINITY), |_| false)
+        }
+        Boundary::HeldWalls { .. } => {
+            let area = inflated.area(before.domain());
+            let is_row = |disk: usize| inflated.grown.binary_search(&disk).is_ok();
+            pressure_change::<D>(&changes, area, |disk| before.held()[disk] && !is_row(disk))
         }
     };
     let summary = PlasticSummary {

@@ -107,6 +107,15 @@ pub enum SceneError {
         /// The observable.
         observable: &'static str,
     },
+    /// A strip is of disks only.
+    #[error("inflation.boundary.held_walls: a row of disks is inflated in two dimensions; set dimension = 2")]
+    StripOfThePlane,
+    /// An observable of a circle is requested in a strip.
+    #[error("observables.{observable}: is of the disks around one that is inflated, not of a strip; remove it")]
+    OfACircle {
+        /// The observable.
+        observable: &'static str,
+    },
     /// An observable of spheres is requested for disks.
     #[error("observables.{observable}: is of spheres; set dimension = 3 or remove it")]
     OfSpace {
@@ -158,6 +167,19 @@ impl Scene {
         if let Boundary::HeldRim { outer_radius_over_side: ratio } = self.inflation.boundary {
             let field = "inflation.boundary.held_rim.outer_radius_over_side";
             within(field, ratio, "above 0 and at most 0.5", ratio > 0.0 && ratio <= 0.5)?;
+        }
+        if let Boundary::HeldWalls { distance_over_side, length_over_side } = self.inflation.boundary {
+            let field = |last: &str| format!("inflation.boundary.held_walls.{last}");
+            let ratio = distance_over_side;
+            within(field("distance_over_side"), ratio, "above 0 and below 0.5", ratio > 0.0 && ratio < 0.5)?;
+            let ratio = length_over_side;
+            within(field("length_over_side"), ratio, "between 1e-3 and 1e3", (1e-3..=1e3).contains(&ratio))?;
+            if self.dimension != 2 {
+                return Err(SceneError::StripOfThePlane);
+            }
+            if let Some(observable) = self.observables.of_a_circle() {
+                return Err(SceneError::OfACircle { observable });
+            }
         }
         self.observables.check()?;
         if self.sample.is_empty() {

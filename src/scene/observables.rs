@@ -173,6 +173,28 @@ impl Observables {
         all.into_iter().find(|(_, has)| *has).map(|(name, _)| name)
     }
 
+    /// The observables of a strip between held walls: without those of the disks around one.
+    pub fn of_strip() -> Self {
+        Observables {
+            multipoles: None,
+            #[cfg(feature = "fit")]
+            elastic_modes: None,
+            bond_changes: None,
+            isostatic_length: None,
+            ..Observables::default()
+        }
+    }
+
+    /// The first of the observables that need a disk in the middle.
+    pub(crate) fn of_a_circle(&self) -> Option<&'static str> {
+        let all = [
+            ("multipoles", self.multipoles.is_some()),
+            ("bond_changes", self.bond_changes.is_some()),
+            ("isostatic_length", self.isostatic_length.is_some()),
+        ];
+        all.into_iter().find(|(_, has)| *has).map(|(name, _)| name)
+    }
+
     /// The first of the observables that are of spheres only.
     pub(crate) fn of_space(&self) -> Option<&'static str> {
         #[cfg(feature = "fit")]

@@ -6,11 +6,13 @@ use crate::law::pair_law::PairLaw;
 use crate::packing::ball_volume;
 use crate::scene::definition::Scene;
 
-/// N, the number of disks in the circle by area (of spheres in the ball by volume), or of the whole periodic box.
+/// N, the number of disks in the circle by area (of spheres in the ball by volume), between the walls of a strip, or of the
+/// whole periodic box.
 pub(crate) fn mobile_count(disk_count: usize, boundary: Boundary, dimension: usize) -> f64 {
     let share = match boundary {
         Boundary::HeldRim { outer_radius_over_side: ratio } if dimension == 3 => ball_volume::<3>(ratio),
         Boundary::HeldRim { outer_radius_over_side: ratio } => std::f64::consts::PI * ratio * ratio,
+        Boundary::HeldWalls { distance_over_side: ratio, .. } => 2.0 * ratio,
         Boundary::Periodic => 1.0,
     };
     share * disk_count as f64

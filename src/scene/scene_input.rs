@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Deserializer};
 
-use crate::inflation::Inflation;
+use crate::inflation::{Boundary, Inflation};
 use crate::law::choice::LawChoice;
 use crate::packing::Mixture;
 use crate::relax::RelaxerChoice;
@@ -76,7 +76,10 @@ impl From<Written> for Scene {
     fn from(written: Written) -> Self {
         let Written { dimension, disk_count, law, mixture, preparation, inflation, verdict, .. } = written;
         let (protocol, sample) = (written.protocol.unwrap_or_default(), written.sample);
-        let observables = written.observables.unwrap_or_else(|| Observables::of_dimension(dimension));
+        let observables = written.observables.unwrap_or_else(|| match inflation.boundary {
+            Boundary::HeldWalls { .. } => Observables::of_strip(),
+            Boundary::HeldRim { .. } | Boundary::Periodic => Observables::of_dimension(dimension),
+        });
         let sample = match sample {
             Some(sample) => sample.into_iter().map(|sample| sample.complete(protocol, dimension)).collect(),
             None => {

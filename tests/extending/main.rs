@@ -3,7 +3,7 @@
 mod stiffening;
 mod swirl;
 
-use jamscope::displacement::{DisplacementField, MeasuredOn, Moved};
+use jamscope::displacement::{DisplacementField, MeasuredOn, Moved, Shape};
 use jamscope::inflation::{Inflation, inflate_with};
 use jamscope::io::read_packing;
 use jamscope::law::{Hertzian, PairLaw};
@@ -116,7 +116,13 @@ fn field(displacement: impl Fn([f64; 2]) -> [f64; 2]) -> DisplacementField<2> {
         Moved { disk: index, position, distance, displacement, radial, counted: !index.is_multiple_of(7) }
     };
     let disks = (0..300).map(disk).collect();
-    DisplacementField { disks, inner_radius: 0.5, outer_radius: 20.0, measured_on: MeasuredOn::Backbone }
+    DisplacementField {
+        disks,
+        inner_radius: 0.5,
+        outer_radius: 20.0,
+        shape: Shape::Round,
+        measured_on: MeasuredOn::Backbone,
+    }
 }
 
 #[test]

@@ -52,7 +52,7 @@ impl ShellAnalysis {
     /// # Example
     /// ```
     /// use jamscope::observe::shell::{ShellAnalysis, ShellSettings, SHELL_HALF_WIDTH, SHELL_RADIUS};
-    /// use jamscope::displacement::{DisplacementField, MeasuredOn, Moved};
+    /// use jamscope::displacement::{DisplacementField, MeasuredOn, Moved, Shape};
     ///
     /// // A spiral of 400 spheres at r = R/2, which move along z: d_r = 0.001 cos θ, a dipole.
     /// let disks = (0..400).map(|disk| {
@@ -63,7 +63,7 @@ impl ShellAnalysis {
     ///     Moved { disk, position, distance: 10.0, displacement, radial, counted: true }
     /// });
     /// let measured_on = MeasuredOn::Backbone;
-    /// let field = DisplacementField { disks: disks.collect(), inner_radius: 0.5, outer_radius: 20.0, measured_on };
+    /// let field = DisplacementField { disks: disks.collect(), inner_radius: 0.5, outer_radius: 20.0, shape: Shape::Round, measured_on };
     ///
     /// let shell = ShellAnalysis::of(&field, SHELL_RADIUS, SHELL_HALF_WIDTH, &ShellSettings::default())?;
     /// let relative = shell.spectrum.normalised().expect("power at ℓ = 1");

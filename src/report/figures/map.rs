@@ -33,6 +33,7 @@ impl MapFrame {
         let half_sides = match boundary {
             Boundary::HeldRim { .. } => [outer_radius; 2],
             Boundary::Periodic => box_sides.map(|side| 0.5 * side),
+            Boundary::HeldWalls { .. } => [0.5 * box_sides[0], outer_radius],
         };
         let half = half_sides[0].max(half_sides[1]) + widest;
         MapFrame { zoom: 5.0 * SIDE / half, half_sides, boundary }
@@ -74,7 +75,7 @@ impl MapFrame {
         let [x, y] = self.half_sides.map(|half| 0.1 * self.zoom * half);
         match self.boundary {
             Boundary::HeldRim { .. } => self.circle(self.half_sides[0], ""),
-            Boundary::Periodic => format!(
+            Boundary::Periodic | Boundary::HeldWalls { .. } => format!(
                 "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"none\" stroke=\"{INK}\"/>\n",
                 LEFT + 0.5 * SIDE - x,
                 TOP + 0.5 * SIDE - y,

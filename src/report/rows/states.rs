@@ -20,6 +20,7 @@ pub(super) fn packing(report: &Report, samples: &[SampleReport]) -> Section {
         }
         Boundary::HeldRim { .. } => ("disks in the circle, N", "radius of the circle, R [length]"),
         Boundary::Periodic => ("mobile disks, N", "half the shortest side, R [length]"),
+        Boundary::HeldWalls { .. } => ("mobile disks, N", "distance of the walls, H [length]"),
     };
     rows.add_cells("seed", samples.iter().map(|sample| sample.seed.to_string()));
     rows.add("disks in the box", |it| Some(count(it.packing.disk_count)))

@@ -1,6 +1,6 @@
 //! Refusals and named outcomes.
 
-use jamscope::displacement::{DisplacementField, MeasuredOn, Moved};
+use jamscope::displacement::{DisplacementField, MeasuredOn, Moved, Shape};
 use jamscope::observe::angular::{
     AngularCorrelation, AngularError, CorrelationEstimator, CorrelationOutcome, CorrelationSettings, CrossingOutcome,
     FrequencyLimit, PowerSpectrum, RadialDependenceSettings, RingOutcome, RingSample, RingSettings, SpectrumEstimator,
@@ -145,7 +145,13 @@ fn rings_of_a_field_are_cut_where_asked_on_the_backbone() {
             });
         }
     }
-    let field = DisplacementField { disks, inner_radius: 0.5, outer_radius: 20.0, measured_on: MeasuredOn::Backbone };
+    let field = DisplacementField {
+        disks,
+        inner_radius: 0.5,
+        outer_radius: 20.0,
+        shape: Shape::Round,
+        measured_on: MeasuredOn::Backbone,
+    };
     let found = radial_dependence(&field, &RadialDependenceSettings::default()).expect("settings in range");
     assert_eq!(found.len(), 9);
     for ring in &found {

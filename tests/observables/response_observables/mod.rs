@@ -12,7 +12,7 @@ mod multipoles;
 mod penetration;
 mod spheres;
 
-use jamscope::displacement::{DisplacementField, MeasuredOn, Moved};
+use jamscope::displacement::{DisplacementField, MeasuredOn, Moved, Shape};
 use jamscope::packing::{Domain, Packing};
 use jamscope::vector::Vector;
 use rand::{RngExt, SeedableRng};
@@ -36,6 +36,7 @@ fn field(places: &[[f64; 2]], displacement: impl Fn(f64, f64) -> [f64; 2]) -> Di
         disks: disks.collect(),
         inner_radius: 0.5,
         outer_radius: 40.0,
+        shape: Shape::Round,
         measured_on: MeasuredOn::Backbone,
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use jamscope::displacement::{DisplacementField, MeasuredOn, Moved};
+use jamscope::displacement::{DisplacementField, MeasuredOn, Moved, Shape};
 use jamscope::law::Hertzian;
 use jamscope::observe::bond_changes::{BondChange, BondChanges, BondSet};
 use jamscope::observe::fluctuations::{BondMeasure, Fluctuations};
@@ -194,7 +194,13 @@ fn the_penetration_length_of_a_growing_sphere_is_that_of_its_profile() {
         Moved { disk: disk as usize, position, distance, displacement, radial, counted: true }
     });
     let measured_on = MeasuredOn::AllDisks;
-    let field = DisplacementField { disks: disks.collect(), inner_radius: 0.5, outer_radius: 45.0, measured_on };
+    let field = DisplacementField {
+        disks: disks.collect(),
+        inner_radius: 0.5,
+        outer_radius: 45.0,
+        shape: Shape::Round,
+        measured_on,
+    };
     let profile = RadialProfile::of(&field, 1.0);
     assert_eq!(profile.rings.len(), 40);
     let settings = PenetrationSettings { thresholds: vec![1e-2] };

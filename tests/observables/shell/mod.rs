@@ -8,7 +8,7 @@ mod fits;
 
 use std::f64::consts::PI;
 
-use jamscope::displacement::{DisplacementField, MeasuredOn, Moved};
+use jamscope::displacement::{DisplacementField, MeasuredOn, Moved, Shape};
 use jamscope::observe::angular::Leakage;
 use jamscope::observe::shell::{DegreeLimit, ShellSample, ShellSpectrumSettings};
 use jamscope::vector::{Vector, dot};
@@ -74,5 +74,5 @@ fn field(positions: &[Vector<3>], outer_radius: f64, radial: impl Fn(Vector<3>) 
         Moved { disk, position, distance, displacement, radial, counted: true }
     });
     let measured_on = MeasuredOn::Backbone;
-    DisplacementField { disks: disks.collect(), inner_radius: 0.5, outer_radius, measured_on }
+    DisplacementField { disks: disks.collect(), inner_radius: 0.5, outer_radius, shape: Shape::Round, measured_on }
 }
