@@ -222,11 +222,17 @@ impl Response {
         if self.measured_on == MeasuredOn::AllDisks {
             return PhaseDecision { outcome: PhaseOutcome::Unjammed, ..PhaseDecision::default() };
         }
+        // A row between walls compresses the packing in either phase and changes many contacts.
+        let around_a_disk = self.detail.spreading_dimension() != 1;
         let evidence = Evidence {
             profile: by_profile(self),
-            pressure_change: by_pressure_change(pressure_change, increase),
+            pressure_change: by_pressure_change(pressure_change, increase).filter(|_| around_a_disk),
             spectrum: by_spectrum(self),
-            contact_changes: self.contact_changes.as_ref().and_then(|it| by_contact_changes(it.inflation)),
+            contact_changes: self
+                .contact_changes
+                .as_ref()
+                .filter(|_| around_a_disk)
+                .and_then(|it| by_contact_changes(it.inflation)),
         };
         PhaseDecision::from_evidence(permit, evidence)
     }

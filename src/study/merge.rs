@@ -204,6 +204,7 @@ mod tests {
             increase: scene.inflation.increase,
             relaxer: sample.relaxer,
             boundary: scene.inflation.boundary,
+            centre_held: scene.inflation.centre_held,
         };
         let value = |place: usize| libm::sin((sample.seed as usize + 100 * place) as f64);
         let curve = |count: usize| (0..count).map(|place| [place as f64 + 0.5, value(place)]).collect::<Vec<_>>();

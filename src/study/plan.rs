@@ -123,19 +123,15 @@ impl Plan {
 }
 
 impl Task {
-    /// One scene with one sample per inflation; they differ in increase and relaxer.
+    /// One scene with one sample per inflation; they differ in increase, relaxer and whether the centre is held.
     pub fn scenes(&self) -> Vec<Scene> {
-        let relaxers = self.study.relaxers(self.target);
-        let scene = |increase, relaxer| {
-            self.study.scene_of(self.law, self.disk_count, self.target, (increase, relaxer), self.seed)
-        };
-        let increases = self.study.increases().into_iter();
-        increases.flat_map(|increase| relaxers.iter().map(move |&relaxer| scene(increase, relaxer))).collect()
+        let scene = |drive| self.study.scene_of(self.law, self.disk_count, self.target, drive, self.seed);
+        self.study.drives(self.target).into_iter().map(scene).collect()
     }
 
     /// Number of scenes.
     pub fn scene_count(&self) -> usize {
-        self.study.increases().len() * self.study.relaxers(self.target).len()
+        self.study.drives(self.target).len()
     }
 
     /// Dimension of space.

@@ -46,6 +46,10 @@ pub enum Recipe {
     ContactChanges,
     /// The transition of spheres: κ, Δp, contact changes and G(γ) against p̂, several sizes.
     Spheres,
+    /// A row of disks inflated in strips of several lengths and widths.
+    Line,
+    /// The inflated disk held and free.
+    FreeCentre,
 }
 
 /// The size of a recipe.
@@ -66,7 +70,7 @@ const SIZES: [(usize, f64); 4] = [(1387, 0.480), (5548, 0.480), (22184, 0.486), 
 
 impl Recipe {
     /// All recipes.
-    pub const ALL: [Recipe; 15] = [
+    pub const ALL: [Recipe; 17] = [
         Recipe::Radial,
         Recipe::Kappa,
         Recipe::Angular,
@@ -82,6 +86,8 @@ impl Recipe {
         Recipe::Radius,
         Recipe::ContactChanges,
         Recipe::Spheres,
+        Recipe::Line,
+        Recipe::FreeCentre,
     ];
 
     /// Its name on the command line.
@@ -102,6 +108,8 @@ impl Recipe {
             Recipe::Radius => "radius",
             Recipe::ContactChanges => "contact-changes",
             Recipe::Spheres => "spheres",
+            Recipe::Line => "line",
+            Recipe::FreeCentre => "free-centre",
         }
     }
 
@@ -123,6 +131,12 @@ impl Recipe {
             Recipe::Radius => "S(f) at the transition by distance, both laws (fig. S6)",
             Recipe::ContactChanges => "contacts changed by inflation and deflation (fig. S9)",
             Recipe::Spheres => "the transition in three dimensions, against p and p̂",
+            Recipe::Line => {
+                "a row of disks inflated between walls: correlations along the line, by its length and the width"
+            }
+            Recipe::FreeCentre => {
+                "the inflated disk held or free: what of G*, θ*, the dipole and ℓ_iso the held disk makes"
+            }
         }
     }
 
@@ -161,6 +175,8 @@ impl Recipe {
             Recipe::Radius => radius(scale),
             Recipe::ContactChanges => contact_changes(scale),
             Recipe::Spheres => spheres(scale),
+            Recipe::Line => line(scale),
+            Recipe::FreeCentre => free_centre(scale),
         }
     }
 }
@@ -367,6 +383,76 @@ fn spheres(scale: Scale) -> Study {
     let mut study = Study { parts, ..common() };
     study.scene.dimension = 3;
     study.scene.observables = ensemble_observables(3);
+    study
+}
+
+/// Strips of four lengths, and squares of twice and four times the width. At the pressures near the transition of disks
+/// the box of 1200 disks has sides of 40.
+fn line(scale: Scale) -> Study {
+    let strip = |squares: usize, width: usize, targets: &[f64], count| Part {
+        disk_counts: vec![1200 * squares * width * width],
+        targets: targets.iter().map(|&pressure| Target::Pressure(pressure)).collect(),
+        seeds: Some(Seeds { first: 1, count }),
+        boundary: Some(Boundary::HeldWalls { distance_over_side: 0.45, length_over_side: squares as f64 }),
+        ..Part::default()
+    };
+    let all = [1e3, 1e2, 1e1, 1e0];
+    let parts = match scale {
+        Scale::Small => vec![
+            strip(1, 1, &all, 40),
+            strip(2, 1, &all, 20),
+            strip(4, 1, &all, 10),
+            strip(8, 1, &all, 8),
+            strip(1, 2, &all, 10),
+        ],
+        Scale::Medium => vec![
+            strip(1, 1, &all, 320),
+            strip(2, 1, &all, 160),
+            strip(4, 1, &all, 80),
+            strip(8, 1, &all, 40),
+            strip(1, 2, &all, 80),
+            strip(1, 4, &all, 40),
+            strip(1, 8, &all[..3], 10),
+        ],
+        Scale::Full => vec![
+            strip(1, 1, &all, 400),
+            strip(2, 1, &all, 400),
+            strip(4, 1, &all, 400),
+            strip(8, 1, &all, 400),
+            strip(1, 2, &all, 400),
+            strip(1, 4, &all, 400),
+            strip(1, 8, &all, 400),
+        ],
+    };
+    let mut study = Study { parts, increases: vec![0.1, 0.02], ..common() };
+    let mut observables = Observables { angular_profiles: None, displacement_field: None, ..Observables::of_strip() };
+    if let Some(ring) = &mut observables.angular_correlation {
+        // The half-width of G too.
+        ring.correlation.thresholds.push(0.5);
+    }
+    study.scene.inflation.boundary = Boundary::HeldWalls { distance_over_side: 0.45, length_over_side: 1.0 };
+    study.scene.observables = observables;
+    study
+}
+
+fn free_centre(scale: Scale) -> Study {
+    let parts = match scale {
+        Scale::Small => vec![part(0, reduced(&[1e6, 1e7, 1e8]), 24), part(1, reduced(&[1e7, 1e8, 1e9]), 8)],
+        Scale::Medium => vec![
+            part(0, reduced(&[1e6, 3e6, 1e7, 3e7, 1e8]), 60),
+            part(1, reduced(&[1e6, 1e7, 3e7, 1e8, 4e8, 1e9]), 60),
+            part(2, reduced(&[1e7, 1e8, 4e8]), 12),
+        ],
+        Scale::Full => vec![
+            part(1, reduced(&[1e6, 1e7, 3e7, 1e8, 4e8, 1e9]), 400),
+            part(2, reduced(&[1e6, 1e7, 3e7, 1e8, 4e8, 1e9]), 400),
+        ],
+    };
+    let mut study = Study { parts, centres_held: vec![true, false], ..common() };
+    #[cfg(feature = "fit")]
+    {
+        study.scene.observables.elastic_modes = Some(Default::default());
+    }
     study
 }
 

@@ -40,6 +40,17 @@ pub struct Cell {
     pub relaxer: RelaxerChoice,
     /// The boundary.
     pub boundary: Boundary,
+    /// Whether the inflated disk, or the row, is held. Written if it is free.
+    #[serde(default = "held", skip_serializing_if = "is_held")]
+    pub centre_held: bool,
+}
+
+fn held() -> bool {
+    true
+}
+
+fn is_held(centre_held: &bool) -> bool {
+    *centre_held
 }
 
 impl Cell {
@@ -150,6 +161,7 @@ impl Record {
             increase,
             relaxer: sample.relaxer,
             boundary,
+            centre_held: scene.inflation.centre_held,
         };
         let outcome = match result {
             Ok(result) => RecordOutcome::Done {

@@ -231,6 +231,7 @@ mod tests {
             increase: 0.1,
             relaxer: Default::default(),
             boundary: Default::default(),
+            centre_held: true,
         });
         let record = |numbers: BTreeMap<String, f64>| Record {
             cell: cell.cell,

@@ -22,6 +22,9 @@ pub struct Study {
     pub targets: Vec<Target>,
     /// Increases d_0; if empty, that of the scene \[length\].
     pub increases: Vec<f64>,
+    /// Whether the inflated disk is held, one inflation for each value; if empty, as in the scene.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub centres_held: Vec<bool>,
     /// Contact laws; if empty, that of the scene.
     pub laws: Vec<LawChoice>,
     /// Relaxers after the inflation; if empty, that of the default [`ProtocolChoice`].
@@ -87,6 +90,14 @@ impl Target {
     }
 }
 
+/// One inflation of a packing.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Drive {
+    pub increase: f64,
+    pub centre_held: bool,
+    pub relaxer: RelaxerChoice,
+}
+
 /// Consecutive seeds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -105,6 +116,7 @@ impl Default for Study {
             disk_counts: Vec::new(),
             targets: vec![Target::Pressure(10.0)],
             increases: Vec::new(),
+            centres_held: Vec::new(),
             laws: Vec::new(),
             relaxers: Vec::new(),
             seeds: Seeds { first: 1, count: 1 },
@@ -254,6 +266,7 @@ impl Study {
                 disk_counts: or(&part.disk_counts, &self.disk_counts),
                 targets: or(&part.targets, &self.targets),
                 increases: or(&part.increases, &self.increases),
+                centres_held: self.centres_held.clone(),
                 laws: or(&part.laws, &self.laws),
                 relaxers: or(&part.relaxers, &self.relaxers),
                 seeds: part.seeds.unwrap_or(self.seeds),
@@ -284,16 +297,15 @@ impl Study {
         twice("disk_counts", &self.disk_counts, usize::to_string)?;
         twice("targets", &self.targets, |target| format!("{target:?}"))?;
         twice("increases", &self.increases, f64::to_string)?;
+        twice("centres_held", &self.centres_held, bool::to_string)?;
         twice("laws", &self.laws, |law| law.name().to_string())?;
         twice("relaxers", &self.relaxers, RelaxerChoice::description)?;
         // One scene for every combination except the seeds.
         for law in self.laws() {
             for disk_count in self.disk_counts() {
                 for target in &self.targets {
-                    for increase in self.increases() {
-                        for relaxer in self.relaxers(*target) {
-                            self.scene_of(law, disk_count, *target, (increase, relaxer), first).check()?;
-                        }
+                    for drive in self.drives(*target) {
+                        self.scene_of(law, disk_count, *target, drive, first).check()?;
                     }
                 }
             }
@@ -312,12 +324,29 @@ impl Study {
     }
 
     /// The inflations.
-    pub(super) fn increases(&self) -> Vec<f64> {
+    fn increases(&self) -> Vec<f64> {
         if self.increases.is_empty() { vec![self.scene.inflation.increase] } else { self.increases.clone() }
     }
 
+    /// The inflations of a packing: every increase, centre held or free, and relaxer.
+    pub(super) fn drives(&self, target: Target) -> Vec<Drive> {
+        let held = if self.centres_held.is_empty() {
+            vec![self.scene.inflation.centre_held]
+        } else {
+            self.centres_held.clone()
+        };
+        let relaxers = self.relaxers(target);
+        let mut drives = Vec::new();
+        for increase in self.increases() {
+            for &centre_held in &held {
+                drives.extend(relaxers.iter().map(|&relaxer| Drive { increase, centre_held, relaxer }));
+            }
+        }
+        drives
+    }
+
     /// The relaxers of a target.
-    pub(super) fn relaxers(&self, target: Target) -> Vec<RelaxerChoice> {
+    fn relaxers(&self, target: Target) -> Vec<RelaxerChoice> {
         if !self.relaxers.is_empty() {
             return self.relaxers.clone();
         }
@@ -336,11 +365,12 @@ impl Study {
         law: LawChoice,
         disk_count: usize,
         target: Target,
-        (increase, relaxer): (f64, RelaxerChoice),
+        Drive { increase, centre_held, relaxer }: Drive,
         seed: u64,
     ) -> Scene {
         let mut scene = Scene { law, disk_count, ..self.scene.clone() };
         scene.inflation.increase = increase;
+        scene.inflation.centre_held = centre_held;
         let source = match target {
             Target::Pressure(pressure) => Source::Pressure(pressure),
             Target::ReducedPressure(reduced) => Source::Pressure(reduced / reduction(&scene)),

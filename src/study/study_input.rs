@@ -21,6 +21,7 @@ struct Written {
     disk_counts: Vec<usize>,
     targets: Vec<Target>,
     increases: Vec<f64>,
+    centres_held: Vec<bool>,
     laws: Vec<LawChoice>,
     relaxers: Vec<RelaxerChoice>,
     seeds: Seeds,
@@ -31,10 +32,22 @@ struct Written {
 
 impl Default for Written {
     fn default() -> Self {
-        let Study { scene, disk_counts, targets, increases, laws, relaxers, seeds, parts, time_limit } =
+        let Study { scene, disk_counts, targets, increases, centres_held, laws, relaxers, seeds, parts, time_limit } =
             Study::default();
         let protocol = None;
-        Written { scene, protocol, disk_counts, targets, increases, laws, relaxers, seeds, parts, time_limit }
+        Written {
+            scene,
+            protocol,
+            disk_counts,
+            targets,
+            increases,
+            centres_held,
+            laws,
+            relaxers,
+            seeds,
+            parts,
+            time_limit,
+        }
     }
 }
 
@@ -46,14 +59,25 @@ impl<'de> Deserialize<'de> for Study {
 
 impl Written {
     fn complete(self) -> Result<Study, &'static str> {
-        let Written { scene, protocol, disk_counts, targets, increases, laws, relaxers, seeds, parts, time_limit } =
-            self;
+        let Written {
+            scene,
+            protocol,
+            disk_counts,
+            targets,
+            increases,
+            centres_held,
+            laws,
+            relaxers,
+            seeds,
+            parts,
+            time_limit,
+        } = self;
         let relaxers = match protocol {
             Some(_) if !relaxers.is_empty() => return Err("protocol and relaxers: give only one of them"),
             Some(protocol) => vec![protocol.relaxer()],
             None => relaxers,
         };
-        Ok(Study { scene, disk_counts, targets, increases, laws, relaxers, seeds, parts, time_limit })
+        Ok(Study { scene, disk_counts, targets, increases, centres_held, laws, relaxers, seeds, parts, time_limit })
     }
 }
 

@@ -319,6 +319,7 @@ mod tests {
             increase: 0.1,
             relaxer: Default::default(),
             boundary: Default::default(),
+            centre_held: true,
         };
         let mut samples = CellSamples::new(cell);
         for seed in 0..count {

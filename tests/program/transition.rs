@@ -32,6 +32,7 @@ fn cell(disk_count: usize, target: Target, increase: f64) -> Cell {
         increase,
         relaxer: RelaxerChoice::default(),
         boundary: Boundary::HeldRim { outer_radius_over_side: RATIO },
+        centre_held: true,
     }
 }
 
