@@ -26,7 +26,14 @@ fn disks(name: &str) -> Packing<2> {
 
 fn balls() -> Packing<3> {
     let target = Target::PackingFraction(0.75);
-    let preparation = Preparation { disk_count: 1000, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
+    let preparation = Preparation {
+        disk_count: 1000,
+        mixture: Mixture::default(),
+        target,
+        tolerance: 0.01,
+        seed: 1,
+        ..Preparation::default()
+    };
     let staged = Staged { limit: ForceLimit::Relative(1e-10), ..Staged::default() };
     prepare_with::<3>(&preparation, &Hertzian::default(), &staged, &mut ()).expect("at rest").packing.get().clone()
 }

@@ -167,7 +167,7 @@ fn at_rest(settings: &Settings, pressure: f64, seed: u64) -> Result<Start, Box<d
         return Ok(Start { packing, centre, outer_radius: outer_radius.ok_or("no outer_radius")?.parse()? });
     }
     let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
-    let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed };
+    let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed, ..Preparation::default() };
     let relaxer = Staged::default();
     let prepared = prepare_with::<2>(&preparation, &law, &relaxer, &mut ())?;
     let packing = prepared.packing.get();

@@ -67,7 +67,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut here = Vec::new();
         for seed in 1..=seed_count {
             let seed = (1000 * index + seed) as u64;
-            let preparation = Preparation { disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed };
+            let preparation = Preparation {
+                disk_count,
+                mixture: Mixture::default(),
+                target,
+                tolerance: 0.01,
+                seed,
+                ..Preparation::default()
+            };
             let prepared = prepare_with::<2>(&preparation, &Hertzian::default(), &relaxer, &mut ())?;
             let network = ContactNetwork::new(prepared.packing.get(), &Hertzian::default())?;
             // An unjammed packing, near φ = 0.843 one in a few, has no ΔZ.

@@ -77,7 +77,7 @@ fn prepared(
         return Ok(read_packing(file)?);
     }
     let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
-    let preparation = Preparation { disk_count, mixture, target, tolerance: 0.2, seed: 1 };
+    let preparation = Preparation { disk_count, mixture, target, tolerance: 0.2, seed: 1, ..Preparation::default() };
     let coarse = Staged { limit: ForceLimit::Relative(1e-6), ..Staged::default() };
     let clock = Instant::now();
     let prepared = prepare_with::<2>(&preparation, law, &coarse, &mut ())?;

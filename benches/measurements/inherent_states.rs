@@ -96,7 +96,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn at_rest(disk_count: usize, pressure: f64, seed: u64) -> Result<Start, Box<dyn Error>> {
     let (law, relaxer) = (Hertzian::default(), Staged::default());
     let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
-    let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed };
+    let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed, ..Preparation::default() };
     let prepared = prepare_with::<2>(&preparation, &law, &relaxer, &mut ())?;
     let packing = prepared.packing.get();
     let chosen = choose_centre(packing, &law, Centre::Backbone, seed)?;

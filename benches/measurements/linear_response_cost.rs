@@ -102,7 +102,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn prepared(law: &Hertzian) -> Result<Packing<2>, Box<dyn Error>> {
     let (mixture, target) = (Mixture::default(), Target::Pressure(100.0));
-    let preparation = Preparation { disk_count: 88_776, mixture, target, tolerance: 0.2, seed: 1 };
+    let preparation =
+        Preparation { disk_count: 88_776, mixture, target, tolerance: 0.2, seed: 1, ..Preparation::default() };
     let staged = Staged { limit: ForceLimit::Relative(1e-6), ..Staged::default() };
     Ok(prepare_with::<2>(&preparation, law, &staged, &mut ())?.packing.get().clone())
 }

@@ -44,7 +44,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     for disk_count in [2000, 8000] {
         let target = Target::PackingFraction(0.75);
-        let preparation = Preparation { disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
+        let preparation = Preparation {
+            disk_count,
+            mixture: Mixture::default(),
+            target,
+            tolerance: 0.01,
+            seed: 1,
+            ..Preparation::default()
+        };
         let fire = Fire { limit: ForceLimit::Relative(1e-6), ..Fire::default() };
         compare(prepare_with::<3>(&preparation, &Hertzian::default(), &fire, &mut ())?.packing.get(), folder)?;
     }

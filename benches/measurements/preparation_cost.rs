@@ -75,7 +75,14 @@ fn made(disk_count: usize, pressure: f64, seeds: u64, relaxer: &impl Relaxer) ->
     let (mut count, mut cost) = (0, Cost::default());
     for seed in 1..=seeds {
         let target = Target::Pressure(pressure);
-        let preparation = Preparation { disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed };
+        let preparation = Preparation {
+            disk_count,
+            mixture: Mixture::default(),
+            target,
+            tolerance: 0.01,
+            seed,
+            ..Preparation::default()
+        };
         let prepared = prepare_with::<2>(&preparation, &Hertzian::default(), relaxer, &mut ())?;
         count += prepared.relaxation_count;
         cost = cost.plus(prepared.cost);

@@ -106,7 +106,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn sample(disk_count: usize, pressure: f64, seed: u64, relaxer: &RelaxerChoice) -> Result<Sample, PreparationError> {
     let (mixture, target, law) = (Mixture::default(), Target::Pressure(pressure), Hertzian::default());
-    let preparation = Preparation { disk_count, mixture, target, tolerance: TOLERANCE, seed };
+    let preparation = Preparation { disk_count, mixture, target, tolerance: TOLERANCE, seed, ..Preparation::default() };
     let prepared = prepare_with::<2>(&preparation, &law, relaxer, &mut ())?;
     let network = ContactNetwork::new(prepared.packing.get(), &law)?;
     let rattlers = network.rattlers().count() as f64 / disk_count as f64;

@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (disk_count, pressure, seed) = (number(1, 5548.0)? as usize, number(2, 100.0)?, number(3, 1.0)? as u64);
     let (law, fire) = (Hertzian::default(), Fire::default());
     let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
-    let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed };
+    let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed, ..Preparation::default() };
     let packing = prepare_with::<2>(&preparation, &law, &fire, &mut ())?.packing.into_inner();
     // r_out/L as the sizes of the study have it.
     let share = if disk_count < 10_000 {

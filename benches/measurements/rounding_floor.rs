@@ -35,6 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             target: Target::Pressure(pressure),
             tolerance: 0.1,
             seed: 1,
+            ..Preparation::default()
         };
         let coarse = Fire { limit: ForceLimit::Relative(1e-6), ..Fire::default() };
         let prepared = prepare_with::<2>(&preparation, &law, &coarse, &mut ())?;

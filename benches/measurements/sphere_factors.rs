@@ -75,7 +75,14 @@ fn prepared(name: &str, pressure: f64, folder: Option<&Path>) -> Result<Packing<
         }
         None => {
             let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
-            let preparation = Preparation { disk_count: name.parse()?, mixture, target, tolerance: 0.2, seed: 1 };
+            let preparation = Preparation {
+                disk_count: name.parse()?,
+                mixture,
+                target,
+                tolerance: 0.2,
+                seed: 1,
+                ..Preparation::default()
+            };
             prepare_with::<3>(&preparation, &law, &fire, &mut ())?.packing.get().clone()
         }
     };

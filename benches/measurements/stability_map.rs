@@ -46,7 +46,8 @@ fn main() -> Result<(), Failure> {
     let mut packings = Vec::new();
     for pressure in PREPARED {
         let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
-        let preparation = Preparation { disk_count: 400, mixture, target, tolerance: 0.1, seed: 1 };
+        let preparation =
+            Preparation { disk_count: 400, mixture, target, tolerance: 0.1, seed: 1, ..Preparation::default() };
         packings.push(prepare_with::<2>(&preparation, &law, &Staged::default(), &mut ())?.packing.into_inner());
     }
     let folder = format!("{}/fixtures/packings", env!("CARGO_MANIFEST_DIR"));

@@ -94,7 +94,14 @@ fn fire_brings_a_packing_to_rest_under_a_new_law() {
 #[test]
 fn a_packing_under_a_new_law_is_prepared_and_inflated() {
     let (target, fire) = (Target::Pressure(2000.0), Fire::default());
-    let preparation = Preparation { disk_count: 200, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
+    let preparation = Preparation {
+        disk_count: 200,
+        mixture: Mixture::default(),
+        target,
+        tolerance: 0.01,
+        seed: 1,
+        ..Preparation::default()
+    };
     let prepared = prepare_with::<2>(&preparation, &LAW, &fire, &mut ()).expect("a packing");
     assert!((prepared.pressure / 2000.0 - 1.0).abs() <= 0.01);
     let inflated =

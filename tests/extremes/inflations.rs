@@ -11,7 +11,14 @@ use jamscope::vector::larger;
 use crate::{all_finite, fire};
 
 fn packing(target: Target) -> Packing<2> {
-    let preparation = Preparation { disk_count: 400, mixture: Mixture::default(), target, tolerance: 0.01, seed: 2 };
+    let preparation = Preparation {
+        disk_count: 400,
+        mixture: Mixture::default(),
+        target,
+        tolerance: 0.01,
+        seed: 2,
+        ..Preparation::default()
+    };
     prepare_with::<2>(&preparation, &Hertzian::default(), &fire(1e-13), &mut ()).expect("in reach").packing.into_inner()
 }
 

@@ -9,7 +9,8 @@ use jamscope::relax::Criterion;
 use crate::{all_finite, fire};
 
 fn made(law: &dyn PairLaw, count: usize, mixture: Mixture, target: Target) -> Result<Prepared<2>, PreparationError> {
-    let preparation = Preparation { disk_count: count, mixture, target, tolerance: 0.01, seed: 3 };
+    let preparation =
+        Preparation { disk_count: count, mixture, target, tolerance: 0.01, seed: 3, ..Preparation::default() };
     prepare_with::<2>(&preparation, law, &fire(1e-8), &mut ())
 }
 

@@ -140,6 +140,7 @@ fn smooth_scene() -> Packing<2> {
         target: Target::Pressure(1000.0),
         tolerance: 0.3,
         seed: 4,
+        ..Preparation::default()
     };
     let limit = ForceLimit::Relative(1e-12);
     let relaxer = Staged { limit, ..Staged::default() };

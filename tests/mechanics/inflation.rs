@@ -33,7 +33,14 @@ fn loose() -> &'static Packing<2> {
 }
 
 fn made(target: Target) -> Packing<2> {
-    let preparation = Preparation { disk_count: 300, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
+    let preparation = Preparation {
+        disk_count: 300,
+        mixture: Mixture::default(),
+        target,
+        tolerance: 0.01,
+        seed: 1,
+        ..Preparation::default()
+    };
     let prepared = prepare_with::<2>(&preparation, &hertzian(), &fire(), &mut ()).expect("a packing");
     prepared.packing.into_inner()
 }

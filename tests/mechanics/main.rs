@@ -9,6 +9,8 @@ mod twins;
 mod certificate;
 mod contact;
 #[cfg(feature = "linear")]
+mod drives;
+#[cfg(feature = "linear")]
 mod energy;
 #[cfg(feature = "linear")]
 mod implicit;

@@ -257,7 +257,14 @@ fn slopes_of_the_stress_are_differences_of_relaxed_packings() {
     let target = Target::PackingFraction(0.95);
     let fire = Fire { limit: ForceLimit::Relative(1e-13), step_limit: 200_000, ..Fire::default() };
     for seed in [1, 2] {
-        let preparation = Preparation { disk_count: 60, mixture: Mixture::default(), target, tolerance: 0.01, seed };
+        let preparation = Preparation {
+            disk_count: 60,
+            mixture: Mixture::default(),
+            target,
+            tolerance: 0.01,
+            seed,
+            ..Preparation::default()
+        };
         let prepared = prepare_with::<2>(&preparation, &law, &fire, &mut ()).expect("at rest");
         check_slopes(prepared.packing.get(), &law, &format!("60 Hertzian disks, seed {seed}"));
     }

@@ -231,7 +231,14 @@ fn energies_at_the_restarts_of_fire_never_increase_below_zero_either() {
 
 fn dense() -> Packing<2> {
     let target = Target::Pressure(2000.0);
-    let preparation = Preparation { disk_count: 300, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
+    let preparation = Preparation {
+        disk_count: 300,
+        mixture: Mixture::default(),
+        target,
+        tolerance: 0.01,
+        seed: 1,
+        ..Preparation::default()
+    };
     let prepared = prepare_with::<2>(&preparation, &hertzian(), &fire(1e-12), &mut ()).expect("a packing");
     prepared.packing.into_inner()
 }

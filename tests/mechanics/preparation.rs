@@ -14,7 +14,7 @@ use jamscope::vector::{larger, norm};
 use crate::scenes::laws::{hertzian, hookean};
 
 fn preparation(disk_count: usize, target: Target, seed: u64) -> Preparation {
-    Preparation { disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed }
+    Preparation { disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed, ..Preparation::default() }
 }
 
 fn made(preparation: &Preparation, law: &dyn PairLaw) -> Result<Prepared<2>, PreparationError> {
@@ -224,6 +224,7 @@ fn balls_are_prepared_and_inflated_by_the_same_code() {
         target: Target::Pressure(2000.0),
         tolerance: 0.01,
         seed: 3,
+        ..Preparation::default()
     };
     let (law, fire) = (hertzian(), Fire::default());
     let prepared = prepare_with::<3>(&preparation, &law, &fire, &mut ()).expect("within reach");

@@ -30,7 +30,14 @@ fn sheared(
 
 fn dense(disk_count: usize, packing_fraction: f64, seed: u64) -> Packing<2> {
     let target = Target::PackingFraction(packing_fraction);
-    let preparation = Preparation { disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed };
+    let preparation = Preparation {
+        disk_count,
+        mixture: Mixture::default(),
+        target,
+        tolerance: 0.01,
+        seed,
+        ..Preparation::default()
+    };
     prepare_with::<2>(&preparation, &hertzian(), &fire(1e-12), &mut ()).expect("at rest").packing.into_inner()
 }
 

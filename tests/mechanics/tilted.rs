@@ -130,7 +130,14 @@ fn a_sheared_close_packed_lattice_has_its_exact_energy_stress_and_constants() {
 fn at_rest(tilt: f64, law: &dyn PairLaw) -> Packing<2> {
     let fire = Fire { limit: ForceLimit::Relative(1e-12), ..Fire::default() };
     let target = Target::PackingFraction(0.88);
-    let preparation = Preparation { disk_count: 120, mixture: Mixture::default(), target, tolerance: 0.01, seed: 3 };
+    let preparation = Preparation {
+        disk_count: 120,
+        mixture: Mixture::default(),
+        target,
+        tolerance: 0.01,
+        seed: 3,
+        ..Preparation::default()
+    };
     let prepared = prepare_with::<2>(&preparation, law, &fire, &mut ()).expect("at rest");
     let packing = prepared.packing.get();
     let [width, height] = packing.domain().lengths().expect("a box");

@@ -82,6 +82,7 @@ fn full_study() -> Study {
         disk_counts: vec![300, 400],
         targets,
         increases: vec![0.1, 0.02],
+        centres_held: vec![true, false],
         laws: vec![LawChoice::Hertzian(Hertzian::default())],
         relaxers: relaxers(),
         seeds: Seeds { first: 1, count: 3 },

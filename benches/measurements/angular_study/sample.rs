@@ -106,8 +106,14 @@ impl Plan {
         let law = Hertzian::default();
         let pressure = reduced_pressure / self.mobile_count().powf(1.5);
         let target = self.packing_fraction.map_or(Target::Pressure(pressure), Target::PackingFraction);
-        let preparation =
-            Preparation { disk_count: self.disk_count, mixture: Mixture::default(), target, tolerance: 0.01, seed };
+        let preparation = Preparation {
+            disk_count: self.disk_count,
+            mixture: Mixture::default(),
+            target,
+            tolerance: 0.01,
+            seed,
+            ..Preparation::default()
+        };
         let prepared = prepare_with::<2>(&preparation, &law, relaxer, &mut ())?;
         let boundary = Boundary::HeldRim { outer_radius_over_side: self.outer_radius_over_side };
         let inflation = Inflation { increase: self.increase, boundary, deflate: true, ..Inflation::default() };

@@ -73,7 +73,7 @@ pub fn radius_of(ring: usize) -> f64 {
 pub fn prepared(disk_count: usize, seeds: Range<u64>, pressure: f64) -> Result<Vec<Packing<2>>, Box<dyn Error>> {
     let one = |seed: u64| {
         let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
-        let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed };
+        let preparation = Preparation { disk_count, mixture, target, tolerance: 0.01, seed, ..Preparation::default() };
         let prepared = prepare_with::<2>(&preparation, &Hertzian::default(), &Staged::default(), &mut ());
         prepared.map(|prepared| prepared.packing.into_inner()).map_err(|error| error.to_string())
     };

@@ -177,7 +177,14 @@ fn every_order_of_elimination_gives_the_same_solution() {
     }
     check(&fixture("hertz_N1000_p100"), [1.1, 1.4]);
     let target = Target::PackingFraction(0.75);
-    let preparation = Preparation { disk_count: 2000, mixture: Mixture::default(), target, tolerance: 0.01, seed: 1 };
+    let preparation = Preparation {
+        disk_count: 2000,
+        mixture: Mixture::default(),
+        target,
+        tolerance: 0.01,
+        seed: 1,
+        ..Preparation::default()
+    };
     let balls = prepare_with::<3>(&preparation, &hertzian(), &fire(1e-4), &mut ()).expect("at rest");
     check(balls.packing.get(), [1.1, 0.85]);
 }

@@ -93,7 +93,8 @@ fn contacts_of_rattlers_are_counted_apart() {
 fn a_real_inflation_adds_up_state_by_state() {
     let (law, fire) = (Hertzian::default(), Fire::default());
     let (mixture, target) = (Mixture::default(), Target::Pressure(100.0));
-    let preparation = Preparation { disk_count: 400, mixture, target, tolerance: 0.01, seed: 3 };
+    let preparation =
+        Preparation { disk_count: 400, mixture, target, tolerance: 0.01, seed: 3, ..Preparation::default() };
     let packing = prepare_with::<2>(&preparation, &law, &fire, &mut ()).expect("a packing").packing.into_inner();
     let inflation = Inflation { deflate: true, ..Inflation::default() };
     let inflated = inflate_with(&inflation, &packing, &law, &fire, 1, &mut ()).expect("an inflation");
@@ -144,7 +145,8 @@ fn left_changed(pressure: f64, seeds: std::ops::Range<u64>) -> f64 {
     let (mut left, mut all) = (0, 0);
     for seed in seeds {
         let (mixture, target) = (Mixture::default(), Target::Pressure(pressure));
-        let preparation = Preparation { disk_count: 1000, mixture, target, tolerance: 0.01, seed };
+        let preparation =
+            Preparation { disk_count: 1000, mixture, target, tolerance: 0.01, seed, ..Preparation::default() };
         let packing = prepare_with::<2>(&preparation, &law, &staged, &mut ()).expect("a packing").packing;
         let inflated = inflate_with(&inflation, packing.get(), &law, &staged, seed, &mut ()).expect("an inflation");
         let cycle = ContactCycle::of(&inflated, &law).expect("sound disks").expect("deflated");

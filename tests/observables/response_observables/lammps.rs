@@ -10,7 +10,7 @@
 
 use std::collections::BTreeSet;
 
-use jamscope::displacement::DisplacementField;
+use jamscope::displacement::{DisplacementField, Shape};
 use jamscope::inflation::{Inflated, Rest};
 use jamscope::law::{Hertzian, Hookean, PairLaw};
 use jamscope::network::ContactNetwork;
@@ -55,6 +55,8 @@ fn rest(stored: &Stored, packing: Packing<2>, law: &dyn PairLaw, limit: ForceLim
 fn inflated(stored: &Stored, before: Rest<2>, after: Rest<2>) -> Inflated<2> {
     Inflated {
         centre: stored.mobile_count,
+        grown: vec![stored.mobile_count],
+        shape: Shape::Round,
         inner_radius: 0.5,
         outer_radius: stored.outer_radius,
         mobile_count: stored.mobile_count,
