@@ -14,12 +14,15 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
+use crate::inflation::region::Region;
 use crate::inflation::{Inflated, Rest, Strip, displacement};
 #[cfg(feature = "linear")]
 use crate::linear::LinearResponse;
 use crate::packing::Packing;
 use crate::relax::Criterion;
 use crate::vector::{Vector, dot, norm, scaled};
+
+pub use crate::inflation::region::Shape;
 
 /// One disk of a displacement field.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,20 +53,6 @@ impl Moved<2> {
     }
 }
 
-/// The shape of the region of a displacement field.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Shape {
-    /// A circle, a sphere or a box: distances and radial parts are from the inflated disk.
-    #[default]
-    Round,
-    /// A strip along the first axis, of this length and periodic along it: distances and radial parts are from the line
-    /// through the inflated disk, across the strip \[length\].
-    Strip {
-        /// Period along the strip \[length\].
-        length: f64,
-    },
-}
-
 /// The displacements of the mobile disks, without the inflated disks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DisplacementField<const D: usize> {
@@ -77,18 +66,6 @@ pub struct DisplacementField<const D: usize> {
     pub shape: Shape,
     /// Which disks count.
     pub measured_on: MeasuredOn,
-}
-
-/// The inflated disks and the region around them.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Region<'a> {
-    /// The disk, or that of the row through which the line runs.
-    pub centre: usize,
-    /// All inflated disks.
-    pub grown: &'a [usize],
-    pub inner_radius: f64,
-    pub outer_radius: f64,
-    pub shape: Shape,
 }
 
 /// Which disks the observables of a field include.

@@ -20,8 +20,9 @@ use serde::Serialize;
 pub use pair::{AnalysisError, Pair, PairSettings};
 
 use crate::certificate::Certificate;
-use crate::displacement::{DisplacementField, Region, Shape};
+use crate::displacement::{DisplacementField, Shape};
 use crate::inflation::Boundary;
+use crate::inflation::region::Region;
 use crate::law::choice::LawChoice;
 use crate::law::pair_law::PairLaw;
 use crate::observe::PressureChange;

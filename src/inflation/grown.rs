@@ -1,9 +1,9 @@
 //! [`Grown`]: a packing whose disk has grown, before any disk has moved.
 
-use crate::displacement::{Region, Shape};
 use crate::inflation::choose_centre::choose_centre;
 use crate::inflation::circle::Circle;
 use crate::inflation::error::InflationError;
+use crate::inflation::region::{Region, Shape};
 use crate::inflation::rest::{Rest, Stage};
 use crate::inflation::settings::{Boundary, Inflation};
 use crate::inflation::strip::Strip;

@@ -179,7 +179,12 @@ pub(super) fn fit<const D: usize>(
     settings: &ProfileFitSettings,
 ) -> Option<Fitted> {
     let annulus = Annulus::new(field.inner_radius, field.outer_radius).ok()?;
-    fit_radial_profile::<D>(&RadialProfile::of(field, ring_width), annulus, settings).ok().as_ref().map(Fitted::from)
+    let profile = RadialProfile::of(field, ring_width);
+    let fit = match field.spreading_dimension() {
+        1 => fit_radial_profile::<1>(&profile, annulus, settings),
+        _ => fit_radial_profile::<D>(&profile, annulus, settings),
+    };
+    fit.ok().as_ref().map(Fitted::from)
 }
 
 /// Number of entries in only one of two ascending lists.

@@ -27,8 +27,7 @@ mod sensitivity;
 mod settings;
 mod spread;
 
-use crate::displacement::Shape;
-use crate::inflation::{Inflated, Inflation};
+use crate::inflation::{Inflated, Inflation, Shape};
 use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError, ball_volume};
 use crate::relax::Trace;

@@ -57,7 +57,7 @@ pub mod screened;
 mod sensitivity;
 mod small_wavenumber;
 mod spherical;
-mod straight;
+mod strip;
 
 use serde::Serialize;
 use thiserror::Error;

@@ -6,7 +6,7 @@ use crate::reference::cylindrical::Cylindrical;
 use crate::reference::elastic::power_gap;
 use crate::reference::sensitivity::RimResponse;
 use crate::reference::spherical::Spherical;
-use crate::reference::straight::{self, Straight};
+use crate::reference::strip::{self, Straight};
 use crate::reference::{Annulus, RadialSolution, ReferenceError};
 
 /// Up to this κR the elastic solution is used instead of the screened one. The relative error is (κR)²/8 ≤ 1.3·10⁻¹⁷ in
@@ -89,7 +89,7 @@ impl<const D: usize> RimSolution<D> {
             return 0.0;
         }
         if D == 1 {
-            return straight::rim_response(self.wavenumber, self.annulus.outer_radius(), radius);
+            return strip::rim_response(self.wavenumber, self.annulus.outer_radius(), radius);
         }
         let response =
             self.response.get_or_init(|| Box::new(RimResponse::new(self.annulus.outer_radius(), self.wavenumber)));

@@ -7,7 +7,7 @@ use crate::reference::local_series::Sign;
 use crate::reference::poles::{pole, pole_at};
 use crate::reference::rim::RimSolution;
 use crate::reference::sensitivity::{Profile, Sensitivity};
-use crate::reference::straight;
+use crate::reference::strip;
 use crate::reference::{Annulus, RadialSolution, ReferenceError};
 
 /// Radial displacement of a medium with dipole screening.
@@ -128,7 +128,7 @@ impl<const D: usize> Screened<D> {
             return 0.0;
         }
         if D == 1 {
-            return self.amplitude * straight::profile_response(self.annulus, self.wavenumber, radius);
+            return self.amplitude * strip::profile_response(self.annulus, self.wavenumber, radius);
         }
         let sensitivity = self.sensitivity.get_or_init(|| {
             Box::new(Sensitivity::new(&Profile {

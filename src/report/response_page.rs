@@ -37,6 +37,7 @@ pub(crate) fn figures(
 ) -> Result<Vec<Figure>, FigureError> {
     let mut figures = Vec::new();
     let plane = response.detail.plane();
+    let around = if response.detail.spreading_dimension() == 1 { Around::Row } else { Around::Ring };
     if let Some(detail) = response.detail.space().filter(|_| heat) {
         figures.push(slice_map(name, &detail.field, radii, frame));
         figures.push(shell_map(name, &detail.field, radii, SHELL));
@@ -48,10 +49,10 @@ pub(crate) fn figures(
         figures.push(radial_figure(name, response, profile)?);
     }
     if let Some(profiles) = &response.angular_profiles {
-        figures.push(angular_figure(name, profiles)?);
+        figures.push(angular_figure(name, around, profiles)?);
     }
     if let Some(ring) = response.angular_correlation.as_ref().and_then(|it| it.measured()) {
-        figures.extend(of_ring(name, ring)?);
+        figures.extend(of_ring(name, around, ring)?);
     }
     if let Some(shell) = response.shell_correlation.as_ref().and_then(|it| it.measured()) {
         figures.extend(of_shell(name, shell)?);
@@ -95,7 +96,7 @@ pub(crate) fn figures(
 }
 
 /// G(θ) and S(f); empty if the ring has no variance.
-fn of_ring(name: &str, ring: &RingResponse) -> Result<Vec<Figure>, FigureError> {
+fn of_ring(name: &str, around: Around, ring: &RingResponse) -> Result<Vec<Figure>, FigureError> {
     let correlation = &ring.correlation;
     if !correlation.anticorrelation.is_finite() {
         return Ok(Vec::new());
@@ -112,12 +113,11 @@ fn of_ring(name: &str, ring: &RingResponse) -> Result<Vec<Figure>, FigureError> 
         values: correlation.values.clone(),
         standard_errors: Vec::new(),
     };
-    let mut figures =
-        vec![correlation_figure(name, Around::Ring, &[curve], threshold.map(|crossing| crossing.threshold))?];
+    let mut figures = vec![correlation_figure(name, around, &[curve], threshold.map(|crossing| crossing.threshold))?];
     if let Some(relative) = ring.spectrum.normalised() {
         let label = format!("r/R = {}, {} disks", significant(ring.relative_radius, 3), ring.spectrum.disk_count);
         let points = SpectrumPoints { label, values: relative[1..].to_vec(), standard_errors: Vec::new() };
-        figures.extend(spectrum_figure(name, Around::Ring, &[points], &fitted(ring, &relative)));
+        figures.extend(spectrum_figure(name, around, &[points], &fitted(ring, &relative)));
     }
     Ok(figures)
 }
@@ -200,6 +200,12 @@ pub(crate) fn legend(responses: &[&Response], heat: bool) -> String {
         text.push_str(
             "The slice shows r²·d<sub>r</sub> of the spheres that a plane through the inflated one cuts, the oval map d<sub>r</sub> of the spheres of \
              a shell in all directions. Orange spheres move outwards, purple spheres inwards; grey spheres are rattlers. ",
+        );
+    } else if heat && responses.iter().any(|it| it.detail.spreading_dimension() == 1) {
+        text.push_str(
+            "The map shows d<sub>r</sub>, the displacement of each disk away from the line through the row, divided by a value that 98 % of the disks do \
+             not exceed. Orange disks move away, purple disks towards the line; grey disks are rattlers. An angle θ stands for the place x along \
+             the strip of length L, θ = 2πx/L. ",
         );
     } else if heat {
         text.push_str(

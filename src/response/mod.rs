@@ -211,6 +211,18 @@ impl Response {
         response
     }
 
+    /// κ_1, the first pole of the screened solution \[1/length\]; none if a is not below R.
+    #[cfg(feature = "fit")]
+    pub(crate) fn first_pole(&self) -> Option<f64> {
+        let [inner, outer] = self.detail.radii();
+        let annulus = Annulus::new(inner, outer).ok()?;
+        Some(match self.detail.spreading_dimension() {
+            1 => pole::<1>(annulus, 1),
+            3 => pole::<3>(annulus, 1),
+            _ => pole::<2>(annulus, 1),
+        })
+    }
+
     /// The labels of two disks.
     pub(crate) fn labels_of(&self, disks: [u32; 2]) -> [u64; 2] {
         disks.map(|disk| self.labels[disk as usize])
@@ -280,15 +292,8 @@ fn by_profile(response: &Response) -> Option<Phase> {
     match fit.decision {
         Decision::Screened => Some(Phase::Plastic),
         Decision::Elastic => {
-            let [inner, outer] = response.detail.radii();
-            let annulus = Annulus::new(inner, outer).ok()?;
             let bound = fit.elastic.wavenumber_bound?;
-            let first = match response.detail.spreading_dimension() {
-                1 => pole::<1>(annulus, 1),
-                3 => pole::<3>(annulus, 1),
-                _ => pole::<2>(annulus, 1),
-            };
-            (bound < first).then_some(Phase::Quasielastic)
+            (bound < response.first_pole()?).then_some(Phase::Quasielastic)
         }
         Decision::Neither => None,
     }

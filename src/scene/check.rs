@@ -147,6 +147,9 @@ impl Scene {
     /// [`SceneError`] with the field and the value.
     pub fn check(&self) -> Result<(), SceneError> {
         within("dimension", self.dimension as f64, "2 or 3", matches!(self.dimension, 2 | 3))?;
+        if self.dimension == 3 && self.inflation.boundary.is_strip() {
+            return Err(SceneError::StripOfThePlane);
+        }
         if let Some(observable) = self.observables.of_the_plane().filter(|_| self.dimension == 3) {
             return Err(SceneError::OfThePlane { observable });
         }
@@ -174,9 +177,6 @@ impl Scene {
             within(field("distance_over_side"), ratio, "above 0 and below 0.5", ratio > 0.0 && ratio < 0.5)?;
             let ratio = length_over_side;
             within(field("length_over_side"), ratio, "between 1e-3 and 1e3", (1e-3..=1e3).contains(&ratio))?;
-            if self.dimension != 2 {
-                return Err(SceneError::StripOfThePlane);
-            }
             if let Some(observable) = self.observables.of_a_circle() {
                 return Err(SceneError::OfACircle { observable });
             }

@@ -59,6 +59,35 @@ impl Cell {
         Cell { target: self.target, ..*other } == *self
     }
 
+    /// Number of dimensions in which the response spreads: 1 in a strip.
+    pub fn spreading_dimension(&self) -> usize {
+        if self.boundary.is_strip() { 1 } else { self.dimension }
+    }
+
+    /// Whether its response scales with p̂: around a held disk or sphere, or in a periodic box.
+    pub fn scales(&self) -> bool {
+        !self.boundary.is_strip() && self.centre_held
+    }
+
+    /// Whether the published values apply: those of disks.
+    pub fn is_published(&self) -> bool {
+        self.dimension == 2 && self.scales()
+    }
+
+    /// What differs from a held disk, for descriptions: the shape of a strip, a free centre.
+    pub(crate) fn drive_words(&self) -> String {
+        let strip = match self.boundary {
+            Boundary::HeldWalls { length_over_side, .. } => format!(", strip {length_over_side} times as long as wide"),
+            Boundary::HeldRim { .. } | Boundary::Periodic => String::new(),
+        };
+        let free = match (self.centre_held, self.boundary) {
+            (true, _) => "",
+            (false, Boundary::HeldWalls { .. }) => ", free row",
+            (false, _) => ", free centre",
+        };
+        strip + free
+    }
+
     /// What its packings consist of: disks or spheres.
     pub fn particles(&self) -> &'static str {
         particles(self.dimension)

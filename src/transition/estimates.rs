@@ -66,7 +66,7 @@ pub(super) fn estimates(points: &[SeriesPoint], samples: &[&CellSamples]) -> Vec
         Some(radii.iter().sum::<f64>() / radii.len() as f64)
     };
     let screened = |samples: &CellSamples, wavenumber: f64| {
-        radius(samples).is_some_and(|radius| wavenumber * radius >= 0.5 * poles(samples.cell.dimension)[0])
+        radius(samples).is_some_and(|radius| wavenumber * radius >= 0.5 * poles(samples.cell.spreading_dimension())[0])
     };
     let mean = |method, name: &str, level: f64| {
         estimate(method, numbers(points, samples, name), |at, sizes, cells| {
@@ -87,7 +87,7 @@ pub(super) fn estimates(points: &[SeriesPoint], samples: &[&CellSamples]) -> Vec
         plastic(Method::Wavenumber, "wavenumber", &screened),
         plastic(Method::PressureChange, "pressure_change", &|_, change| change < 0.0),
     ];
-    if samples.iter().any(|samples| samples.cell.dimension == 3) {
+    if samples.iter().any(|samples| samples.cell.spreading_dimension() != 2) {
         return by_sample.into_iter().flatten().collect();
     }
     let by_angle = [

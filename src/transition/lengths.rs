@@ -82,7 +82,8 @@ impl Lengths {
             .get("wavenumber")
             .zip(radius)
             .map(|(all, radius)| {
-                let screened = all.iter().filter(|&&kappa| kappa * radius >= 0.5 * poles(samples.cell.dimension)[0]);
+                let screened =
+                    all.iter().filter(|&&kappa| kappa * radius >= 0.5 * poles(samples.cell.spreading_dimension())[0]);
                 screened.map(|kappa| kappa.recip()).collect()
             })
             .unwrap_or_default();
@@ -98,7 +99,7 @@ impl Lengths {
 
 /// ℓ_iso and ℓ_iso ΔZ with their intervals.
 fn isostatic(samples: &CellSamples) -> [Option<Sampled>; 2] {
-    if samples.cell.dimension != 2 {
+    if samples.cell.spreading_dimension() != 2 {
         return [None, None];
     }
     let (rows, radii) = (&samples.stretching, ring_radii(samples));
@@ -137,7 +138,7 @@ fn isostatic_of(rows: &[StretchingRow], radii: &[(usize, f64)], chosen: &[usize]
 /// p where ℓ_iso falls to the longest screening length, by linear interpolation in logarithms; the samples of all cells
 /// are resampled.
 pub(super) fn matching(points: &[SeriesPoint], samples: &[&CellSamples]) -> Option<Sampled> {
-    let first = samples.first().filter(|samples| samples.cell.dimension == 2)?;
+    let first = samples.first().filter(|samples| samples.cell.spreading_dimension() == 2)?;
     let radii = first.numbers.get("outer_radius")?;
     let longest = NumberStatistics::of(radii).mean / poles(2)[0];
     let pressures: Vec<f64> = points.iter().map(|point| point.pressure).collect();

@@ -166,7 +166,7 @@ pub(super) fn comparisons(
     jamming: &[JammingSeries],
 ) -> Vec<Comparison> {
     // All published values are of disks.
-    if series.iter().any(|one| one.cell.dimension != 2) {
+    if series.iter().any(|one| !one.cell.is_published()) {
         return Vec::new();
     }
     // p̂_c is published for Hertzian disks and d_0 = 0.1.

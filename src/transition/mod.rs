@@ -80,8 +80,10 @@ impl Transition {
     /// Some seconds for a study of ten cells of a hundred samples: 400 resamplings of every number.
     pub fn of(merged: &Merged) -> Self {
         let series = Series::all(merged);
-        let scaling = Scaling::all(merged, &series);
-        let pressure_laws = PressureLaw::all(&series);
+        // The scaling is that of p̂: a strip has none, and a free centre is another experiment.
+        let scaled: Vec<Series> = series.iter().filter(|one| one.cell.scales()).cloned().collect();
+        let scaling = Scaling::all(merged, &scaled);
+        let pressure_laws = PressureLaw::all(&scaled);
         let jamming = JammingSeries::all(merged);
         let comparisons = literature::comparisons(&series, &scaling, &pressure_laws, &jamming);
         let calibration = calibration::calibration(merged, &series);

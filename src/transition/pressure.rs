@@ -19,17 +19,20 @@
 //! For spheres κ_1 R = 4.4934, the first zero of j_1, and only κ and Δp are used: what G*, γ* and S(ℓ) are at a
 //! transition in three dimensions is not known.
 
+use std::f64::consts::PI;
+
 use serde::Serialize;
 
 use crate::fit::ensemble::BootstrapInterval;
 use crate::transition::evidence::CannotTell;
 
-/// κ_1 R and κ_2 R: the first zeros of J_1 for disks (2), of j_1 for spheres (3). Source: DLMF, §10.21(i), §10.58.
-pub(crate) fn poles(dimension: usize) -> [f64; 2] {
-    if dimension == 3 {
-        [4.493_409_457_909_064, 7.725_251_836_937_707]
-    } else {
-        [3.831_705_970_207_512, 7.015_586_669_815_618]
+/// κ_1 R and κ_2 R for a ≪ R: the first zeros of J_1 for disks (2), of j_1 for spheres (3), of the sine in a strip (1).
+/// Source: DLMF, §10.21(i), §10.58.
+pub(crate) fn poles(spreading_dimension: usize) -> [f64; 2] {
+    match spreading_dimension {
+        1 => [PI, 2.0 * PI],
+        3 => [4.493_409_457_909_064, 7.725_251_836_937_707],
+        _ => [3.831_705_970_207_512, 7.015_586_669_815_618],
     }
 }
 
@@ -37,7 +40,7 @@ pub(crate) fn poles(dimension: usize) -> [f64; 2] {
 pub(crate) const SCALE_FREE_ANTICORRELATION: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 
 /// θ* for S ∝ f^(−1.5), threshold 0.1 \[rad\].
-pub(crate) const SCALE_FREE_ANGLE: f64 = 0.303_004 * std::f64::consts::PI;
+pub(crate) const SCALE_FREE_ANGLE: f64 = 0.303_004 * PI;
 
 /// Slope of the scale-free spectrum.
 pub(crate) const SCALE_FREE_SLOPE: f64 = 1.5;

@@ -231,7 +231,7 @@ impl PressureLaw {
     pub(super) fn all(series: &[Series]) -> Vec<PressureLaw> {
         let mut all: Vec<PressureLaw> = Vec::new();
         // The argument N² d_0 is of disks.
-        for one in series.iter().filter(|one| one.cell.dimension == 2) {
+        for one in series.iter().filter(|one| one.cell.spreading_dimension() == 2) {
             let (law, relaxer, mobile) = (one.cell.law, one.cell.relaxer, one.mobile_count());
             for estimate in &one.estimates {
                 let TransitionPressure::Found(found) = estimate.pressure else { continue };

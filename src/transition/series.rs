@@ -105,7 +105,7 @@ impl Series {
                 .collect(),
             divergence: AngleDivergence::of(&spectra, critical),
             at_transition: critical.and_then(|at| AtPressure::of(&points, &samples, at)),
-            at_published: AtPressure::of(&points, &samples, PUBLISHED).filter(|_| samples[0].cell.dimension == 2),
+            at_published: AtPressure::of(&points, &samples, PUBLISHED).filter(|_| samples[0].cell.is_published()),
             lengths,
             points,
             spectra,
@@ -122,7 +122,8 @@ impl Series {
     pub fn name(&self) -> String {
         let Cell { law, disk_count, increase, relaxer, .. } = self.cell;
         let disks = self.cell.particles();
-        format!("{} {disk_count} {disks}, d_0 = {increase}, {}", law.name(), relaxer.description())
+        let (law, relaxer, drive) = (law.name(), relaxer.description(), self.cell.drive_words());
+        format!("{law} {disk_count} {disks}, d_0 = {increase}, {relaxer}{drive}")
     }
 }
 

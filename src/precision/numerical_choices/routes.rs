@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::inflation::Grown;
+use crate::inflation::{Grown, Shape};
 use crate::precision::numerical_choices::{ChoiceRow, ChoiceTable};
 use crate::reference::screened::Screened;
 use crate::reference::{Annulus, RadialSolution};
@@ -26,6 +26,10 @@ fn bessel<const D: usize>(x: f64) -> [f64; 2] {
 /// The closed formula with J and Y of `libm` compared with [`Screened`], on the annulus of the sample, at κ of the fit
 /// and fractions of it. None if the annulus has no screened solution.
 pub(super) fn routes<const D: usize>(grown: &Grown<D>, wavenumber: f64) -> Option<ChoiceTable> {
+    // A strip has sines instead of Bessel functions.
+    if grown.shape() != Shape::Round {
+        return None;
+    }
     let annulus = Annulus::new(grown.inner_radius, grown.outer_radius).ok()?;
     let (inner, outer) = (grown.inner_radius, grown.outer_radius);
     let radii: Vec<f64> = (0..POINTS).map(|i| inner + (i as f64 + 0.5) / POINTS as f64 * (outer - inner)).collect();

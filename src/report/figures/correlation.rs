@@ -35,6 +35,7 @@ pub fn correlation_figure(
 ) -> Result<Figure, FigureError> {
     let (x_label, y_label) = match around {
         Around::Ring => ("θ/π", "G(θ)"),
+        Around::Row => ("2x/L", "G(x)"),
         Around::Shell => ("γ/π", "G(γ)"),
     };
     let colour = |index: usize| SEQUENCE[index % SEQUENCE.len()];

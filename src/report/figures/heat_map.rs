@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::displacement::{DisplacementField, Moved};
+use crate::displacement::{DisplacementField, Moved, Shape};
 use crate::report::figures::layer::{Group, Segment};
 use crate::report::figures::map::{MapFrame, Range, colour_bar, level, map_label};
 use crate::report::figures::palette::diverging;
-use crate::report::figures::{Figure, RESCALED, escaped};
+use crate::report::figures::{DISPLACEMENT, Figure, RESCALED, escaped};
 use crate::report::number::significant;
 use crate::vector::Vector;
 
@@ -16,7 +16,7 @@ pub(crate) const LEVELS: i32 = 32;
 /// Colour of disks that do not count.
 const RATTLER: [u8; 3] = [0xC4, 0xC8, 0xCC];
 
-/// The displacement field of a sample as a map of r·d_r. The scale is symmetric about zero and covers 98 % of the
+/// The displacement field of a sample as a map of r·d_r, or of d_r in a strip. The scale is symmetric about zero and covers 98 % of the
 /// disks; the others have the colour of its ends.
 ///
 /// Disks are drawn at their positions before the inflation, with their radii. Grey: not counted (rattlers). Black: the
@@ -27,11 +27,19 @@ const RATTLER: [u8; 3] = [0xC4, 0xC8, 0xCC];
 /// # Panics
 /// If there are fewer radii than disks.
 pub fn heat_map(name: &str, field: &DisplacementField<2>, radii: &[f64], frame: &MapFrame) -> Figure {
-    let range = Range::of(field.counted().map(|disk| disk.distance * disk.radial));
+    let (label, words, unit) = match field.shape {
+        Shape::Round => (RESCALED, "r·d_r", "length²"),
+        Shape::Strip { .. } => (DISPLACEMENT, "d_r", "length"),
+    };
+    let value = |disk: &Moved<2>| match field.shape {
+        Shape::Round => disk.distance * disk.radial,
+        Shape::Strip { .. } => disk.radial,
+    };
+    let range = Range::of(field.counted().map(value));
     let spot = |disk: &Moved<2>| Spot {
         place: disk.position,
         diameter: 2.0 * radii[disk.disk],
-        value: disk.counted.then_some(disk.distance * disk.radial),
+        value: disk.counted.then(|| value(disk)),
     };
     let elements = [
         spots(frame, field.disks.iter().map(spot), range.shown, Some(field.inner_radius)),
@@ -39,16 +47,16 @@ pub fn heat_map(name: &str, field: &DisplacementField<2>, radii: &[f64], frame: 
         frame.scale_bar(),
         colour_bar(diverging, LEVELS),
         map_label(&format!(
-            "{RESCALED} / ({} length²),  largest |{RESCALED}| = {}",
+            "{label} / ({} {unit}),  largest |{label}| = {}",
             escaped(&significant(range.shown, 3)),
             escaped(&significant(range.largest, 3))
         )),
     ];
     let elements = elements.concat();
     Figure {
-        title: format!("{name}: map of r·d_r"),
+        title: format!("{name}: map of {words}"),
         description: format!(
-            "Each disk coloured by its rescaled radial displacement, orange outwards, purple inwards, full at {} length² \
+            "Each disk coloured by its rescaled radial displacement, orange outwards, purple inwards, full at {} {unit} \
              (98 % of the disks are below it, the largest has {}); grey disks are rattlers, the black one is inflated",
             significant(range.shown, 3),
             significant(range.largest, 3)

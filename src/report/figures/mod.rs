@@ -61,6 +61,8 @@ pub enum FigureError {
 pub enum Around {
     /// A ring of disks: angle θ, frequency f.
     Ring,
+    /// A row of disks along a strip of length L: place x, with θ = 2πx/L, frequency f = qL/2π.
+    Row,
     /// A shell of spheres: great-circle angle γ, degree ℓ.
     Shell,
 }
@@ -107,6 +109,9 @@ impl Figure {
 
 /// r·d_r as SVG text with a subscript.
 pub(crate) const RESCALED: &str = "r·d<tspan dy=\"3\" font-size=\"10\">r</tspan><tspan dy=\"-3\">\u{200B}</tspan>";
+
+/// d_r, in a strip.
+pub(crate) const DISPLACEMENT: &str = "d<tspan dy=\"3\" font-size=\"10\">r</tspan><tspan dy=\"-3\">\u{200B}</tspan>";
 
 /// r²·d_r, for spheres.
 pub(crate) const RESCALED_IN_SPACE: &str =

@@ -8,7 +8,7 @@ use crate::report::curve::{Curve, curves, fitted_range, power};
 use crate::report::figures::AMPLITUDE;
 use crate::report::figures::chart::{Axes, Chart, Drawn, Entry, LegendLine, SCALE, Scaling, Sign};
 use crate::report::figures::palette::{BLUE, VERMILLION};
-use crate::report::figures::{Figure, FigureError, RESCALED, RESCALED_IN_SPACE};
+use crate::report::figures::{DISPLACEMENT, Figure, FigureError, RESCALED, RESCALED_IN_SPACE};
 use crate::response::Response;
 
 /// Number of points of a fitted curve: two pixels apart.
@@ -29,9 +29,10 @@ pub fn radial_figure(name: &str, response: &Response, profile: &RadialProfile) -
     let [_, outer_radius] = response.detail.radii();
     let power = power(response);
     let y_range = y_range(profile, &curves, outer_radius, power);
-    // r·d_r, or r²·d_r of spheres.
+    // r·d_r, r²·d_r of spheres, d_r in a strip.
     let (words, label, unit) = match power {
         2 => ("r²·d_r", RESCALED_IN_SPACE, "length³"),
+        0 => ("d_r", DISPLACEMENT, "length"),
         _ => ("r·d_r", RESCALED, "length²"),
     };
     let chart = Chart {

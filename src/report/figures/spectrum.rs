@@ -45,6 +45,7 @@ pub fn spectrum_figure(
 ) -> Option<Figure> {
     let (symbol, label, words) = match around {
         Around::Ring => ("f", "S(f) / S(1)", "a ring against the angular frequency f"),
+        Around::Row => ("q L/2π", "S(q) / S(2π/L)", "a row against the wave number q along it"),
         Around::Shell => ("ℓ", "S(ℓ) / S(1)", "a shell against the degree ℓ"),
     };
     let highest = spectra.iter().map(|spectrum| spectrum.values.len()).max().filter(|&count| count > 1)?;

@@ -332,10 +332,7 @@ fn fit(responses: Vec<Option<&Response>>) -> Section {
     let screened = |it: &Response| {
         curve::fit_of(it)?.screened.filter(|fit| fit.wavenumber.standard_error < 10.0 * fit.wavenumber.value)
     };
-    let first_pole = |it: &Response| {
-        let annulus = crate::reference::Annulus::new(it.detail.radii()[0], it.detail.radii()[1]).ok()?;
-        Some(crate::reference::poles::pole::<2>(annulus, 1))
-    };
+    let first_pole = Response::first_pole;
     let rms = |chi_squared: f64, rings: usize| significant((chi_squared / rings as f64).sqrt(), 3);
     rows.add("described by", |it| match it.profile_fit.as_ref()? {
         Measurement::Measured(fit) => Some(decision_name(fit.decision).into()),

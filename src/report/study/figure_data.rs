@@ -18,6 +18,11 @@ impl<'a> Subject<'a> {
         self.merged.study.scene.dimension
     }
 
+    /// Number of dimensions in which the responses spread: 1 in strips.
+    pub fn spreading_dimension(&self) -> usize {
+        if self.merged.study.scene.inflation.boundary.is_strip() { 1 } else { self.dimension() }
+    }
+
     /// What the packings consist of: disks or spheres.
     pub fn particles(&self) -> &'static str {
         particles(self.dimension())
@@ -65,7 +70,7 @@ pub(super) fn short(series: &Series, all: &[Series]) -> String {
     if all.iter().any(|other| other.cell.relaxer != relaxer) {
         text = format!("{text}, {}", relaxer.description());
     }
-    text
+    text + &series.cell.drive_words()
 }
 
 /// The colour of a series among all.
@@ -76,8 +81,8 @@ pub(super) fn series_colour(index: usize, all: &[Series]) -> [u8; 3] {
 /// Words for a cell, with its relaxer if the study has several.
 pub(super) fn with_relaxer(text: String, cell: &Cell, merged: &Merged) -> String {
     match merged.cells.iter().any(|other| other.cell.relaxer != cell.relaxer) {
-        true => format!("{text}, {}", cell.relaxer.description()),
-        false => text,
+        true => format!("{text}, {}{}", cell.relaxer.description(), cell.drive_words()),
+        false => text + &cell.drive_words(),
     }
 }
 

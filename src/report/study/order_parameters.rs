@@ -16,7 +16,7 @@ const SINGLES: usize = 200;
 
 /// κ and Δp, one point per sample, with connected means.
 pub(super) fn by_sample(subject: &Subject<'_>) -> Vec<Figure> {
-    let [first, second] = poles(subject.dimension());
+    let [first, second] = poles(subject.spreading_dimension());
     let scaled = |values: &[f64], radius: f64| values.iter().map(|kappa| kappa * radius / first).collect();
     let kappa = figure(subject, "wavenumber", "κ of the best screened solution", "κ / κ₁", &scaled);
     let change = figure(

@@ -59,7 +59,7 @@ fn views(subject: &Subject<'_>) -> Vec<(&'static str, &'static str, Vec<Figure>)
     profiles.extend(radial::means(subject));
     let thresholds =
         ["0.02", "0.05", "0.2"].into_iter().filter_map(|it| order_parameters::threshold(subject, it)).collect();
-    let is_plane = subject.dimension() == 2;
+    let is_plane = subject.spreading_dimension() == 2;
     let mut scaled = if is_plane { scaling::with_inflation(subject) } else { Vec::new() };
     scaled.extend(if is_plane { scaling::phase_diagram(subject) } else { Vec::new() });
     vec![
@@ -202,7 +202,7 @@ fn estimates(subject: &Subject<'_>) -> String {
             row("θ* at p̂_c by the slope (rad)", at.angle);
         }
     }
-    let by_angle = match subject.dimension() {
+    let by_angle = match subject.spreading_dimension() {
         2 => {
             " G*, θ*, slope: where the mean passes its value for S ∼ f^(−1.5). f†: where it falls below 0.1, so that S(f) is a power law from f = 1 on."
         }

@@ -59,13 +59,13 @@ fn solution(subject: &Subject<'_>, single: &Single, radius: f64) -> Option<Box<d
     let annulus = Annulus::new(inner, radius).ok()?;
     let number = |name: &str| single.numbers.get(name).copied();
     let kappa = number("wavenumber")?;
-    let is_screened = kappa * radius >= 0.5 * poles(subject.dimension())[0];
+    let is_screened = kappa * radius >= 0.5 * poles(subject.spreading_dimension())[0];
     let amplitude = number(if is_screened { "screened_amplitude" } else { "elastic_amplitude" })?;
     let kappa = is_screened.then_some(kappa);
-    if subject.dimension() == 3 {
-        solution_in::<3>(annulus, amplitude, kappa)
-    } else {
-        solution_in::<2>(annulus, amplitude, kappa)
+    match subject.spreading_dimension() {
+        1 => solution_in::<1>(annulus, amplitude, kappa),
+        3 => solution_in::<3>(annulus, amplitude, kappa),
+        _ => solution_in::<2>(annulus, amplitude, kappa),
     }
 }
 
@@ -89,13 +89,17 @@ fn solution_in<const D: usize>(
 
 /// r^(D−1) of the rescaled displacement.
 fn weight_of(subject: &Subject<'_>) -> impl Fn(f64) -> f64 + use<> {
-    let power = subject.dimension() as i32 - 1;
+    let power = subject.spreading_dimension() as i32 - 1;
     move |r| r.powi(power)
 }
 
 /// r^(D−1) d_r in symbols.
 fn rescaled(subject: &Subject<'_>) -> &'static str {
-    if subject.dimension() == 3 { "r²·dᵣ" } else { "r·dᵣ" }
+    match subject.spreading_dimension() {
+        1 => "dᵣ",
+        3 => "r²·dᵣ",
+        _ => "r·dᵣ",
+    }
 }
 
 /// All cells with radial profiles.
@@ -170,10 +174,10 @@ fn mean_figure(
     }
     let inner = subject.merged.study.scene.mixture.components.iter().map(|it| it.radius).fold(f64::INFINITY, f64::min);
     let annulus = Annulus::new(inner, widest).ok()?;
-    let elastic = if subject.dimension() == 3 {
-        solution_in::<3>(annulus, 1.0, None)?
-    } else {
-        solution_in::<2>(annulus, 1.0, None)?
+    let elastic = match subject.spreading_dimension() {
+        1 => solution_in::<1>(annulus, 1.0, None)?,
+        3 => solution_in::<3>(annulus, 1.0, None)?,
+        _ => solution_in::<2>(annulus, 1.0, None)?,
     };
     let at = |step: u32| 0.02 + 0.98 * f64::from(step) / f64::from(CURVE_POINTS);
     let exact = bare((0..=CURVE_POINTS).map(at).map(|share| (share, weight(share * widest) * elastic(share * widest))));
@@ -184,7 +188,8 @@ fn mean_figure(
             "Mean rescaled radial displacement over the inflation, with standard errors, and the elastic solution"
                 .into(),
         x: PlotAxis::linear("r / R").within(0.0, 1.0),
-        y: PlotAxis::linear(match subject.dimension() {
+        y: PlotAxis::linear(match subject.spreading_dimension() {
+            1 => "dᵣ / d₀ (1)",
             3 => "r²·dᵣ / d₀ (length²)",
             _ => "r·dᵣ / d₀ (length)",
         }),

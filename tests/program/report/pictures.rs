@@ -3,7 +3,7 @@
 use super::*;
 use jamscope::inflation::Boundary;
 use jamscope::report::figures::map::MapFrame;
-use jamscope::report::figures::{Figure, angular::angular_figure, heat_map::heat_map, radial::radial_figure};
+use jamscope::report::figures::{Around, Figure, angular::angular_figure, heat_map::heat_map, radial::radial_figure};
 use jamscope::report::page::page;
 
 /// Elements of HTML that are never closed.
@@ -81,7 +81,7 @@ fn figures_are_well_formed_and_small() {
             map(sample, result, Boundary::default()),
             map(sample, result, Boundary::Periodic),
             radial_figure(sample, &result.response, profile).expect("finite"),
-            angular_figure(sample, profiles).expect("finite"),
+            angular_figure(sample, Around::Ring, profiles).expect("finite"),
         ];
         for figure in figures {
             let svg = figure.to_svg();

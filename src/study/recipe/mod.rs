@@ -1,7 +1,12 @@
-//! [`Recipe`]: the studies for the figures of the published study, and one of spheres, at three scales.
+//! [`Recipe`]: the studies for the figures of the published study, of spheres, and of other drives, at three scales.
 //!
 //! Six recipes, [`Recipe::Kappa`] to [`Recipe::Isostatic`], use the same study: in a common folder its samples are run
 //! once.
+
+mod drive;
+mod scale;
+
+pub use scale::Scale;
 
 use serde::Serialize;
 
@@ -9,7 +14,9 @@ use crate::inflation::Boundary;
 use crate::law::choice::LawChoice;
 use crate::law::power_laws::{Hertzian, Hookean};
 use crate::relax::{Fire, RelaxerChoice};
-use crate::scene::{Observables, ProtocolChoice, Scene};
+use crate::scene::ProtocolChoice;
+use crate::study::recipe::drive::{free_centre, line, spheres};
+use crate::study::recipe::scale::{common, part, reduced};
 use crate::study::settings::{Part, Seeds, Study, Target};
 
 /// A figure of the published study, or the same in three dimensions.
@@ -51,22 +58,6 @@ pub enum Recipe {
     /// The inflated disk held and free.
     FreeCentre,
 }
-
-/// The size of a recipe.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Scale {
-    /// Minutes on two cores.
-    Small,
-    /// A night on two cores.
-    Medium,
-    /// The published sizes and 400 samples: for a cluster.
-    Full,
-}
-
-/// Number of disks, and outer radius of the circle over the side of the box. Source: the study; below 5548 disks the
-/// value for 5548.
-const SIZES: [(usize, f64); 4] = [(1387, 0.480), (5548, 0.480), (22184, 0.486), (88776, 0.491)];
 
 impl Recipe {
     /// All recipes.
@@ -178,60 +169,6 @@ impl Recipe {
             Recipe::Line => line(scale),
             Recipe::FreeCentre => free_centre(scale),
         }
-    }
-}
-
-impl Scale {
-    /// All scales.
-    pub const ALL: [Scale; 3] = [Scale::Small, Scale::Medium, Scale::Full];
-
-    /// Its name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Scale::Small => "small",
-            Scale::Medium => "medium",
-            Scale::Full => "full",
-        }
-    }
-}
-
-/// Common settings: FIRE for the packing, then the protocol of the published study.
-fn common() -> Study {
-    Study {
-        scene: Scene { observables: ensemble_observables(2), sample: Vec::new(), ..Scene::default() },
-        targets: Vec::new(),
-        relaxers: vec![ProtocolChoice::default().relaxer()],
-        ..Study::default()
-    }
-}
-
-/// The observables that an ensemble needs, of disks (2) or spheres (3).
-fn ensemble_observables(dimension: usize) -> Observables {
-    Observables {
-        angular_profiles: None,
-        bond_changes: None,
-        displacement_field: None,
-        #[cfg(feature = "fit")]
-        elastic_modes: None,
-        #[cfg(feature = "linear")]
-        plastic_part: None,
-        ..Observables::of_dimension(dimension)
-    }
-}
-
-fn reduced(values: &[f64]) -> Vec<Target> {
-    values.iter().map(|&value| Target::ReducedPressure(value)).collect()
-}
-
-/// A part with one size and these targets.
-fn part(size: usize, targets: Vec<Target>, count: usize) -> Part {
-    let (disk_count, ratio) = SIZES[size];
-    Part {
-        disk_counts: vec![disk_count],
-        targets,
-        seeds: Some(Seeds { first: 1, count }),
-        boundary: Some(Boundary::HeldRim { outer_radius_over_side: ratio }),
-        ..Part::default()
     }
 }
 
@@ -356,103 +293,6 @@ fn contact_changes(scale: Scale) -> Study {
     };
     let mut study = Study { parts: vec![part(size, reduced(&[1e6, 1e7, 1e8, 4e8, 1e9]), count)], ..common() };
     study.scene.inflation.deflate = true;
-    study
-}
-
-/// Sizes from 1000 to 64000 spheres; in a held shell of the default R there are 0.46 of them.
-fn spheres(scale: Scale) -> Study {
-    let part = |disk_count, targets: &[f64], count| Part {
-        disk_counts: vec![disk_count],
-        targets: reduced(targets),
-        seeds: Some(Seeds { first: 1, count }),
-        ..Part::default()
-    };
-    let all = [1e6, 1e5, 1e4, 1e3, 1e2, 1e1];
-    let parts = match scale {
-        Scale::Small => vec![part(1000, &all[..4], 16), part(4000, &all[..4], 4)],
-        Scale::Medium => {
-            vec![part(1000, &all, 16), part(4000, &all[..5], 8), part(16_000, &all[..4], 4), part(64_000, &all[..3], 2)]
-        }
-        Scale::Full => vec![
-            part(4000, &all, 400),
-            part(16_000, &all, 400),
-            part(64_000, &all[..5], 400),
-            part(280_000, &all[..4], 400),
-        ],
-    };
-    let mut study = Study { parts, ..common() };
-    study.scene.dimension = 3;
-    study.scene.observables = ensemble_observables(3);
-    study
-}
-
-/// Strips of four lengths, and squares of twice and four times the width. At the pressures near the transition of disks
-/// the box of 1200 disks has sides of 40.
-fn line(scale: Scale) -> Study {
-    let strip = |squares: usize, width: usize, targets: &[f64], count| Part {
-        disk_counts: vec![1200 * squares * width * width],
-        targets: targets.iter().map(|&pressure| Target::Pressure(pressure)).collect(),
-        seeds: Some(Seeds { first: 1, count }),
-        boundary: Some(Boundary::HeldWalls { distance_over_side: 0.45, length_over_side: squares as f64 }),
-        ..Part::default()
-    };
-    let all = [1e3, 1e2, 1e1, 1e0];
-    let parts = match scale {
-        Scale::Small => vec![
-            strip(1, 1, &all, 40),
-            strip(2, 1, &all, 20),
-            strip(4, 1, &all, 10),
-            strip(8, 1, &all, 8),
-            strip(1, 2, &all, 10),
-        ],
-        Scale::Medium => vec![
-            strip(1, 1, &all, 320),
-            strip(2, 1, &all, 160),
-            strip(4, 1, &all, 80),
-            strip(8, 1, &all, 40),
-            strip(1, 2, &all, 80),
-            strip(1, 4, &all, 40),
-            strip(1, 8, &all[..3], 10),
-        ],
-        Scale::Full => vec![
-            strip(1, 1, &all, 400),
-            strip(2, 1, &all, 400),
-            strip(4, 1, &all, 400),
-            strip(8, 1, &all, 400),
-            strip(1, 2, &all, 400),
-            strip(1, 4, &all, 400),
-            strip(1, 8, &all, 400),
-        ],
-    };
-    let mut study = Study { parts, increases: vec![0.1, 0.02], ..common() };
-    let mut observables = Observables { angular_profiles: None, displacement_field: None, ..Observables::of_strip() };
-    if let Some(ring) = &mut observables.angular_correlation {
-        // The half-width of G too.
-        ring.correlation.thresholds.push(0.5);
-    }
-    study.scene.inflation.boundary = Boundary::HeldWalls { distance_over_side: 0.45, length_over_side: 1.0 };
-    study.scene.observables = observables;
-    study
-}
-
-fn free_centre(scale: Scale) -> Study {
-    let parts = match scale {
-        Scale::Small => vec![part(0, reduced(&[1e6, 1e7, 1e8]), 24), part(1, reduced(&[1e7, 1e8, 1e9]), 8)],
-        Scale::Medium => vec![
-            part(0, reduced(&[1e6, 3e6, 1e7, 3e7, 1e8]), 60),
-            part(1, reduced(&[1e6, 1e7, 3e7, 1e8, 4e8, 1e9]), 60),
-            part(2, reduced(&[1e7, 1e8, 4e8]), 12),
-        ],
-        Scale::Full => vec![
-            part(1, reduced(&[1e6, 1e7, 3e7, 1e8, 4e8, 1e9]), 400),
-            part(2, reduced(&[1e6, 1e7, 3e7, 1e8, 4e8, 1e9]), 400),
-        ],
-    };
-    let mut study = Study { parts, centres_held: vec![true, false], ..common() };
-    #[cfg(feature = "fit")]
-    {
-        study.scene.observables.elastic_modes = Some(Default::default());
-    }
     study
 }
 
