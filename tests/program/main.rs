@@ -28,6 +28,8 @@ mod spheres;
 mod spheres_analysed;
 #[cfg(feature = "cli")]
 mod strain_command;
+#[cfg(feature = "cli")]
+mod strips;
 mod structure;
 mod study;
 #[cfg(feature = "cli")]
