@@ -3,7 +3,9 @@
 use crate::inflation::choose_centre::choose_centre;
 use crate::inflation::circle::Circle;
 use crate::inflation::error::InflationError;
-use crate::inflation::region::{Region, Shape};
+#[cfg(feature = "linear")]
+use crate::inflation::region::Region;
+use crate::inflation::region::Shape;
 use crate::inflation::rest::{Rest, Stage};
 use crate::inflation::settings::{Boundary, Inflation};
 use crate::inflation::strip::Strip;
@@ -73,6 +75,7 @@ impl<const D: usize> Grown<D> {
     }
 
     /// The inflated disks and the region around them.
+    #[cfg(feature = "linear")]
     pub(crate) fn region(&self) -> Region<'_> {
         let Grown { centre, ref grown, inner_radius, outer_radius, .. } = *self;
         Region { centre, grown, inner_radius, outer_radius, shape: self.shape() }

@@ -26,7 +26,7 @@ pub use strip::Strip;
 
 use crate::law::choice::LawChoice;
 use crate::law::pair_law::PairLaw;
-use crate::packing::{Domain, Packing};
+use crate::packing::Packing;
 use crate::relax::{Fire, Relaxer, Trace};
 
 /// The result of an inflation: the states before and after it, and after the deflation if there was one.
@@ -51,13 +51,6 @@ pub struct Inflated<const D: usize> {
     pub after: Rest<D>,
     /// The state at rest after the deflation.
     pub deflated: Option<Rest<D>>,
-}
-
-impl<const D: usize> Inflated<D> {
-    /// Area between the walls of a strip in this box \[length^D\].
-    pub(crate) fn area(&self, domain: &Domain<D>) -> f64 {
-        strip::area(domain, self.outer_radius)
-    }
 }
 
 /// Inflates a disk of a packing of Hertzian disks and relaxes the rest by FIRE; the disk is drawn with seed 1.

@@ -27,7 +27,7 @@ mod sensitivity;
 mod settings;
 mod spread;
 
-use crate::inflation::{Inflated, Inflation, Shape};
+use crate::inflation::{Inflated, Inflation, Shape, strip};
 use crate::law::pair_law::PairLaw;
 use crate::packing::{Packing, PackingError, ball_volume};
 use crate::relax::Trace;
@@ -92,9 +92,8 @@ impl<const D: usize> Compared<D> {
         let (domain, held) = (*start.domain(), start.held().to_vec());
         let is_row = |disk: usize| inflated.grown.binary_search(&disk).is_ok();
         let pressure = |network: &crate::network::ContactNetwork<D>| match (inflated.shape, domain.volume()) {
-            (Shape::Strip { .. }, _) => {
-                network.cluster_pressure(inflated.area(&domain), |disk| held[disk] && !is_row(disk))
-            }
+            (Shape::Strip { .. }, _) => network
+                .cluster_pressure(strip::area(&domain, inflated.outer_radius), |disk| held[disk] && !is_row(disk)),
             (Shape::Round, Some(volume)) => network.pressure(volume),
             (Shape::Round, None) => {
                 network.cluster_pressure(ball_volume::<D>(inflated.outer_radius), |disk| disk > centre)

@@ -1,7 +1,7 @@
 //! Summary of the plastic part of a sample.
 
 use crate::displacement::DisplacementField;
-use crate::inflation::{Boundary, Inflated, Inflation};
+use crate::inflation::{Boundary, Inflated, Inflation, strip};
 use crate::law::pair_law::PairLaw;
 use crate::linear::contact_changes::pressure_change;
 use crate::linear::hessian::Prestress;
@@ -34,7 +34,7 @@ pub(super) fn of<const D: usize>(
             pressure_change::<D>(&changes, before.domain().volume().unwrap_or(f64::INFINITY), |_| false)
         }
         Boundary::HeldWalls { .. } => {
-            let area = inflated.area(before.domain());
+            let area = strip::area(before.domain(), inflated.outer_radius);
             let is_row = |disk: usize| inflated.grown.binary_search(&disk).is_ok();
             pressure_change::<D>(&changes, area, |disk| before.held()[disk] && !is_row(disk))
         }

@@ -75,7 +75,7 @@ impl Cell {
     }
 
     /// What differs from a held disk, for descriptions: the shape of a strip, a free centre.
-    pub(crate) fn drive_words(&self) -> String {
+    pub fn drive_words(&self) -> String {
         let strip = match self.boundary {
             Boundary::HeldWalls { length_over_side, .. } => format!(", strip {length_over_side} times as long as wide"),
             Boundary::HeldRim { .. } | Boundary::Periodic => String::new(),

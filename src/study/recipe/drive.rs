@@ -94,10 +94,5 @@ pub(super) fn free_centre(scale: Scale) -> Study {
             part(2, reduced(&[1e6, 1e7, 3e7, 1e8, 4e8, 1e9]), 400),
         ],
     };
-    let mut study = Study { parts, centres_held: vec![true, false], ..common() };
-    #[cfg(feature = "fit")]
-    {
-        study.scene.observables.elastic_modes = Some(Default::default());
-    }
-    study
+    Study { parts, centres_held: vec![true, false], ..common() }
 }
