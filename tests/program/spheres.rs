@@ -28,6 +28,17 @@ pub fn text(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
+/// The files of two reports have the same bytes, wall times apart.
+pub fn same_files(one: &Path, two: &Path) {
+    for entry in std::fs::read_dir(one).expect("a folder") {
+        let name = entry.expect("an entry").file_name();
+        if name != "timings.json" {
+            let [first, second] = [one, two].map(|it| std::fs::read(it.join(&name)).expect("a file"));
+            assert!(first == second, "{name:?}");
+        }
+    }
+}
+
 const SCENE: &str = "dimension = 3\ndisk_count = 2000\nprotocol = \"fire\"\n[[sample]]\nname = \"dense\"\nsource = { pressure = 2000.0 }\n";
 
 #[test]
@@ -38,14 +49,7 @@ fn a_run_of_spheres_has_its_page_its_tables_and_the_same_bytes_on_two_threads() 
     let printed = done(folder.path(), "run scene.toml --threads 2 --out two");
     assert!(printed.contains("spheres within the shell, N") && printed.contains("[force/length^2]"), "{printed}");
     let one = folder.path().join("one");
-    for entry in std::fs::read_dir(&one).expect("a folder") {
-        let name = entry.expect("an entry").file_name();
-        if name != "timings.json" {
-            let [first, second] =
-                ["one", "two"].map(|it| std::fs::read(folder.path().join(it).join(&name)).expect("a file"));
-            assert!(first == second, "{name:?}");
-        }
-    }
+    same_files(&one, &folder.path().join("two"));
     let page = text(&one.join("report.html"));
     for title in ["slice of r²·d_r", "d_r on a shell", "radial profile", "angular correlation"] {
         assert!(page.contains(&format!("dense: {title}")), "no {title}");

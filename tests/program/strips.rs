@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::spheres::{done, jamscope, text};
+use crate::spheres::{done, jamscope, same_files, text};
 
 const SCENE: &str = "disk_count = 1600\nprotocol = \"fire-newton\"\n[inflation]\nincrease = 0.05\n\
     boundary = { held_walls = { distance_over_side = 0.43, length_over_side = 2.0 } }\n\
@@ -18,14 +18,7 @@ fn a_run_of_a_strip_has_its_page_its_tables_and_the_same_bytes_on_two_threads() 
     // In a strip a positive Δp and many changed contacts are no evidence of a phase.
     assert!(printed.contains("by the radial profile") && !printed.contains("by the sign of Δp"), "{printed}");
     let one = folder.path().join("one");
-    for entry in std::fs::read_dir(&one).expect("a folder") {
-        let name = entry.expect("an entry").file_name();
-        if name != "timings.json" {
-            let [first, second] =
-                ["one", "two"].map(|it| std::fs::read(folder.path().join(it).join(&name)).expect("a file"));
-            assert!(first == second, "{name:?}");
-        }
-    }
+    same_files(&one, &folder.path().join("two"));
     let report: Value = serde_json::from_str(&text(&one.join("report.json"))).expect("JSON");
     let sample = &report["samples"][0]["done"];
     let sides: Vec<f64> = serde_json::from_value(sample["packing"]["box_sides"].clone()).expect("two sides");
