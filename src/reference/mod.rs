@@ -35,6 +35,9 @@
 //! | [`ElasticMode`](angular_modes::elastic::ElasticMode) | Michell (1899), Proc. Lond. Math. Soc. 31, 100 |
 //! | [`SphericalMode`](angular_modes::spherical::SphericalMode) | Love (1927), ch. XI; the closed form derived there |
 //! | [`PointForce`](angular_modes::point_force::PointForce) | Timoshenko & Goodier (1970), ch. 4; the rim derived there |
+//! | [`ForceDipole`](angular_modes::force_dipole::ForceDipole) | derived there, from [`PointForce`](angular_modes::point_force::PointForce) |
+//! | [`ScreenedSource`](angular_modes::screened_source::ScreenedSource) | derived there; Lemaître et al. (2021) |
+//! | [`StripMode`](strip_modes::StripMode) | derived there; Lemaître et al. (2021) |
 //! | [`ScreenedMode`](angular_modes::screened::ScreenedMode) | Lemaître et al. (2021); odd screening Cohen et al. (2023), arXiv:2310.09942 |
 //! | [`bessel`] | Abramowitz & Stegun (1964), 9.1, 9.2, 9.6, 9.7, 10.1, 10.2 |
 //! | [`Lorentzian`](lorentzian::Lorentzian) | Fu, Jin, Pan, Procaccia, supplement; DLMF 2.10.2 |
@@ -58,6 +61,7 @@ mod sensitivity;
 mod small_wavenumber;
 mod spherical;
 mod strip;
+pub mod strip_modes;
 
 use serde::Serialize;
 use thiserror::Error;

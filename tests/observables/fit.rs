@@ -1,5 +1,6 @@
 //! Fits of profiles whose answer is known.
 
+mod strip;
 mod three_dimensions;
 
 use jamscope::fit::profile::{Decision, ProfileFit, ProfileFitSettings, fit_radial_profile};

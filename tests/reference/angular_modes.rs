@@ -6,6 +6,7 @@ mod bessel;
 mod equation;
 mod outcomes;
 mod point_force;
+mod point_sources;
 mod spherical;
 
 use annulus_mode::Twin;

@@ -13,6 +13,7 @@ mod bessel_functions;
 mod pole_count;
 mod precise_poles;
 mod random_annuli;
+mod strip_modes;
 mod wavenumber_derivative;
 
 use std::f64::consts::PI;

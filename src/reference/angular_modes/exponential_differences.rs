@@ -19,7 +19,7 @@ const NEAR: f64 = 1.0;
 
 /// `width · e^exponent · shc(argument)`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Gap {
+pub(in crate::reference) struct Gap {
     width: f64,
     exponent: f64,
     argument: f64,
@@ -28,24 +28,24 @@ pub(super) struct Gap {
 
 impl Gap {
     /// E_m(t), m ≥ 0, t ≥ 0.
-    pub(super) fn integral(m: f64, t: f64) -> Self {
+    pub(in crate::reference) fn integral(m: f64, t: f64) -> Self {
         let decay = m * t;
         let value = if decay == 0.0 { t } else { -libm::expm1(-decay) / m };
         Gap { width: t, exponent: -0.5 * decay, argument: 0.5 * decay, value }
     }
 
     /// e^(−mt), the derivative of E_m.
-    pub(super) fn power(m: f64, t: f64) -> Self {
+    pub(in crate::reference) fn power(m: f64, t: f64) -> Self {
         Gap { width: 1.0, exponent: -m * t, argument: 0.0, value: libm::exp(-m * t) }
     }
 
     /// This times e^(−mt).
-    pub(super) fn times_power(self, m: f64, t: f64) -> Self {
+    pub(in crate::reference) fn times_power(self, m: f64, t: f64) -> Self {
         let exponent = -m * t;
         Gap { exponent: self.exponent + exponent, value: self.value * libm::exp(exponent), ..self }
     }
 
-    pub(super) fn value(self) -> f64 {
+    pub(in crate::reference) fn value(self) -> f64 {
         self.value
     }
 }
@@ -56,7 +56,7 @@ impl Gap {
 /// Small arguments: let A = shc·shc of the first product, B of the second, and δ half the difference of their
 /// exponents. Then `e^δ A − e^(−δ) B = (A − B) cosh δ + (A + B) sinh δ`, where A − B is of second order in the
 /// arguments and δ of first. Otherwise the two products are subtracted directly.
-pub(super) fn product_difference(a: [Gap; 2], b: [Gap; 2]) -> f64 {
+pub(in crate::reference) fn product_difference(a: [Gap; 2], b: [Gap; 2]) -> f64 {
     let reach = a.iter().chain(&b).map(|gap| gap.exponent.abs().max(gap.argument)).sum::<f64>();
     if reach > 4.0 * NEAR {
         return a[0].value * a[1].value - b[0].value * b[1].value;
@@ -74,13 +74,13 @@ pub(super) fn product_difference(a: [Gap; 2], b: [Gap; 2]) -> f64 {
 
 /// Coefficients of the products of integrals in an elastic mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Coupling {
+pub(in crate::reference) struct Coupling {
     /// That of E_p E_q: vanishes in an incompressible medium.
-    pub(super) soft: f64,
+    pub(in crate::reference) soft: f64,
     /// That of the difference `E_p E_q − x^q E_2 E_2`.
-    pub(super) stiff: f64,
+    pub(in crate::reference) stiff: f64,
     /// Those of d_a in s, and of s_a in d.
-    pub(super) mixed: [f64; 2],
+    pub(in crate::reference) mixed: [f64; 2],
 }
 
 /// The factors of s_a and d_a in s and d, all over Δ, and the t-derivatives of the brackets.
@@ -88,14 +88,14 @@ pub(super) struct Coupling {
 /// s and d are the two combinations of the amplitudes of an elastic mode that each contain three of its four powers,
 /// `x^(−σ), x^(−σ+2), x^(−σ+p)` in s and `x^(−σ+2), x^(−σ+2+q), x^(−σ+4+q)` in d, with x = r/R and p = q + 4. Both
 /// vanish at the rim.
-pub(super) struct Kernels {
-    pub(super) value: [[f64; 2]; 2],
-    pub(super) derivative: [[f64; 2]; 2],
+pub(in crate::reference) struct Kernels {
+    pub(in crate::reference) value: [[f64; 2]; 2],
+    pub(in crate::reference) derivative: [[f64; 2]; 2],
 }
 
 impl Kernels {
     /// The factors at `radius`, for `depth` ln(R/a), the exponents p and q, and σ = `steepness`.
-    pub(super) fn new(
+    pub(in crate::reference) fn new(
         annulus: Annulus,
         depth: f64,
         [p, q]: [f64; 2],
@@ -144,7 +144,7 @@ impl Kernels {
 }
 
 /// ln(larger/smaller) to rounding, also if the ratio is near 1.
-pub(super) fn log_ratio(larger: f64, smaller: f64) -> f64 {
+pub(in crate::reference) fn log_ratio(larger: f64, smaller: f64) -> f64 {
     let ratio = larger / smaller;
     if smaller > 0.5 * larger {
         -libm::log1p(-(larger - smaller) / larger)
@@ -156,7 +156,7 @@ pub(super) fn log_ratio(larger: f64, smaller: f64) -> f64 {
 }
 
 /// (a/b)^power for a ≤ b, corrected for the rounding of a/b, which would be multiplied by `power`.
-pub(super) fn ratio_power(a: f64, b: f64, power: f64) -> f64 {
+pub(in crate::reference) fn ratio_power(a: f64, b: f64, power: f64) -> f64 {
     let ratio = a / b;
     let value = libm::pow(ratio, power);
     let (product, rest) = two_product(ratio, b);

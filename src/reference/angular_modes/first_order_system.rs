@@ -19,7 +19,7 @@ use std::ops::Range;
 use crate::reference::angular_modes::{Complex, times_i};
 
 /// `[U, v, d, P, W]`, all \[length\].
-pub(super) type State = [Complex<f64>; 5];
+pub(in crate::reference) type State = [Complex<f64>; 5];
 
 /// Largest |z| for a series; its singularity, r = 0, is at 1.
 const LARGEST_SHARE: f64 = 0.25;
@@ -31,40 +31,54 @@ const NEGLIGIBLE: f64 = 0.25 * f64::EPSILON;
 /// needs more, up to 2⁻¹⁰⁸.
 const TERM_LIMIT: u32 = 100;
 
+/// Four linear first-order equations for U, v, P and W along one coordinate, the radius or a distance.
+pub(in crate::reference) trait Equations {
+    /// The rate of change of a solution at `place`, by which P and W are divided in its norm.
+    fn rate(&self, place: f64) -> f64;
+
+    /// The state at `place` (1 − z) from that at `place`, |z| within the reach of one series.
+    fn advance(&self, place: f64, z: f64, start: State) -> State;
+
+    /// The derivatives of U and v along the coordinate, in terms of the state.
+    fn displacement_slope(&self, state: State) -> [Complex<f64>; 2];
+}
+
 /// The coefficients of the equation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct System {
+pub(in crate::reference) struct System {
     /// n.
-    pub(super) mode: f64,
+    pub(in crate::reference) mode: f64,
     /// ε.
-    pub(super) compliance_ratio: f64,
+    pub(in crate::reference) compliance_ratio: f64,
     /// Γ_e \[1/length²\].
-    pub(super) even: f64,
+    pub(in crate::reference) even: f64,
     /// Γ_o \[1/length²\].
-    pub(super) odd: f64,
+    pub(in crate::reference) odd: f64,
 }
 
 impl System {
     /// √|Γ|, an upper bound of the wavenumbers of the medium \[1/length\].
-    pub(super) fn wavenumber(&self) -> f64 {
+    pub(in crate::reference) fn wavenumber(&self) -> f64 {
         libm::sqrt(libm::hypot(self.even, self.odd))
     }
 
-    /// max(1, n, √|Γ| r): the rate of change of the solution relative to r.
-    pub(super) fn rate(&self, radius: f64) -> f64 {
-        self.mode.max(self.wavenumber() * radius).max(1.0)
-    }
-
     /// The share of `radius` within which a series is used; no term then exceeds the first by more than a factor e.
-    pub(super) fn reach(&self, radius: f64) -> f64 {
+    pub(in crate::reference) fn reach(&self, radius: f64) -> f64 {
         LARGEST_SHARE.min(1.0 / self.rate(radius))
+    }
+}
+
+impl Equations for System {
+    /// max(1, n, √|Γ| r): the rate of change of the solution relative to r.
+    fn rate(&self, radius: f64) -> f64 {
+        self.mode.max(self.wavenumber() * radius).max(1.0)
     }
 
     /// The state at `radius` (1 − z) from that at `radius`, |z| within the reach.
     ///
     /// With y = Σ y_k z^k and r = ρ(1 − z), `(k+1) y_(k+1) = k y_k − A y_k + ρ² B (y_k − 2 y_(k−1) + y_(k−2))`, A and B
     /// the constant and the screening part of the equation.
-    pub(super) fn advance(&self, radius: f64, z: f64, start: State) -> State {
+    fn advance(&self, radius: f64, z: f64, start: State) -> State {
         let (n, epsilon) = (self.mode, self.compliance_ratio);
         // One radius factor at a time: Γ ρ² is moderate even if ρ² overflows.
         let (even, odd) = (self.even * radius * radius, self.odd * radius * radius);
@@ -105,12 +119,12 @@ impl System {
     }
 
     /// `[D U, D v]`, in terms of U and v.
-    pub(super) fn displacement_slope(&self, [u, v, _, p, w]: State) -> [Complex<f64>; 2] {
+    fn displacement_slope(&self, [u, v, _, p, w]: State) -> [Complex<f64>; 2] {
         [p * self.compliance_ratio - u - v * self.mode, w - v - u * self.mode]
     }
 }
 
 /// |Re z| + |Im z|.
-pub(super) fn size(z: Complex<f64>) -> f64 {
+pub(in crate::reference) fn size(z: Complex<f64>) -> f64 {
     z.re.abs() + z.im.abs()
 }

@@ -16,8 +16,10 @@
 //! ```
 //!
 //! [`ElasticMode`](elastic::ElasticMode) is the closed form for Γ = 0. [`PointForce`](point_force::PointForce) is the n
-//! = 1 mode of a force at the centre. [`ScreenedMode`](screened::ScreenedMode) allows any even and odd screening; odd
-//! screening turns radial inflation (n = 0) into radial and transverse displacement. All implement [`AngularSolution`],
+//! = 1 mode of a force at the centre, [`ForceDipole`](force_dipole::ForceDipole) the n = 0 and n = 2 modes of two opposite
+//! forces there. [`ScreenedMode`](screened::ScreenedMode) allows any even and odd screening; odd
+//! screening turns radial inflation (n = 0) into radial and transverse displacement.
+//! [`ScreenedSource`](screened_source::ScreenedSource) is the force and the dipole with even screening. All implement [`AngularSolution`],
 //! which also gives the stretch of bonds. Start from [`ElasticMode::new`](elastic::ElasticMode::new). The modes of an
 //! elastic shell, in three dimensions, are [`SphericalMode`](spherical::SphericalMode).
 //!
@@ -31,11 +33,15 @@
 //! 024904, for screening; Cohen, Schiller, Wang, Dijksman, Moshe (2023), arXiv:2310.09942, for the odd one.
 
 pub mod elastic;
-mod exponential_differences;
-mod first_order_system;
+pub(super) mod exponential_differences;
+pub(super) mod first_order_system;
+pub mod force_dipole;
+mod node_solution;
 pub mod point_force;
 pub mod screened;
-mod solution_basis;
+pub mod screened_source;
+pub(super) mod solution_basis;
+mod source_series;
 pub mod spherical;
 
 pub use num_complex::Complex;
@@ -204,6 +210,12 @@ pub enum AngularModeError {
         /// F/μ given \[length\].
         force_over_shear: f64,
     },
+    /// A force dipole is not finite.
+    #[error("the force dipole over the shear modulus must be finite, it is {moment_over_shear}")]
+    DipoleNotFinite {
+        /// F s/μ given \[length²\].
+        moment_over_shear: f64,
+    },
     /// A screening coefficient is not finite.
     #[error("the screening must be finite, it is {even} (even) and {odd} (odd)")]
     ScreeningNotFinite {
@@ -243,7 +255,7 @@ pub enum AngularModeError {
         even: f64,
         /// Γ_o given \[1/length²\].
         odd: f64,
-        /// The value of [`ScreenedMode::condition`](screened::ScreenedMode::condition), at which no digit is left.
+        /// The condition number, as that of [`ScreenedMode`](screened::ScreenedMode::condition), at which no digit is left.
         condition: f64,
     },
 }
@@ -252,7 +264,7 @@ pub enum AngularModeError {
 ///
 /// # Errors
 /// A Poisson's ratio that is not between −1 and 1.
-fn compliance_ratio(poisson_ratio: f64) -> Result<f64, AngularModeError> {
+pub(super) fn compliance_ratio(poisson_ratio: f64) -> Result<f64, AngularModeError> {
     if poisson_ratio > -1.0 && poisson_ratio < 1.0 {
         Ok(0.5 * (1.0 - poisson_ratio))
     } else {

@@ -1,7 +1,8 @@
 //! [`ScreenedMode`]: an angular mode of the screened annulus, for even and odd screening of any sign.
 
 use crate::reference::Annulus;
-use crate::reference::angular_modes::first_order_system::{State, System};
+use crate::reference::angular_modes::first_order_system::{Equations, System};
+use crate::reference::angular_modes::node_solution::{Inward, NodeSolution};
 use crate::reference::angular_modes::solution_basis::Frame;
 use crate::reference::angular_modes::{
     AngularModeError, AngularSolution, ModeAmplitudes, ModeState, compliance_ratio, finite_amplitudes, times_i,
@@ -81,17 +82,8 @@ impl Screening {
 pub struct ScreenedMode {
     annulus: Annulus,
     mode: u32,
-    system: System,
-    /// From the rim inward to a.
-    nodes: Vec<Node>,
+    solution: NodeSolution,
     condition: f64,
-}
-
-/// The solution at one radius.
-#[derive(Debug, Clone, Copy)]
-struct Node {
-    radius: f64,
-    state: State,
 }
 
 impl ScreenedMode {
@@ -115,43 +107,23 @@ impl ScreenedMode {
             return Err(AngularModeError::ScreeningNotFinite { even, odd });
         }
         let system = System { mode: f64::from(mode), compliance_ratio, even, odd };
-        let radii = node_radii(annulus, &system, mode)?;
-
-        // Inward: the solutions that vanish at the rim.
-        let mut frames = vec![Frame::held(&system, annulus.outer_radius())];
-        let mut triangles = Vec::with_capacity(radii.len() - 1);
-        for pair in radii.windows(2) {
-            let (frame, triangle) = frames[frames.len() - 1].advance(&system, pair[0], (pair[0] - pair[1]) / pair[0]);
-            frames.push(frame);
-            triangles.push(triangle);
-        }
+        let inward = Inward::march(annulus, &system, mode)?;
 
         // At the inner circle: the combination with its displacement.
         let quarter = times_i(boundary.transverse);
         let edge = [boundary.radial, quarter, boundary.radial - quarter];
         let (inner, outer) = (annulus.inner_radius(), annulus.outer_radius());
         let relative_length = (1.0 / system.rate(inner)).min((outer - inner) / inner);
-        let (mut coefficients, edge_condition) =
-            frames[frames.len() - 1].with_displacement(&system, [edge[0], edge[2]], relative_length);
-        let condition = edge_condition * closeness(&system, &radii, &frames);
+        let (coefficients, edge_condition) =
+            inward.inner_frame().with_displacement(&system, [edge[0], edge[2]], relative_length);
+        let condition = edge_condition * closeness(&system, &inward.radii, &inward.frames);
         // Every node adds a rounding of some 2⁻⁵². With less than this left, the determinant may be zero.
-        if condition.is_nan() || condition * 4.0 * f64::EPSILON * radii.len() as f64 >= 1.0 {
+        if condition.is_nan() || condition * 4.0 * f64::EPSILON * inward.radii.len() as f64 >= 1.0 {
             return Err(AngularModeError::AtPole { mode, even, odd, condition });
         }
-
-        // Outward: the solution at every node.
-        let mut nodes = Vec::with_capacity(radii.len());
-        for index in (0..radii.len()).rev() {
-            if index + 1 < radii.len() {
-                coefficients = triangles[index].undo(coefficients);
-            }
-            nodes.push(Node { radius: radii[index], state: frames[index].combine(coefficients) });
-        }
-        nodes.reverse();
-        if let Some(last) = nodes.last_mut() {
-            last.state[..edge.len()].copy_from_slice(&edge);
-        }
-        Ok(ScreenedMode { annulus, mode, system, nodes, condition })
+        let mut solution = inward.outward(system, coefficients);
+        solution.set_inner_displacement(edge);
+        Ok(ScreenedMode { annulus, mode, solution, condition })
     }
 
     /// The annulus.
@@ -170,15 +142,7 @@ impl ScreenedMode {
 
     /// Number of nodes at which the solution is stored.
     pub fn node_count(&self) -> usize {
-        self.nodes.len()
-    }
-
-    /// The node nearest to `radius`.
-    fn nearest(&self, radius: f64) -> &Node {
-        // There are at least two nodes, R and a; the search finds the first one not outside `radius`.
-        let inside = self.nodes.partition_point(|node| node.radius > radius).clamp(1, self.nodes.len() - 1);
-        let (outer, inner) = (&self.nodes[inside - 1], &self.nodes[inside]);
-        if outer.radius - radius < radius - inner.radius { outer } else { inner }
+        self.solution.node_count()
     }
 }
 
@@ -191,13 +155,7 @@ impl AngularSolution for ScreenedMode {
         if !self.annulus.contains(radius) {
             return ModeState::undefined();
         }
-        let node = self.nearest(radius);
-        let state = self.system.advance(node.radius, (node.radius - radius) / node.radius, node.state);
-        let [radial_slope, quarter_slope] = self.system.displacement_slope(state);
-        ModeState {
-            value: ModeAmplitudes { radial: state[0], transverse: -times_i(state[1]) },
-            derivative: ModeAmplitudes { radial: radial_slope / radius, transverse: -times_i(quarter_slope) / radius },
-        }
+        self.solution.at(radius)
     }
 }
 
@@ -213,26 +171,4 @@ fn closeness(system: &System, radii: &[f64], frames: &[Frame]) -> f64 {
         sines.push(frames[index].smallest_sine(&inner, system, radii[index]));
     }
     sines.iter().fold(1.0, |largest, sine| larger(largest, sines[0] / sine))
-}
-
-/// From R inward to a, each within the reach of the series about the previous one.
-fn node_radii(annulus: Annulus, system: &System, mode: u32) -> Result<Vec<f64>, AngularModeError> {
-    let (inner, outer) = (annulus.inner_radius(), annulus.outer_radius());
-    let node_estimate = (4.0 + system.mode) * libm::log(outer / inner) + system.wavenumber() * (outer - inner);
-    if node_estimate.is_nan() || node_estimate > NODE_LIMIT as f64 {
-        return Err(AngularModeError::TooManyNodes { mode, node_estimate, node_limit: NODE_LIMIT });
-    }
-    // Nodes are then at least 2¹⁰ roundings of R apart.
-    let System { even, odd, .. } = *system;
-    if system.wavenumber() * outer > libm::exp2(42.0) {
-        return Err(AngularModeError::ScreeningTooLarge { even, odd, outer_radius: outer });
-    }
-    let mut radii = vec![outer];
-    let mut radius = outer;
-    while radius > inner {
-        let next = radius - system.reach(radius) * radius;
-        radius = if next > inner { next } else { inner };
-        radii.push(radius);
-    }
-    Ok(radii)
 }

@@ -8,18 +8,18 @@
 //! Conte (1966), SIAM Rev. 8, 309 (after Godunov).
 
 use crate::reference::angular_modes::Complex;
-use crate::reference::angular_modes::first_order_system::{State, System, size};
+use crate::reference::angular_modes::first_order_system::{Equations, State, size};
 use crate::vector::larger;
 
 /// Two solutions, orthonormal in U, v, P and W; the last two are divided by the rate.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
-    pub(super) columns: [State; 2],
+pub(in crate::reference) struct Frame {
+    pub(in crate::reference) columns: [State; 2],
 }
 
 /// The upper triangular matrix from coefficients in the new frame to those in the old: `old = new · triangle`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Triangle {
+pub(in crate::reference) struct Triangle {
     first: f64,
     across: Complex<f64>,
     second: f64,
@@ -27,15 +27,23 @@ pub(super) struct Triangle {
 
 impl Frame {
     /// On a held circle of this radius: no displacement; pure dilation and pure rotation.
-    pub(super) fn held(system: &System, radius: f64) -> Self {
+    pub(in crate::reference) fn held<E: Equations>(system: &E, radius: f64) -> Self {
         let (zero, one) = (Complex::new(0.0, 0.0), Complex::new(system.rate(radius), 0.0));
         Frame { columns: [[zero, zero, zero, one, zero], [zero, zero, zero, zero, one]] }
     }
 
     /// The frame at `radius` (1 − z), orthonormal, and the triangle that relates it to the integrated one.
-    pub(super) fn advance(&self, system: &System, radius: f64, z: f64) -> (Self, Triangle) {
-        let [mut first, mut second] = self.columns.map(|column| system.advance(radius, z, column));
-        let scale = 1.0 / system.rate(radius * (1.0 - z));
+    pub(in crate::reference) fn advance<E: Equations>(&self, system: &E, radius: f64, z: f64) -> (Self, Triangle) {
+        Frame::orthonormal(self.columns.map(|column| system.advance(radius, z, column)), system, radius * (1.0 - z))
+    }
+
+    /// The frame of two solutions at `radius`, and the triangle that relates it to them.
+    pub(in crate::reference) fn orthonormal<E: Equations>(
+        [mut first, mut second]: [State; 2],
+        system: &E,
+        radius: f64,
+    ) -> (Self, Triangle) {
+        let scale = 1.0 / system.rate(radius);
         let weight = scale * scale;
         let length = product(&first, &first, weight).re.sqrt();
         first = first.map(|x| x / length);
@@ -51,7 +59,7 @@ impl Frame {
     /// The sine of the smaller angle between the solutions of this frame and of another one at `radius`: 0 if they
     /// share a solution. The product of both sines is the volume that they span, which is accurate even if it is small.
     /// The square of the larger sine is an eigenvalue of the complement of the projection on the other frame.
-    pub(super) fn smallest_sine(&self, frame: &Frame, system: &System, radius: f64) -> f64 {
+    pub(in crate::reference) fn smallest_sine<E: Equations>(&self, frame: &Frame, system: &E, radius: f64) -> f64 {
         let scale = 1.0 / system.rate(radius);
         let minor = |frame: &Frame, i: usize, j: usize| {
             let row = |i: usize| frame.columns.map(|column| if i > 2 { column[i] * scale } else { column[i] });
@@ -78,16 +86,16 @@ impl Frame {
     }
 
     /// The solution with these coefficients.
-    pub(super) fn combine(&self, coefficients: [Complex<f64>; 2]) -> State {
+    pub(in crate::reference) fn combine(&self, coefficients: [Complex<f64>; 2]) -> State {
         std::array::from_fn(|i| self.columns[0][i] * coefficients[0] + self.columns[1][i] * coefficients[1])
     }
 
     /// The coefficients of the solution with given U and d, and the condition number of their equation. It is the sum
     /// of the products in the determinant, over the determinant; each factor is replaced by the amplitude of its
     /// oscillation, the larger of |U| and length |U'|.
-    pub(super) fn with_displacement(
+    pub(in crate::reference) fn with_displacement<E: Equations>(
         &self,
-        system: &System,
+        system: &E,
         [u, d]: [Complex<f64>; 2],
         relative_length: f64,
     ) -> ([Complex<f64>; 2], f64) {
@@ -107,7 +115,7 @@ impl Frame {
 
 impl Triangle {
     /// The coefficients in the previous frame from those in this one.
-    pub(super) fn undo(&self, [first, second]: [Complex<f64>; 2]) -> [Complex<f64>; 2] {
+    pub(in crate::reference) fn undo(&self, [first, second]: [Complex<f64>; 2]) -> [Complex<f64>; 2] {
         let second = second / self.second;
         [(first - self.across * second) / self.first, second]
     }
