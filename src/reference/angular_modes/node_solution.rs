@@ -5,9 +5,11 @@
 
 use crate::reference::Annulus;
 use crate::reference::angular_modes::first_order_system::{Equations, State, System};
-use crate::reference::angular_modes::screened::NODE_LIMIT;
 use crate::reference::angular_modes::solution_basis::{Frame, Triangle};
 use crate::reference::angular_modes::{AngularModeError, Complex, ModeAmplitudes, ModeState, times_i};
+
+/// Largest number of nodes of a solution: 18 MB, and 58 MB during its computation.
+pub const NODE_LIMIT: usize = 200_000;
 
 /// The solutions that vanish at the rim, at every node.
 pub(super) struct Inward {

@@ -9,8 +9,7 @@ use crate::reference::angular_modes::{
 };
 use crate::vector::larger;
 
-/// Largest number of nodes of a solution: 18 MB, and 58 MB during its computation.
-pub const NODE_LIMIT: usize = 200_000;
+pub use crate::reference::angular_modes::node_solution::NODE_LIMIT;
 
 /// The screening of a medium, over its shear modulus.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -12,7 +12,7 @@
 use crate::reference::angular_modes::Complex;
 use crate::reference::angular_modes::first_order_system::{Equations, State, size};
 use crate::reference::angular_modes::solution_basis::Frame;
-use crate::reference::strip_modes::{NODE_LIMIT, StripAmplitudes, StripModeError, StripState};
+use crate::reference::strip_modes::state::{NODE_LIMIT, StripAmplitudes, StripModeError, StripState};
 use crate::vector::{larger, two_sum};
 
 /// The series ends at two successive terms below this share of the sum.
