@@ -76,7 +76,7 @@ pub enum StripModeError {
         wavenumber: f64,
         /// Γ given \[1/length²\].
         screening: f64,
-        /// The value of [`StripMode::condition`], at which no digit is left.
+        /// The value of [`StripMode::condition`](crate::reference::strip_modes::StripMode::condition), at which no digit is left.
         condition: f64,
     },
 }
