@@ -35,8 +35,8 @@ use crate::vector::larger;
 ///
 /// # Accuracy
 /// As [`ScreenedMode`](super::screened::ScreenedMode): relative to |u| + ℓ|u'| below `2⁻⁵² (8 + node_count) · condition`.
-/// Largest error found against 25 digits: 8.3·10⁻¹⁵ of the condition, 0.41 of that bound, for |Γ| R² from 10⁻¹² to 62500, r/R from 10⁻⁵ to 0.95, ν from −0.5 to 0.999999, and next
-/// to poles.
+/// Largest error found against 25 digits: 8.3·10⁻¹⁵ of the condition, 0.41 of that bound, for |Γ| R² from 10⁻¹² to 62500,
+/// r/R from 10⁻⁵ to 0.95, ν from −0.5 to 0.999999, and next to poles.
 ///
 /// # Cost
 /// As [`ScreenedMode`](super::screened::ScreenedMode).
