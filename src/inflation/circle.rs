@@ -37,8 +37,7 @@ impl<const D: usize> Circle<D> {
         if !(outer_radius > 0.0 && outer_radius <= half) {
             return Err(InflationError::OuterRadiusOutOfRange { outer_radius, half_side: half });
         }
-        let largest = packing.radii().iter().copied().fold(0.0, f64::max);
-        let reach = outer_radius + RIM_WIDTH * largest;
+        let reach = outer_radius + RIM_WIDTH * packing.largest_radius();
         let mut mobile = Vec::new();
         let mut rim = Vec::new();
         let mut images = Vec::new();
@@ -96,7 +95,7 @@ impl<const D: usize> Circle<D> {
     /// Label and distance from the centre of the outermost mobile disk, if it has left the circle through the rim. It
     /// has if a disk of the largest radius fits between it and R.
     pub(super) fn beyond_rim(&self, packing: &Packing<D>) -> Option<(u64, f64)> {
-        let largest = packing.radii().iter().copied().fold(0.0, f64::max);
+        let largest = packing.largest_radius();
         let mobile = (0..self.centre).map(|disk| (packing.labels()[disk], norm(packing.positions()[disk])));
         mobile.filter(|&(_, distance)| distance > self.outer_radius + 2.0 * largest).max_by(|a, b| a.1.total_cmp(&b.1))
     }

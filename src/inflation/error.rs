@@ -22,6 +22,9 @@ pub enum InflationError {
         /// Half the shortest side.
         half_side: f64,
     },
+    /// A row of disks is inflated in two dimensions.
+    #[error("a strip between held walls has two dimensions")]
+    StripNotInPlane,
     /// The walls of a strip must be so thick that disks on both sides of them do not meet.
     #[error(
         "wall distance {wall_distance}: must be above 0 and below {largest}, so that the wall between the images of the strip is four of the largest radii thick"

@@ -38,16 +38,19 @@ impl<const D: usize> Strip<D> {
     /// The strip around a disk of a periodic packing: its row, held if `row_held`, and walls at `wall_distance`.
     ///
     /// # Errors
-    /// The packing must be periodic. Between the images of the strip there must be four of the largest radii.
+    /// The packing must be periodic and in the plane. Between the images of the strip there must be four of the largest
+    /// radii.
     pub fn cut(
         packing: &Packing<D>,
         centre: usize,
         wall_distance: f64,
         row_held: bool,
     ) -> Result<Self, InflationError> {
+        if D != 2 {
+            return Err(InflationError::StripNotInPlane);
+        }
         let side = packing.domain().lengths().ok_or(InflationError::NotPeriodic)?[Self::ACROSS];
-        let largest_radius = packing.radii().iter().copied().fold(0.0, f64::max);
-        let largest = 0.5 * (side - RIM_WIDTH * largest_radius);
+        let largest = 0.5 * (side - RIM_WIDTH * packing.largest_radius());
         if !(wall_distance > 0.0 && wall_distance < largest) {
             return Err(InflationError::WallDistanceOutOfRange { wall_distance, largest });
         }
@@ -96,7 +99,7 @@ impl<const D: usize> Strip<D> {
     /// Label and distance from the line of the outermost mobile disk, if a disk of the largest radius fits between it and
     /// the line at H.
     pub(super) fn beyond_wall(&self, packing: &Packing<D>) -> Option<(u64, f64)> {
-        let largest = packing.radii().iter().copied().fold(0.0, f64::max);
+        let largest = packing.largest_radius();
         let distance = |disk: usize| {
             let (before, after) = (self.packing.positions()[disk], packing.positions()[disk]);
             // From its own position before, since a disk that crosses the wall gets another nearest image.

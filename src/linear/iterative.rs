@@ -6,7 +6,7 @@
 //!
 //! The incomplete factor may not exist although A is positive definite; α is then raised until it does. If the factor
 //! fits in memory, [`Analysis`](crate::linear::Analysis) is much faster in two dimensions. In three dimensions the
-//! time of a factor grows as N², that of the iterations as N^(4/3): [`is_faster`] has the number of spheres from which
+//! time of a factor grows as N², the number of iterations as N^(1/3): [`is_faster`] has the number of spheres from which
 //! they take less (`cargo run --release --features measurements --example sphere_factors`). Newton's method uses them
 //! from there on. They do not count negative eigenvalues, so responses, moduli, modes, certificates and implicit steps
 //! need a factor.

@@ -196,6 +196,11 @@ impl<const D: usize> Packing<D> {
         &self.radii
     }
 
+    /// The largest radius \[length\].
+    pub fn largest_radius(&self) -> f64 {
+        self.radii.iter().copied().fold(0.0, f64::max)
+    }
+
     /// Which disks are held in place.
     pub fn held(&self) -> &[bool] {
         &self.held

@@ -151,6 +151,9 @@ fn widest(radii: &[f64]) -> f64 {
 fn introduction(report: &Report) -> String {
     let scene = &report.scene;
     let place = match scene.inflation.boundary {
+        Boundary::HeldRim { .. } if !scene.inflation.centre_held => {
+            "A disk that is free to move, in the middle of a circle whose rim is held, grows"
+        }
         Boundary::HeldRim { .. } => "A disk at the centre of a circle whose rim is held grows",
         Boundary::Periodic => "A disk in a periodic box grows",
         Boundary::HeldWalls { .. } => "The disks of a row in the middle of a strip between held walls grow",

@@ -157,7 +157,6 @@ impl Task {
     ///
     /// The number of FIRE steps grows as the square root of n and towards jamming. The estimate is rough and for jammed
     /// packings; unjammed ones, with p = 1 here, take a tenth and less.
-    /// long, and unjammed packings, for which p = 1 is taken, take a tenth and less.
     pub fn expected_seconds(&self) -> f64 {
         let mobile = mobile_count(self.disk_count, self.boundary(), self.study.scene.dimension);
         let pressure = match self.target {

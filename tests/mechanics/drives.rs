@@ -11,9 +11,10 @@ use jamscope::law::{Hookean, OnSite, PairLaw};
 use jamscope::linear::{LinearError, LinearResponse, Prestress};
 use jamscope::network::ContactNetwork;
 use jamscope::packing::{Mixture, Packing};
+use jamscope::plastic::PlasticPart;
 use jamscope::preparation::{Preparation, Target, prepare_with, random_points_in};
 use jamscope::relax::{Fire, ForceLimit, Relaxer};
-use jamscope::vector::{larger, norm};
+use jamscope::vector::{difference, larger, norm};
 
 use crate::scenes::lammps_inflated::fixture;
 use crate::scenes::laws::hertzian;
@@ -293,4 +294,50 @@ fn final_states_of_other_drives_are_those_of_lammps() {
         assert!(most < 1e-7 * 0.05, "{name}: {most:e}");
         assert!(moved > 0.01, "{name}: something moved");
     }
+}
+
+/// As d_0 → 0 the relaxed response is the linear one, of a held row, of a free row (whose disks push each other too), and of a
+/// free disk in a circle. Its deviation is of second order in d_0, as long as no contact changes: it falls by ten with d_0.
+#[test]
+fn small_inflations_of_rows_and_free_disks_are_the_linear_response() {
+    let (packing, law) = (packing(), hertzian());
+    let rim = Boundary::HeldRim { outer_radius_over_side: 0.48 };
+    let rows = [true, false].map(|centre_held| Inflation { centre_held, ..strip_of(0.38) });
+    for inflation in [rows[0], rows[1], Inflation { centre_held: false, boundary: rim, ..Inflation::default() }] {
+        let deviation = |increase: f64| {
+            let inflation = Inflation { increase, ..inflation };
+            let inflated = inflate_with(&inflation, &packing, &law, &fire(1e-13), 1, &mut ()).expect("at rest");
+            let (before, after) = (inflated.before.packing.get(), inflated.after.packing.get());
+            let response =
+                LinearResponse::of_growth(before, &inflated.grown, &law, Prestress::Included).expect("a response");
+            assert_eq!(response.growing, inflated.grown);
+            let (mut most, mut largest) = (0.0, 0.0);
+            for disk in (0..before.len()).filter(|&disk| response.solved[disk]) {
+                let ((a, a_low), (b, b_low)) = (after.centre(disk), before.centre(disk));
+                let by: [f64; 2] = std::array::from_fn(|d| ((a[d] - b[d]) + (a_low[d] - b_low[d])) / increase);
+                largest = larger(norm(response.displacements[disk]), largest);
+                most = larger(norm(difference(by, response.displacements[disk])), most);
+            }
+            let changes = PlasticPart::of(&inflated, &response);
+            // The same by the plastic part, over the disks that count.
+            assert!(changes.share < 10.0 * most / largest + 1e-12, "{} and {most}", changes.share);
+            // Δp/d_0, from the changes of all contacts.
+            let virial: f64 =
+                response.contact_changes(before, &law).expect("apart").iter().map(|change| change.virial_change).sum();
+            assert!(virial > 0.0, "{virial}");
+            most / largest
+        };
+        let [coarse, fine] = [1e-6, 1e-7].map(deviation);
+        // d_0 over the softest overlaps, some 10⁻³, times the amplification of the softest modes.
+        assert!(coarse < 1e-2 && fine < 0.2 * coarse, "{inflation:?}: {coarse:e}, {fine:e}");
+    }
+}
+
+#[test]
+fn a_strip_is_of_the_plane() {
+    let target = Target::Pressure(1000.0);
+    let preparation = Preparation { disk_count: 200, target, ..Preparation::default() };
+    let spheres = prepare_with::<3>(&preparation, &hertzian(), &fire(1e-8), &mut ()).expect("a packing");
+    let run = inflate_with(&strip_of(0.3), spheres.packing.get(), &hertzian(), &fire(1e-8), 1, &mut ());
+    assert!(matches!(run, Err(InflationError::StripNotInPlane)));
 }
