@@ -3,13 +3,14 @@
 
 use std::f64::consts::PI;
 
-use jamscope::displacement::{DisplacementField, Shape};
+use jamscope::displacement::{DisplacementField, Moved, Shape};
 use jamscope::inflation::{Boundary, Centre, Inflation, InflationError, Strip, inflate_with};
 use jamscope::io::read_packing;
 use jamscope::lattice::Lattice;
 use jamscope::law::{Hookean, OnSite, PairLaw};
 use jamscope::linear::{LinearError, LinearResponse, Prestress};
 use jamscope::network::ContactNetwork;
+use jamscope::observe::AngularProfile;
 use jamscope::packing::{Mixture, Packing};
 use jamscope::plastic::PlasticPart;
 use jamscope::preparation::{Preparation, Target, prepare_with, random_points_in};
@@ -239,6 +240,14 @@ fn a_field_of_a_strip_is_measured_from_the_line() {
         assert!(!before.held()[disk.disk] && !inflated.grown.contains(&disk.disk));
     }
     assert!(field.disks.iter().map(|disk| disk.radial).sum::<f64>() > 0.0, "away from the row on the whole");
+    // A ring is the row of disks at one distance above the line.
+    let ring = AngularProfile::within(&field, 0.5, 0.2);
+    let near = |disk: &&Moved<2>| (disk.distance / field.outer_radius - 0.5).abs() <= 0.2;
+    let above: Vec<&Moved<2>> = field.counted().filter(near).filter(|disk| disk.position[1] > 0.0).collect();
+    assert!(above.len() > 20 && field.counted().filter(near).count() > above.len(), "{} above", above.len());
+    let mut places: Vec<(f64, f64)> = above.iter().map(|disk| (field.angle(disk), disk.radial)).collect();
+    places.sort_by(|a, b| a.0.total_cmp(&b.0));
+    assert_eq!(ring.angles.iter().copied().zip(ring.radial.iter().copied()).collect::<Vec<_>>(), places);
 }
 
 /// From the same start FIRE of both programs ends in the same minimum at p ≥ 100: in four of the four packings tried.

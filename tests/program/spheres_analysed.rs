@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use jamscope::reference::elastic::Elastic;
+use jamscope::reference::poles::pole;
 use jamscope::reference::screened::Screened;
 use jamscope::reference::{Annulus, RadialSolution};
 use serde_json::Value;
@@ -84,7 +85,11 @@ fn exact_solutions_of_a_shell_are_recovered_from_two_files() {
     let screened = Screened::<3>::new(annulus, 0.05, 0.2).expect("no pole");
     write_pair(folder.path(), "screened", " dimension=3", |radius| screened.value(radius));
     let given = "screened.before.xyz screened.after.xyz --outer-radius 40";
-    done(folder.path(), &format!("analyse {given} --out screened"));
+    let printed = done(folder.path(), &format!("analyse {given} --out screened"));
+    // κ_1 is the pole of the shell.
+    let row = printed.lines().find(|line| line.contains("screened: κ/κ_1")).expect("a row");
+    let ratio = row.split_whitespace().find_map(|word| word.parse::<f64>().ok()).expect("a number");
+    assert!((ratio * pole::<3>(annulus, 1) / 0.2 - 1.0).abs() < 0.01, "{row}: three digits are printed");
     let found = analysis(&folder.path().join("screened"));
     let fit = &found["profile_fit"]["measured"];
     assert_eq!(fit["decision"], "screened", "{fit}");

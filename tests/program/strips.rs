@@ -112,3 +112,60 @@ fn a_study_holds_and_frees_the_centre_of_the_same_packings() {
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(!output.status.success() && message.contains("centres_held: true occurs twice"), "{message}");
 }
+
+/// The page, `precision` and the comparison of protocols see the same strip as the run.
+#[cfg(all(feature = "fit", feature = "linear", feature = "plot"))]
+#[test]
+fn every_part_of_a_report_sees_the_strip() {
+    use jamscope::inflation::{Boundary, Inflation};
+    use jamscope::precision::{PrecisionSettings, measure};
+    use jamscope::protocol::ProtocolSettings;
+    use jamscope::relax::RelaxerChoice;
+    use jamscope::report::figures::heat_map::heat_map;
+    use jamscope::report::figures::map::MapFrame;
+    use jamscope::run::{SampleOutcome, run};
+    use jamscope::scene::{Observables, ProtocolChoice, Sample, Scene, Source};
+
+    let relaxer: RelaxerChoice = ProtocolChoice::FireNewton.relaxer();
+    let boundary = Boundary::HeldWalls { distance_over_side: 0.45, length_over_side: 2.0 };
+    let sample = Sample { name: "dense".into(), seed: 1, source: Source::Pressure(3000.0), relaxer };
+    let observables = Observables {
+        protocol: Some(ProtocolSettings { fraction: 1.0, ..Default::default() }),
+        ..Observables::of_strip()
+    };
+    let inflation = Inflation { increase: 0.002, boundary, ..Inflation::default() };
+    let scene = Scene { disk_count: 1600, inflation, observables, sample: vec![sample], ..Scene::default() };
+    let report = run(&scene, &()).expect("a scene");
+    let SampleOutcome::Done(result) = &report.samples[0].result else { panic!("it runs") };
+    let response = &result.response;
+    let fit = response.profile_fit.as_ref().and_then(|it| it.measured()).expect("a fit");
+
+    // Far from jamming all protocols end in the minimum of the run.
+    let compared = result.protocol.as_ref().and_then(|it| it.measured()).expect("compared");
+    assert_eq!(compared.minimum_count, 1);
+    for ending in &compared.endings {
+        let change = ending.pressure_change.expect("at rest");
+        assert!((change / result.inflation.pressure_change - 1.0).abs() < 1e-6, "{ending:?}");
+        let amplitude = ending.fit.as_ref().expect("a fit").elastic_amplitude;
+        assert!((amplitude / fit.elastic.amplitude.value - 1.0).abs() < 1e-6, "{ending:?}");
+    }
+
+    let settings = PrecisionSettings {
+        force_limits: vec![1e-4],
+        time_steps: Vec::new(),
+        tolerances: Vec::new(),
+        ..Default::default()
+    };
+    let precision = measure(&scene, &settings, &()).expect("measured");
+    let fitted = precision.samples[0].minima[0].measured.fitted.as_ref().expect("a fit");
+    assert!((fitted.elastic_amplitude / fit.elastic.amplitude.value - 1.0).abs() < 1e-6, "{fitted:?}");
+
+    // The map has d_r, not r d_r.
+    let field = &response.detail.plane().expect("of the plane").field;
+    let frame = MapFrame::new(boundary, field.outer_radius, [40.0, 20.0], 0.7);
+    let map = heat_map("dense", field, result.states.radii(), &frame);
+    let largest = field.counted().map(|disk| disk.radial.abs()).fold(0.0, f64::max);
+    let told = map.description.split("the largest has ").nth(1).expect("the largest");
+    let told: f64 = told.split([')', ';']).next().expect("a number").trim().parse().expect("a plain number");
+    assert!((told / largest - 1.0).abs() < 0.01, "{} and {largest}", map.description);
+}

@@ -319,6 +319,23 @@ fn curves_of_several_sizes_and_inflations_give_their_exponents() {
     assert!((exponent.value - 0.75).abs() < 4.0 * exponent.standard_error + 0.01, "{exponent:?}");
 }
 
+/// The scaling and the published values are those around a held disk.
+#[test]
+fn strips_and_free_centres_have_no_scaling_and_nothing_published_to_compare_with() {
+    let strip = Boundary::HeldWalls { distance_over_side: 0.45, length_over_side: 1.0 };
+    let changes: [fn(&mut Cell, Boundary); 3] =
+        [|_, _| {}, |cell, strip| cell.boundary = strip, |cell, _| cell.centre_held = false];
+    let counts = changes.map(|change| {
+        let mut all = several_series(1, CRITICAL, RelaxerChoice::default());
+        all.iter_mut().for_each(|samples| change(&mut samples.cell, strip));
+        let transition = Transition::of(&merged(all));
+        assert!(!transition.series.is_empty());
+        (transition.scaling.len(), transition.pressure_laws.len(), transition.comparisons.len())
+    });
+    assert!(counts[0].0 > 0 && counts[0].2 > 0, "{counts:?}");
+    assert_eq!(counts[1..], [(0, 0, 0); 2]);
+}
+
 fn damped(damping: DampingChoice) -> RelaxerChoice {
     RelaxerChoice::Damped(DampedDynamics { damping, ..DampedDynamics::default() })
 }
