@@ -60,9 +60,9 @@ use crate::vector::larger;
 /// # Accuracy
 /// Relative to |u| + ℓ|u'|, where ℓ is the length over which u changes, and u' times ℓ relative to the same. Elastic:
 /// below 7.5·10⁻¹⁵ times the [condition](StripMode::condition). Screened: below `2⁻⁵² (8 + node_count) · condition`.
-/// Largest errors found against 25 digits: 6.7·10⁻¹⁶, and half of that bound (9.1·10⁻¹⁴ of the condition, at 2·10³ nodes),
-/// for q(H−a) from 0 to 1000, |Γ|(H−a)² to 5·10⁶, ν from −0.5 to 1 − 10⁻¹⁰, away from poles and next to them. With
-/// Γ < 0, B alone of small q decays faster than A would. The error is then relative to what decays slowest.
+/// Largest errors found against 25 digits: 5.1·10⁻¹⁶ and 9.1·10⁻¹⁴ of the condition (7 % and 47 % of these bounds), for
+/// q(H−a) from 0 to 1000, |Γ|(H−a)² to 5·10⁶, ν from −0.5 to 1 − 10⁻¹⁰, away from poles and next to them. With Γ < 0, B
+/// alone of small q decays faster than A would. The error is then relative to what decays slowest.
 ///
 /// # Cost
 /// Screened: the setup in proportion to the number of nodes, 1 to 2 times (H−a) max(q, √|Γ|); constant per place.
