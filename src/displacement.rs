@@ -14,13 +14,14 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
+use crate::inflation::drive::DiagonalStrain;
 use crate::inflation::region::Region;
-use crate::inflation::{Inflated, Rest, Strip, displacement};
+use crate::inflation::{Inflated, Rest};
 #[cfg(feature = "linear")]
 use crate::linear::LinearResponse;
-use crate::packing::Packing;
+use crate::packing::{Packing, displacement};
 use crate::relax::Criterion;
-use crate::vector::{Vector, dot, norm, scaled};
+use crate::vector::{Vector, difference, norm, scaled};
 
 pub use crate::inflation::region::Shape;
 
@@ -33,7 +34,7 @@ pub struct Moved<const D: usize> {
     pub position: Vector<D>,
     /// Distance before to that centre, or to the line of a strip \[length\].
     pub distance: f64,
-    /// Displacement \[length\].
+    /// Displacement; of a shear or a compression its non-affine part \[length\].
     pub displacement: Vector<D>,
     /// Radial part d_r \[length\].
     pub radial: f64,
@@ -81,12 +82,13 @@ pub enum MeasuredOn {
 impl<const D: usize> DisplacementField<D> {
     /// The response to an inflation.
     pub fn of_inflation(inflated: &Inflated<D>) -> Self {
-        Self::between(inflated, &inflated.before, &inflated.after)
+        Self::between(inflated, &inflated.before, &inflated.after, inflated.drive.strain::<D>())
     }
 
     /// The displacement that remains after the deflation; none without a deflation.
     pub fn of_cycle(inflated: &Inflated<D>) -> Option<Self> {
-        inflated.deflated.as_ref().map(|deflated| Self::between(inflated, &inflated.before, deflated))
+        let deflated = inflated.deflated.as_ref()?;
+        Some(Self::between(inflated, &inflated.before, deflated, DiagonalStrain::default()))
     }
 
     /// The linear response to an inflation of one disk by `increase`. The disks that were solved for count.
@@ -106,16 +108,17 @@ impl<const D: usize> DisplacementField<D> {
         let &[centre] = response.growing.as_slice() else { panic!("a field has one disk that grows in its middle") };
         let displacement = |disk: usize| scaled(increase, response.displacements[disk]);
         let (inner_radius, shape) = (packing.radii()[centre], Shape::Round);
-        let region = Region { centre, grown: &[centre], inner_radius, outer_radius, shape };
+        let strain = DiagonalStrain::default();
+        let region = Region { centre, grown: &[centre], inner_radius, outer_radius, shape, strain };
         let disks = moved(packing, region, &response.solved, displacement);
         DisplacementField { disks, inner_radius, outer_radius, shape, measured_on: MeasuredOn::Backbone }
     }
 
-    fn between(inflated: &Inflated<D>, before: &Rest<D>, after: &Rest<D>) -> Self {
+    fn between(inflated: &Inflated<D>, before: &Rest<D>, after: &Rest<D>, strain: DiagonalStrain) -> Self {
         let unjammed = [before, after].iter().any(|rest| rest.criterion == Criterion::Unjammed);
         let states = [(before.packing.get(), before.backbone.as_slice()), (after.packing.get(), &after.backbone)];
         let Inflated { centre, ref grown, inner_radius, outer_radius, shape, .. } = *inflated;
-        Self::of_states(states, unjammed, Region { centre, grown, inner_radius, outer_radius, shape })
+        Self::of_states(states, unjammed, Region { centre, grown, inner_radius, outer_radius, shape, strain })
     }
 
     /// The field from two states with their backbones. The caller ensures that both are at rest, or states that they
@@ -181,13 +184,9 @@ fn moved<const D: usize>(
         .filter(|&disk| !apart[disk] && !before.held()[disk])
         .map(|disk| {
             let position = before.separation(disk, region.centre);
-            let displacement = displacement(disk);
-            let from = match region.shape {
-                Shape::Round => position,
-                Shape::Strip { .. } => std::array::from_fn(|d| if d == Strip::<D>::ACROSS { position[d] } else { 0.0 }),
-            };
-            let distance = norm(from);
-            let radial = dot(displacement, scaled(1.0 / distance, from));
+            let displacement = difference(displacement(disk), region.strain.of(position));
+            let distance = norm(region.shape.from_middle(position));
+            let radial = region.shape.radial_part(position, displacement);
             Moved { disk, position, distance, displacement, radial, counted: counted[disk] }
         })
         .collect()

@@ -8,11 +8,13 @@
 //! In a packing whose contacts do not change this is of order d_0². Contacts that open, close or rearrange add the
 //! plastic part.
 
-use crate::displacement::DisplacementField;
-use crate::inflation::{Inflated, displacement};
+use crate::displacement::{DisplacementField, Moved};
+use crate::inflation::{Drive, Inflated};
 use crate::law::pair_law::PairLaw;
-use crate::linear::LinearResponse;
+use crate::linear::hessian::Prestress;
+use crate::linear::{LinearError, LinearResponse};
 use crate::network::ContactNetwork;
+use crate::packing::displacement;
 use crate::packing::{Packing, PackingError};
 use crate::relax::{Cost, Relaxed, Relaxer, Stop};
 use crate::vector::{Vector, difference, dot, scaled};
@@ -39,6 +41,41 @@ pub enum PlasticError {
     },
 }
 
+/// The linear response to the drive of an inflation, on its state before: per d_0 if disks grow, otherwise to the whole
+/// load. That of a shear or a compression includes the affine displacement ε r.
+///
+/// # Errors
+/// See [`LinearResponse::of_inflation`].
+pub fn linear_response<const D: usize>(
+    inflated: &Inflated<D>,
+    law: &dyn PairLaw,
+) -> Result<LinearResponse<D>, LinearError> {
+    let (before, prestress) = (inflated.before.packing.get(), Prestress::Included);
+    match inflated.drive {
+        Drive::Inflation => LinearResponse::of_growth(before, &inflated.grown, law, prestress),
+        Drive::PointForce { .. } | Drive::ForceDipole { .. } => {
+            LinearResponse::of_forces(before, inflated.start.loads().unwrap_or_default(), law, prestress)
+        }
+        Drive::Displacement { .. } => {
+            let moved = displacement(before, &inflated.start, inflated.centre);
+            LinearResponse::of_displacements(before, &[(inflated.centre, moved)], law, prestress)
+        }
+        Drive::Shear { .. } | Drive::Compression { .. } => {
+            let held = (0..before.len()).filter(|&disk| before.held()[disk]);
+            let moved: Vec<_> = held.map(|disk| (disk, displacement(before, &inflated.start, disk))).collect();
+            LinearResponse::of_displacements(before, &moved, law, prestress)
+        }
+    }
+}
+
+/// By what the displacements of [`linear_response`] are multiplied: d_0 if disks grow, otherwise 1.
+pub(crate) fn load_factor<const D: usize>(inflated: &Inflated<D>, response: &LinearResponse<D>) -> f64 {
+    match response.growing.is_empty() {
+        true => 1.0,
+        false => inflated.after.packing.get().radii()[inflated.centre] - inflated.inner_radius,
+    }
+}
+
 /// The plastic part of a response.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlasticPart<const D: usize> {
@@ -53,25 +90,37 @@ pub struct PlasticPart<const D: usize> {
 }
 
 impl<const D: usize> PlasticPart<D> {
-    /// The plastic part of an inflation. The linear response must be that of its state before.
+    /// The plastic part of an inflation or of another drive. The linear response must be that of its state before, see
+    /// [`linear_response`].
     ///
     /// # Panics
     /// If the response belongs to another packing.
     pub fn of(inflated: &Inflated<D>, response: &LinearResponse<D>) -> Self {
-        let increase = inflated.after.packing.get().radii()[inflated.centre] - inflated.inner_radius;
-        Self::of_field(DisplacementField::of_inflation(inflated), increase, response)
+        let field = DisplacementField::of_inflation(inflated);
+        let (factor, strain) = (load_factor(inflated, response), inflated.drive.strain::<D>());
+        Self::between(field, response, |disk| {
+            difference(scaled(factor, response.displacements[disk.disk]), strain.of(disk.position))
+        })
     }
 
     /// The plastic part of the displacements after an inflation by `increase`. The linear response must be that of the state before.
     ///
     /// # Panics
     /// If the response belongs to another packing.
-    pub fn of_field(mut field: DisplacementField<D>, increase: f64, response: &LinearResponse<D>) -> Self {
+    pub fn of_field(field: DisplacementField<D>, increase: f64, response: &LinearResponse<D>) -> Self {
+        Self::between(field, response, |disk| scaled(increase, response.displacements[disk.disk]))
+    }
+
+    fn between(
+        mut field: DisplacementField<D>,
+        response: &LinearResponse<D>,
+        linear: impl Fn(&Moved<D>) -> Vector<D>,
+    ) -> Self {
+        let shape = field.shape;
         let relaxed = Squares::of(field.counted().map(|disk| disk.displacement));
         for disk in &mut field.disks {
-            let linear = scaled(increase, response.displacements[disk.disk]);
-            disk.displacement = difference(disk.displacement, linear);
-            disk.radial = dot(disk.displacement, disk.position) / disk.distance;
+            disk.displacement = difference(disk.displacement, linear(disk));
+            disk.radial = shape.radial_part(disk.position, disk.displacement);
             disk.counted &= response.solved[disk.disk];
         }
         let plastic = Squares::of(field.counted().map(|disk| disk.displacement));

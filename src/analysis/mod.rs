@@ -21,8 +21,9 @@ pub use pair::{AnalysisError, Pair, PairSettings};
 
 use crate::certificate::Certificate;
 use crate::displacement::{DisplacementField, Shape};
-use crate::inflation::Boundary;
+use crate::inflation::drive::DiagonalStrain;
 use crate::inflation::region::Region;
+use crate::inflation::{Boundary, Drive};
 use crate::law::choice::LawChoice;
 use crate::law::pair_law::PairLaw;
 use crate::observe::PressureChange;
@@ -112,14 +113,30 @@ impl<const D: usize> Analysis<D> {
         let inner_radius = pair.before.radii()[centre];
         let unjammed = [&before, &after].iter().any(|state| is_unjammed(state, law));
         let states = [(before.packing, before.network.backbone.as_slice()), (after.packing, &after.network.backbone)];
-        let region = Region { centre, grown: &[centre], inner_radius, outer_radius, shape: Shape::Round };
+        let region = Region {
+            centre,
+            grown: &[centre],
+            inner_radius,
+            outer_radius,
+            shape: Shape::Round,
+            strain: DiagonalStrain::default(),
+        };
         let field = DisplacementField::of_states(states, unjammed, region);
         let held = matches!(pair.boundary, Boundary::HeldRim { .. });
         let place = Place { centre, outer_radius: held.then_some(outer_radius) };
         let mut named = vec![("before", &before), ("after", &after)];
         named.extend(deflated.as_ref().map(|state| ("after the deflation", state)));
         let verdict = RestVerdict::of(&named, law, law, Some(place), verdict);
-        let subject = Subject { verdict, field, before, after, deflated, centre, pressure_change: pressure.change };
+        let subject = Subject {
+            verdict,
+            field,
+            before,
+            after,
+            deflated,
+            centre,
+            drive: Drive::Inflation,
+            pressure_change: pressure.change,
+        };
         let response = Response::of(subject, observables);
         Ok(Analysis {
             name: name.into(),

@@ -98,7 +98,7 @@ impl<const D: usize> Assembly<D> {
     /// If `packing` has another number of disks than the packing of the assembly.
     pub fn placed(&self, mut packing: Packing<D>) -> Packing<D> {
         assert_eq!(packing.len(), self.len(), "an assembly belongs to the packing it was made from");
-        if self.law.has_sites() && packing.sites().is_none() {
+        if self.has_on_site_forces() && packing.sites().is_none() {
             packing = packing.with_sites_here();
         }
         self.layout.placed(packing, &self.displacements)
@@ -173,7 +173,7 @@ impl<const D: usize> Assembly<D> {
             &mut self.border_forces,
             &mut self.forces,
         );
-        if self.law.has_sites() {
+        if self.has_on_site_forces() {
             let _ = self.add_on_site_forces();
         }
     }
@@ -221,28 +221,34 @@ impl<const D: usize> Assembly<D> {
             &mut self.border_forces,
             &mut self.forces,
         );
-        if self.law.has_sites() {
+        if self.has_on_site_forces() {
             totals.on_site_energy = self.add_on_site_forces();
             totals.energy += totals.on_site_energy;
         }
         totals
     }
 
-    /// Adds Γ u to the forces on mobile disks. Returns their energy −(Γ/2) Σ u².
-    fn add_on_site_forces(&mut self) -> f64 {
-        let coupling = self.law.on_site_coupling();
-        let mut squares = 0.0;
-        for index in 0..self.mobile_count() {
-            let away = self.displacement_from_site(index);
-            squares += dot(away, away);
-            for d in 0..D {
-                self.forces[index][d] += coupling * away[d];
-            }
-        }
-        -0.5 * coupling * squares
+    /// Whether mobile disks have forces besides those of contacts and damping: sites with Γ, or loads.
+    pub fn has_on_site_forces(&self) -> bool {
+        self.layout.site_count() > 0
     }
 
-    /// Displacement of a mobile disk from its site, rounded relative to itself; 0 for a law without sites \[length\].
+    /// Adds Γ u and the load f to the forces on mobile disks. Returns their energy −Σ (Γ u²/2 + f·u).
+    fn add_on_site_forces(&mut self) -> f64 {
+        let coupling = self.law.on_site_coupling();
+        let (mut squares, mut work) = (0.0, 0.0);
+        for index in 0..self.mobile_count() {
+            let (away, load) = (self.displacement_from_site(index), self.layout.load(index));
+            squares += dot(away, away);
+            work += dot(load, away);
+            for d in 0..D {
+                self.forces[index][d] += coupling * away[d] + load[d];
+            }
+        }
+        -0.5 * coupling * squares - work
+    }
+
+    /// Displacement of a mobile disk from its site, rounded relative to itself; 0 without sites \[length\].
     pub fn displacement_from_site(&self, index: usize) -> Vector<D> {
         self.layout.displacement_from_site(index, &self.displacements)
     }
@@ -335,7 +341,7 @@ impl<const D: usize> Assembly<D> {
     /// Whether [`Assembly::advance`] does anything. It does not before a speed check of a short list: if the list is
     /// pruned then, the order of the force sums changes.
     pub(crate) fn may_advance(&self) -> bool {
-        !self.law.has_sites() && (self.pairs().is_long() || !self.lists.checks_next())
+        !self.has_on_site_forces() && (self.pairs().is_long() || !self.lists.checks_next())
     }
 
     /// Whether the next call of [`Assembly::update_list`] checks the speed of the disks.

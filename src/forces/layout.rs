@@ -24,8 +24,10 @@ pub(crate) struct Layout<const D: usize> {
     pub order: Vec<u32>,
     pub mobile_count: usize,
     anchors: Vec<Vector<D>>,
-    /// Anchor minus site of each mobile disk, as unevaluated sums; empty for a law without sites.
+    /// Anchor minus site of each mobile disk, as unevaluated sums; empty for a law without sites and disks without loads.
     from_sites: Vec<[(f64, f64); D]>,
+    /// Constant force on each mobile disk; empty if there are none.
+    loads: Vec<Vector<D>>,
     pub radii: Vec<f64>,
 }
 
@@ -50,9 +52,10 @@ impl<const D: usize> Layout<D> {
             let offset = packing.vector_from_site(disk as usize, position);
             std::array::from_fn(|d| extended_sum(offset[d], -two_sum(position[d], -origin[d]).1))
         };
-        let with_sites = if has_sites { &order[..mobile_count] } else { &[] };
+        let loads = packing.loads().map(|loads| pick(loads)[..mobile_count].to_vec()).unwrap_or_default();
+        let with_sites = if has_sites || !loads.is_empty() { &order[..mobile_count] } else { &[] };
         let from_sites = with_sites.iter().map(from_site).collect();
-        (Layout { domain, origin, mobile_count, anchors, from_sites, radii, order }, displacements)
+        (Layout { domain, origin, mobile_count, anchors, from_sites, loads, radii, order }, displacements)
     }
 
     /// The disks as seen by the list builder.
@@ -77,12 +80,17 @@ impl<const D: usize> Layout<D> {
         packing
     }
 
+    /// Constant force on a mobile disk; 0 if there are none \[force\].
+    pub fn load(&self, index: usize) -> Vector<D> {
+        self.loads.get(index).copied().unwrap_or([0.0; D])
+    }
+
     /// Number of mobile disks that have a site.
     pub fn site_count(&self) -> usize {
         self.from_sites.len()
     }
 
-    /// Displacement of a mobile disk from its site, rounded relative to itself; 0 for a law without sites \[length\].
+    /// Displacement of a mobile disk from its site, rounded relative to itself; 0 without sites \[length\].
     pub fn displacement_from_site(&self, index: usize, displacements: &[Vector<D>]) -> Vector<D> {
         let from = |from: &[(f64, f64); D]| std::array::from_fn(|d| (from[d].0 + displacements[index][d]) + from[d].1);
         self.from_sites.get(index).map_or([0.0; D], from)

@@ -98,10 +98,10 @@ pub struct Single<const D: usize> {
 }
 
 impl<const D: usize> Single<D> {
-    /// Single-precision state for the disks of an assembly. None for a law with sites or one that is not a power of the
+    /// Single-precision state for the disks of an assembly. None for disks with sites or loads, for a law that is not a power of the
     /// overlap, or for numbers near the limits of double precision.
     pub fn new(assembly: &Assembly<D>) -> Option<Self> {
-        if assembly.law().has_sites() || !assembly.law().is_power() {
+        if assembly.has_on_site_forces() || !assembly.law().is_power() {
             return None;
         }
         let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);

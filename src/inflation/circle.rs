@@ -96,7 +96,7 @@ impl<const D: usize> Circle<D> {
     /// has if a disk of the largest radius fits between it and R.
     pub(super) fn beyond_rim(&self, packing: &Packing<D>) -> Option<(u64, f64)> {
         let largest = packing.largest_radius();
-        let mobile = (0..self.centre).map(|disk| (packing.labels()[disk], norm(packing.positions()[disk])));
+        let mobile = (0..=self.centre).map(|disk| (packing.labels()[disk], norm(packing.positions()[disk])));
         mobile.filter(|&(_, distance)| distance > self.outer_radius + 2.0 * largest).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 

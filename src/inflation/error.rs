@@ -64,6 +64,38 @@ pub enum InflationError {
         /// Distance of the nearest centre.
         nearest: f64,
     },
+    /// The amplitude of a drive is no number or too large.
+    #[error("drive.{field} is {value}: must be a number of at most {largest:e} in magnitude")]
+    DriveOutOfRange {
+        /// The field.
+        field: &'static str,
+        /// The value given.
+        value: f64,
+        /// The largest magnitude.
+        largest: f64,
+    },
+    /// A drive has no meaning in this geometry.
+    #[error("drive.{drive} needs boundary = {{ held_rim = .. }}: {reason}")]
+    DriveNeedsRim {
+        /// The drive.
+        drive: &'static str,
+        /// Why.
+        reason: &'static str,
+    },
+    /// A displaced disk would leave its place.
+    #[error("drive.displacement.distance is {distance}: must be below {radius} in magnitude, the radius of the disk")]
+    DisplacementTooLong {
+        /// The distance given.
+        distance: f64,
+        /// Radius of the disk.
+        radius: f64,
+    },
+    /// A dipole needs a mobile neighbour on the backbone.
+    #[error("disk {label} touches no mobile disk of the backbone, so there is no contact for a force dipole")]
+    NoNeighbour {
+        /// Label of the disk.
+        label: u64,
+    },
     /// Γ must be finite.
     #[error("on_site_coupling is {coupling}, not a finite number")]
     CouplingNotFinite {

@@ -1,7 +1,8 @@
-//! [`Grown`]: a packing whose disk has grown, before any disk has moved.
+//! [`Grown`]: a packing whose disk has grown, or to which another drive was applied, before any disk has moved.
 
 use crate::inflation::choose_centre::choose_centre;
 use crate::inflation::circle::Circle;
+use crate::inflation::drive::Drive;
 use crate::inflation::error::InflationError;
 #[cfg(feature = "linear")]
 use crate::inflation::region::Region;
@@ -11,7 +12,7 @@ use crate::inflation::settings::{Boundary, Inflation};
 use crate::inflation::strip::Strip;
 use crate::law::pair_law::PairLaw;
 use crate::network::ContactNetwork;
-use crate::packing::{Packing, PackingError};
+use crate::packing::{Packing, PackingError, displacement};
 use crate::relax::{Criterion, Outcome, Relaxer, Stop, Trace};
 use crate::vector::{norm, scaled, sum};
 
@@ -21,6 +22,8 @@ use crate::vector::{norm, scaled, sum};
 #[derive(Debug, Clone)]
 pub struct Grown<const D: usize> {
     experiment: Experiment<D>,
+    /// What was done.
+    pub drive: Drive,
     /// Index of the inflated disk in the packings below; in a strip, of the chosen one, through which the line runs.
     pub centre: usize,
     /// Indices of all inflated disks: the centre, or the row of a strip.
@@ -33,7 +36,8 @@ pub struct Grown<const D: usize> {
     pub mobile_count: usize,
     /// The state at rest before the inflation.
     pub before: Rest<D>,
-    /// The same disks at the same positions, one of them or a row larger.
+    /// The start of the relaxation: the same disks at the same positions, one of them or a row larger; or another drive
+    /// applied.
     pub packing: Packing<D>,
 }
 
@@ -50,20 +54,24 @@ impl<const D: usize> Grown<D> {
         seed: u64,
         trace: &mut dyn Trace,
     ) -> Result<Self, InflationError> {
+        let drive = inflation.drive;
+        inflation.check_drive()?;
         let chosen = choose_centre(packing, law, inflation.centre, seed)?;
         let inner_radius = packing.radii()[chosen];
         let experiment = Experiment::new(inflation, packing, chosen)?;
         let start = experiment.start();
         let (centre, grown) = (experiment.centre(), experiment.grown());
-        grown.iter().try_for_each(|&disk| check_increase(&start, disk, inflation.increase))?;
+        if drive.is_inflation() {
+            grown.iter().try_for_each(|&disk| check_increase(&start, disk, inflation.increase))?;
+        }
         let before = experiment.rest(Stage::Before, start, law, relaxer, trace)?;
-        let mut packing = before.packing.get().clone();
-        for &disk in &grown {
+        let mut packing = drive.start(before.packing.get(), centre, law)?;
+        for &disk in grown.iter().filter(|_| drive.is_inflation()) {
             let radius = packing.radii()[disk] + inflation.increase;
             packing = packing.with_radius(disk, radius)?;
         }
         let (outer_radius, mobile_count) = experiment.extent();
-        Ok(Grown { experiment, centre, grown, inner_radius, outer_radius, mobile_count, before, packing })
+        Ok(Grown { experiment, drive, centre, grown, inner_radius, outer_radius, mobile_count, before, packing })
     }
 
     /// The shape of the region, for displacement fields.
@@ -77,12 +85,13 @@ impl<const D: usize> Grown<D> {
     /// The inflated disks and the region around them.
     #[cfg(feature = "linear")]
     pub(crate) fn region(&self) -> Region<'_> {
-        let Grown { centre, ref grown, inner_radius, outer_radius, .. } = *self;
-        Region { centre, grown, inner_radius, outer_radius, shape: self.shape() }
+        let Grown { centre, ref grown, inner_radius, outer_radius, drive, .. } = *self;
+        Region { centre, grown, inner_radius, outer_radius, shape: self.shape(), strain: drive.strain::<D>() }
     }
 
-    /// A packing with the radii before the inflation.
-    pub(super) fn deflated(&self, mut packing: Packing<D>) -> Result<Packing<D>, PackingError> {
+    /// A packing with the radii before the inflation, or with another drive taken back.
+    pub(super) fn deflated(&self, packing: Packing<D>) -> Result<Packing<D>, PackingError> {
+        let mut packing = self.drive.released(packing, self.before.packing.get(), self.centre);
         for &disk in &self.grown {
             packing = packing.with_radius(disk, self.before.packing.get().radii()[disk])?;
         }
@@ -116,7 +125,11 @@ impl<const D: usize> Grown<D> {
         relaxer: &impl Relaxer,
         trace: &mut dyn Trace,
     ) -> Result<Rest<D>, InflationError> {
-        self.experiment.rest(stage, packing, law, relaxer, trace)
+        let mut rest = self.experiment.rest(stage, packing, law, relaxer, trace)?;
+        if stage == Stage::Inflated {
+            rest.pressure /= self.drive.strain::<D>().volume_ratio::<D>();
+        }
+        Ok(rest)
     }
 }
 
@@ -145,16 +158,17 @@ fn check_increase<const D: usize>(packing: &Packing<D>, disk: usize, increase: f
 impl<const D: usize> Experiment<D> {
     fn new(inflation: &Inflation, packing: &Packing<D>, chosen: usize) -> Result<Self, InflationError> {
         let lengths = packing.domain().lengths().ok_or(InflationError::NotPeriodic)?;
+        let centre_held = inflation.drive.holds_centre(inflation.centre_held);
         match inflation.boundary {
             Boundary::HeldRim { outer_radius_over_side } => {
                 let side = lengths.iter().copied().fold(f64::INFINITY, f64::min);
                 let circle = Circle::cut(packing, chosen, outer_radius_over_side * side)?;
-                Ok(Experiment::HeldRim(if inflation.centre_held { circle } else { circle.with_free_centre()? }))
+                Ok(Experiment::HeldRim(if centre_held { circle } else { circle.with_free_centre()? }))
             }
             Boundary::Periodic => Ok(Experiment::Periodic { packing: packing.clone(), centre: chosen }),
             Boundary::HeldWalls { distance_over_side, .. } => {
                 let wall_distance = distance_over_side * lengths[Strip::<D>::ACROSS];
-                Ok(Experiment::HeldWalls(Strip::cut(packing, chosen, wall_distance, inflation.centre_held)?))
+                Ok(Experiment::HeldWalls(Strip::cut(packing, chosen, wall_distance, centre_held)?))
             }
         }
     }
@@ -276,10 +290,4 @@ pub(crate) fn with_centre_of_mass_of<const D: usize>(before: &Packing<D>, mut af
         after.displace(disk, shift);
     }
     after
-}
-
-/// Displacement of a disk, exact to the rounding of that distance (positions are sums of two numbers).
-pub(crate) fn displacement<const D: usize>(before: &Packing<D>, after: &Packing<D>, disk: usize) -> [f64; D] {
-    let ((a, a_low), (b, b_low)) = (after.centre(disk), before.centre(disk));
-    std::array::from_fn(|d| (a[d] - b[d]) + (a_low[d] - b_low[d]))
 }

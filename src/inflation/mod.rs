@@ -1,4 +1,4 @@
-//! One disk is inflated; the other disks relax.
+//! One disk is inflated, or another [`Drive`] is applied; the other disks relax.
 //!
 //! There are three geometries: a [`Circle`] with a held rim, in which the centre is held at the origin (the experiment of
 //! the study) or free; the whole periodic box, in which nothing is held and the centre of mass does not move; and a
@@ -7,6 +7,7 @@
 
 mod choose_centre;
 pub mod circle;
+pub mod drive;
 mod error;
 pub(crate) mod grown;
 pub(crate) mod region;
@@ -16,9 +17,9 @@ pub mod strip;
 
 pub use choose_centre::choose_centre;
 pub use circle::Circle;
+pub use drive::{Applied, Drive};
 pub use error::InflationError;
 pub use grown::Grown;
-pub(crate) use grown::displacement;
 pub use region::Shape;
 pub use rest::{Rest, Stage};
 pub use settings::{Boundary, Centre, Inflation};
@@ -45,8 +46,12 @@ pub struct Inflated<const D: usize> {
     pub shape: Shape,
     /// Number of mobile disks.
     pub mobile_count: usize,
+    /// What was done.
+    pub drive: Drive,
     /// The state at rest before the inflation.
     pub before: Rest<D>,
+    /// The start of the relaxation: the disk has grown, or another drive was applied, and no disk has moved by itself.
+    pub start: Packing<D>,
     /// The state at rest with the disk inflated.
     pub after: Rest<D>,
     /// The state at rest after the deflation.
@@ -95,6 +100,18 @@ pub fn inflate_with<const D: usize>(
         None
     };
     let shape = grown.shape();
-    let Grown { centre, grown, inner_radius, outer_radius, mobile_count, before, .. } = grown;
-    Ok(Inflated { centre, grown, inner_radius, outer_radius, shape, mobile_count, before, after, deflated })
+    let Grown { centre, grown, inner_radius, outer_radius, mobile_count, drive, before, packing: start, .. } = grown;
+    Ok(Inflated {
+        centre,
+        grown,
+        inner_radius,
+        outer_radius,
+        shape,
+        mobile_count,
+        drive,
+        before,
+        start,
+        after,
+        deflated,
+    })
 }

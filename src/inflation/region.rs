@@ -1,5 +1,11 @@
 //! [`Shape`]: the shape of the region in which disks respond to an inflation.
 
+use crate::inflation::drive::DiagonalStrain;
+use crate::vector::{Vector, dot, norm, scaled};
+
+/// The axis across a strip.
+pub(crate) const ACROSS: usize = 1;
+
 /// The shape of the region of a displacement field.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Shape {
@@ -14,6 +20,22 @@ pub enum Shape {
     },
 }
 
+impl Shape {
+    /// The part of a vector at this position along the radius, or in a strip across it: d·r̂.
+    pub fn radial_part<const D: usize>(self, position: Vector<D>, vector: Vector<D>) -> f64 {
+        let from = self.from_middle(position);
+        dot(vector, scaled(1.0 / norm(from), from))
+    }
+
+    /// The vector to a position from the centre, or in a strip from the line \[length\].
+    pub(crate) fn from_middle<const D: usize>(self, position: Vector<D>) -> Vector<D> {
+        match self {
+            Shape::Round => position,
+            Shape::Strip { .. } => std::array::from_fn(|d| if d == ACROSS { position[d] } else { 0.0 }),
+        }
+    }
+}
+
 /// The inflated disks and the region around them.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Region<'a> {
@@ -24,4 +46,6 @@ pub(crate) struct Region<'a> {
     pub inner_radius: f64,
     pub outer_radius: f64,
     pub shape: Shape,
+    /// The affine part of displacements, which a field leaves out.
+    pub strain: DiagonalStrain,
 }

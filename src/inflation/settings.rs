@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::inflation::drive::Drive;
 use crate::inflation::error::InflationError;
 use crate::law::on_site::OnSite;
 use crate::law::pair_law::PairLaw;
@@ -78,8 +79,11 @@ pub struct Inflation {
     /// force of its neighbours on to the rim: a dipole in the response. In a periodic box nothing is held.
     #[serde(skip_serializing_if = "is_true")]
     pub centre_held: bool,
-    /// Whether the disk is deflated again afterwards.
+    /// Whether the disk is deflated again afterwards, or another drive taken back.
     pub deflate: bool,
+    /// What is done to the packing; by default the disk grows by `increase`.
+    #[serde(skip_serializing_if = "Drive::is_inflation")]
+    pub drive: Drive,
     /// Γ of an energy −Γu²/2 of every mobile disk, u its displacement from its position in the packing given
     /// \[force / length\]. The packing itself is prepared without it. Absent: no such energy.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -92,6 +96,12 @@ fn is_true(setting: &bool) -> bool {
 }
 
 impl Inflation {
+    /// Checks the drive: its amplitude, and that it has a meaning between these boundaries.
+    pub(crate) fn check_drive(&self) -> Result<(), InflationError> {
+        self.drive.check()?;
+        needs_rim(&self.drive, self.boundary)
+    }
+
     /// The law with the sites of the inflation, if disks have any.
     pub fn law_with_sites(&self, law: &dyn PairLaw) -> Arc<dyn PairLaw> {
         match self.on_site_coupling {
@@ -112,6 +122,24 @@ impl Inflation {
     }
 }
 
+/// Checks that a drive has a meaning between these boundaries.
+fn needs_rim(drive: &Drive, boundary: Boundary) -> Result<(), InflationError> {
+    let drive = match (drive, boundary) {
+        (Drive::Inflation, _) | (_, Boundary::HeldRim { .. }) => return Ok(()),
+        (Drive::ForceDipole { .. }, Boundary::Periodic) => return Ok(()),
+        (Drive::PointForce { .. }, _) => "point_force",
+        (Drive::ForceDipole { .. }, _) => "force_dipole",
+        (Drive::Displacement { .. }, _) => "displacement",
+        (Drive::Shear { .. }, _) => "shear",
+        (Drive::Compression { .. }, _) => "compression",
+    };
+    let reason = match boundary {
+        Boundary::Periodic => "in a periodic box nothing holds the packing, and the command strain deforms the box",
+        _ => "in a strip a row of disks grows",
+    };
+    Err(InflationError::DriveNeedsRim { drive, reason })
+}
+
 impl Default for Inflation {
     /// Source: the study (d_0 = 0.1).
     fn default() -> Self {
@@ -121,6 +149,7 @@ impl Default for Inflation {
             centre: Centre::default(),
             centre_held: true,
             deflate: false,
+            drive: Drive::default(),
             on_site_coupling: None,
         }
     }

@@ -11,6 +11,7 @@
 
 use crate::inflation::circle::RIM_WIDTH;
 use crate::inflation::error::InflationError;
+use crate::inflation::region;
 use crate::network::ContactNetwork;
 use crate::packing::{Domain, Packing};
 
@@ -33,7 +34,7 @@ impl<const D: usize> Strip<D> {
     /// The axis along the strip.
     pub const ALONG: usize = 0;
     /// The axis across it.
-    pub const ACROSS: usize = 1;
+    pub const ACROSS: usize = region::ACROSS;
 
     /// The strip around a disk of a periodic packing: its row, held if `row_held`, and walls at `wall_distance`.
     ///

@@ -12,7 +12,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::inflation::{Inflated, displacement};
+use crate::inflation::Inflated;
 use crate::law::pair_law::PairLaw;
 #[cfg(feature = "linear")]
 use crate::linear::LinearResponse;
@@ -20,6 +20,7 @@ use crate::network::Contact;
 use crate::observe::contact_changes::merged;
 use crate::observe::state::{State, common_backbone};
 use crate::packing::PackingError;
+use crate::packing::displacement;
 #[cfg(feature = "linear")]
 use crate::vector::scaled;
 use crate::vector::{Vector, difference, dot, norm, sum};

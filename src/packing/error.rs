@@ -38,6 +38,16 @@ pub enum PackingError {
         /// The value found.
         value: f64,
     },
+    /// A load is NaN or infinite.
+    #[error("disk {disk}: component {axis} of its load is {value}, not a finite number")]
+    LoadNotFinite {
+        /// Index of the disk, from 0.
+        disk: usize,
+        /// Axis, from 0.
+        axis: usize,
+        /// The value found.
+        value: f64,
+    },
     /// A radius is so small or large that squares of lengths underflow or overflow.
     #[error(
         "disk {disk}: radius is {radius:e}, outside {SMALLEST_RADIUS:e} to {LARGEST_RADIUS:e}, where squares of lengths keep their digits"

@@ -31,6 +31,7 @@ pub struct Packing<const D: usize> {
     held: Vec<bool>,
     labels: Vec<u64>,
     sites: Option<Vec<(Vector<D>, Vector<D>)>>,
+    loads: Option<Vec<Vector<D>>>,
 }
 
 impl<const D: usize> Packing<D> {
@@ -67,6 +68,7 @@ impl<const D: usize> Packing<D> {
             held: vec![false; count],
             labels: (0..count as u64).collect(),
             sites: None,
+            loads: None,
         })
     }
 
@@ -147,6 +149,32 @@ impl<const D: usize> Packing<D> {
         self
     }
 
+    /// The same packing with a constant force on every disk \[force\]. Their energy is −Σ f·u, u the displacement of a disk
+    /// from its site; the next relaxation puts sites at the positions of the disks if there are none. Forces on held disks
+    /// have no effect.
+    ///
+    /// # Errors
+    /// There must be one force per disk, all finite.
+    pub fn with_loads(mut self, loads: Vec<Vector<D>>) -> Result<Self, PackingError> {
+        if loads.len() != self.len() {
+            return Err(PackingError::LengthsDiffer { positions: loads.len(), radii: self.len() });
+        }
+        for (disk, load) in loads.iter().enumerate() {
+            if let Some(axis) = load.iter().position(|value| !value.is_finite()) {
+                return Err(PackingError::LoadNotFinite { disk, axis, value: load[axis] });
+            }
+        }
+        self.loads = Some(loads);
+        Ok(self)
+    }
+
+    /// The same packing without loads; it keeps its sites.
+    #[must_use]
+    pub fn without_loads(mut self) -> Self {
+        self.loads = None;
+        self
+    }
+
     /// The same packing with another radius for one disk.
     ///
     /// # Errors
@@ -216,6 +244,11 @@ impl<const D: usize> Packing<D> {
         self.sites.as_deref()
     }
 
+    /// The constant force on each disk, if there are any \[force\].
+    pub fn loads(&self) -> Option<&[Vector<D>]> {
+        self.loads.as_deref()
+    }
+
     /// Exact vector from the site of a disk (its centre, if there are no sites) to a point.
     pub(crate) fn vector_from_site(&self, disk: usize, point: Vector<D>) -> [(f64, f64); D] {
         let (site, rest) = self.sites.as_ref().map_or(self.centre(disk), |sites| sites[disk]);
@@ -243,9 +276,14 @@ impl<const D: usize> Packing<D> {
     }
 
     /// The same disks in a periodic box scaled by `factor` in all directions together with the positions; radii are
-    /// kept, sites dropped.
-    pub(crate) fn rescaled(mut self, factor: f64) -> Self {
-        self.sites = None;
+    /// kept, sites and loads dropped.
+    pub(crate) fn rescaled(self, factor: f64) -> Self {
+        let mut packing = self.without_loads().without_sites();
+        packing.rescale(factor);
+        packing
+    }
+
+    fn rescale(&mut self, factor: f64) {
         if let Domain::Periodic { corner, edges } = &mut self.domain {
             for value in edges.iter_mut().flatten().chain(corner) {
                 *value *= factor;
@@ -256,14 +294,13 @@ impl<const D: usize> Packing<D> {
                 (position[d], correction[d]) = two_sum(position[d] * factor, correction[d] * factor);
             }
         }
-        self
     }
 
-    /// The same disks with box and centres deformed by r → (1 + G) r; radii are kept, sites dropped. G_ab must be 0 for
+    /// The same disks with box and centres deformed by r → (1 + G) r; radii are kept, sites and loads dropped. G_ab must be 0 for
     /// a > b, so that edges remain triangular. Also returns the gradient of the displacement, which differs from G by
     /// the rounding of the edges.
     pub(crate) fn deformed(&self, gradient: &[Vector<D>; D]) -> (Self, [Vector<D>; D]) {
-        let mut deformed = self.clone().without_sites();
+        let mut deformed = self.clone().without_loads().without_sites();
         let (mut exact, mut corner) = (*gradient, [0.0; D]);
         if let Domain::Periodic { corner: start, edges } = &mut deformed.domain {
             corner = *start;
@@ -295,6 +332,12 @@ impl<const D: usize> Packing<D> {
         let solid: f64 = self.radii.iter().map(|&radius| ball_volume::<D>(radius)).sum();
         self.domain.volume().map(|volume| solid / volume)
     }
+}
+
+/// Displacement of a disk, exact to the rounding of that distance (positions are sums of two numbers).
+pub(crate) fn displacement<const D: usize>(before: &Packing<D>, after: &Packing<D>, disk: usize) -> [f64; D] {
+    let ((a, a_low), (b, b_low)) = (after.centre(disk), before.centre(disk));
+    std::array::from_fn(|d| (a[d] - b[d]) + (a_low[d] - b_low[d]))
 }
 
 fn check_radius(disk: usize, radius: f64) -> Result<(), PackingError> {

@@ -5,11 +5,12 @@ use serde::Serialize;
 use crate::displacement::DisplacementField;
 #[cfg(feature = "fit")]
 use crate::fit::profile::{Decision, ProfileFit, ProfileFitSettings, fit_radial_profile};
-use crate::inflation::{Grown, displacement};
+use crate::inflation::Grown;
 use crate::law::pair_law::PairLaw;
 use crate::network::ContactNetwork;
 #[cfg(feature = "fit")]
 use crate::observe::RadialProfile;
+use crate::packing::displacement;
 use crate::packing::{Packing, PackingError};
 #[cfg(feature = "fit")]
 use crate::reference::Annulus;

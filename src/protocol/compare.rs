@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::inflation::{Rest, displacement};
+use crate::inflation::Rest;
 use crate::network::ContactNetwork;
+use crate::packing::displacement;
 use crate::protocol::ending::Ending;
 use crate::protocol::run_protocol::EndState;
 use crate::protocol::sensitivity::{Compared, ProtocolSensitivity};

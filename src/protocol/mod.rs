@@ -84,10 +84,7 @@ impl<const D: usize> Compared<D> {
         trace: &mut dyn Trace,
     ) -> Result<Self, PackingError> {
         let centre = inflated.centre;
-        let mut start = inflated.before.packing.get().clone();
-        for &disk in &inflated.grown {
-            start = start.with_radius(disk, inflated.after.packing.get().radii()[disk])?;
-        }
+        let start = &inflated.start;
         let before = inflated.before.pressure;
         let (domain, held) = (*start.domain(), start.held().to_vec());
         let is_row = |disk: usize| inflated.grown.binary_search(&disk).is_ok();
@@ -96,10 +93,11 @@ impl<const D: usize> Compared<D> {
                 .cluster_pressure(strip::area(&domain, inflated.outer_radius), |disk| held[disk] && !is_row(disk)),
             (Shape::Round, Some(volume)) => network.pressure(volume),
             (Shape::Round, None) => {
-                network.cluster_pressure(ball_volume::<D>(inflated.outer_radius), |disk| disk > centre)
+                let volume = ball_volume::<D>(inflated.outer_radius) * inflated.drive.strain::<D>().volume_ratio::<D>();
+                network.cluster_pressure(volume, |disk| disk > centre)
             }
         };
         let law = inflation.law_with_sites(law);
-        Self::of_start(&start, law.as_ref(), protocols, settings, before, pressure, trace)
+        Self::of_start(start, law.as_ref(), protocols, settings, before, pressure, trace)
     }
 }

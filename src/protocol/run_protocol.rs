@@ -1,10 +1,11 @@
 //! The protocols, and the relaxation of one of them from the start to rest.
 
+use crate::inflation::Rest;
 use crate::inflation::grown::with_centre_of_mass_of;
-use crate::inflation::{Rest, displacement};
 use crate::law::damping::{ConstantDamping, DampingChoice, ViscoelasticDamping};
 use crate::law::pair_law::PairLaw;
 use crate::network::ContactNetwork;
+use crate::packing::displacement;
 use crate::packing::{Packing, PackingError};
 use crate::protocol::ending::Ending;
 use crate::protocol::settings::ProtocolSettings;

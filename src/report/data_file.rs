@@ -14,6 +14,8 @@ pub(crate) enum DataFile {
     #[cfg(feature = "linear")]
     PlasticProfile,
     #[cfg(feature = "linear")]
+    DriveModes,
+    #[cfg(feature = "linear")]
     Protocol,
 }
 
@@ -30,6 +32,8 @@ impl DataFile {
         {
             let plastic = result.plastic_part.as_ref().and_then(|it| it.measured());
             all.extend(plastic.map(|_| DataFile::PlasticProfile));
+            let drive = result.drive.as_ref().and_then(|it| it.measured());
+            all.extend(drive.map(|_| DataFile::DriveModes));
             all.extend(crate::report::protocol::measured(result).map(|_| DataFile::Protocol));
         }
         all
@@ -39,7 +43,7 @@ impl DataFile {
     pub(crate) fn longest_ending() -> &'static str {
         let all = [DataFile::Packing, DataFile::Before, DataFile::Displacement, DataFile::Deflated];
         #[cfg(feature = "linear")]
-        let all = [&all[..], &[DataFile::PlasticProfile, DataFile::Protocol]].concat();
+        let all = [&all[..], &[DataFile::PlasticProfile, DataFile::DriveModes, DataFile::Protocol]].concat();
         let endings = all.into_iter().map(DataFile::ending).chain(every_ending());
         endings.max_by_key(|ending| ending.len()).unwrap_or_default()
     }
@@ -58,6 +62,8 @@ impl DataFile {
             DataFile::OfResponse(file) => file.ending,
             #[cfg(feature = "linear")]
             DataFile::PlasticProfile => "plastic_profile.csv",
+            #[cfg(feature = "linear")]
+            DataFile::DriveModes => "drive_modes.csv",
             #[cfg(feature = "linear")]
             DataFile::Protocol => "protocol.csv",
         }

@@ -167,6 +167,12 @@ impl Files<'_> {
                     }
                 }
                 #[cfg(feature = "linear")]
+                DataFile::DriveModes => {
+                    if let Some(drive) = result.drive.as_ref().and_then(|it| it.measured()) {
+                        self.text(&path, &csv::drive_modes(drive))?;
+                    }
+                }
+                #[cfg(feature = "linear")]
                 DataFile::Protocol => {
                     if let Some(sensitivity) = crate::report::protocol::measured(result) {
                         self.text(&path, &crate::report::protocol::csv(sensitivity, report.scene.dimension))?;

@@ -22,6 +22,7 @@
 //! | `NAME.bond_changes.csv` | the stretch of every bond |
 //! | `NAME.isostatic_length.csv` | the curve from which ℓ_iso is read |
 //! | `NAME.plastic_profile.csv` | radial profile of the plastic part |
+//! | `NAME.drive_modes.csv` | angular modes of a force, a dipole or a displaced disk, beside those of the continuum |
 //! | `NAME.protocol.csv` | the end state of every relaxer, if the scene compares them |
 //! | `report.html` | all of it on one page (feature `plot`) |
 

@@ -3,9 +3,11 @@
 use std::fmt::Write as _;
 
 use crate::analysis::Analysis;
-use crate::inflation::Boundary;
+use crate::inflation::{Boundary, Drive};
 use crate::report::data_file::DataFile;
 use crate::report::figures::map::MapFrame;
+#[cfg(feature = "linear")]
+use crate::report::figures::multipoles::{Component, multipole_figure};
 use crate::report::figures::{Figure, FigureError, escaped};
 use crate::report::number::{count, significant};
 use crate::report::response_page;
@@ -22,13 +24,17 @@ pub(crate) const STYLE: &str = include_str!("page.css");
 /// Title and heading of reports of samples.
 const TITLE: &str = "jamscope: response to an inflation";
 const HEADING: &str = "Response of a packing to the inflation of one disk";
+const DRIVE_TITLE: &str = "jamscope: response to a drive";
+const DRIVE_HEADING: &str = "Response of a packing to a force, a displacement or a strain";
 
 /// The page of a report. Two runs of one scene on one processor give the same bytes, since wall times are left out.
 ///
 /// # Errors
 /// A figure whose numbers are not finite.
 pub fn page(report: &Report) -> Result<String, FigureError> {
-    let mut html = head(TITLE, HEADING, &introduction(report));
+    let (title, heading) =
+        if report.scene.inflation.drive.is_inflation() { (TITLE, HEADING) } else { (DRIVE_TITLE, DRIVE_HEADING) };
+    let mut html = head(title, heading, &introduction(report));
     html.push_str(&not_at_rest(crate::report::rows::verdicts(&report.samples)));
     for sample in &report.samples {
         html.push_str(&section(report, sample)?);
@@ -150,6 +156,23 @@ fn widest(radii: &[f64]) -> f64 {
 /// A paragraph on the content of the figures.
 fn introduction(report: &Report) -> String {
     let scene = &report.scene;
+    let responses: Vec<_> = report.samples.iter().filter_map(done).map(|result| &result.response).collect();
+    let legend = response_page::legend(&responses, scene.observables.displacement_field.is_some());
+    let done_to = match scene.inflation.drive {
+        Drive::Inflation => None,
+        Drive::PointForce { .. } => Some("A force acts on a disk at the centre of a circle whose rim is held"),
+        Drive::ForceDipole { .. } => Some("Two opposite forces act on two disks in contact"),
+        Drive::Displacement { .. } => Some("A disk at the centre of a circle whose rim is held is displaced"),
+        Drive::Shear { .. } => {
+            Some("The rim of a circle is sheared at constant area; the field is the non-affine displacement")
+        }
+        Drive::Compression { .. } => {
+            Some("The rim of a circle is compressed; the field is the non-affine displacement")
+        }
+    };
+    if let Some(done_to) = done_to {
+        return format!("{done_to}, and the packing comes to rest again. {}", legend.trim_end());
+    }
     let place = match scene.inflation.boundary {
         Boundary::HeldRim { .. } if !scene.inflation.centre_held => {
             "A disk that is free to move, in the middle of a circle whose rim is held, grows"
@@ -162,8 +185,7 @@ fn introduction(report: &Report) -> String {
         "{place} in radius by d<sub>0</sub> = {} and the packing around comes to rest again. ",
         significant(scene.inflation.increase, 3)
     );
-    let responses: Vec<_> = report.samples.iter().filter_map(done).map(|result| &result.response).collect();
-    text.push_str(&response_page::legend(&responses, scene.observables.displacement_field.is_some()));
+    text.push_str(&legend);
     text.trim_end().into()
 }
 
@@ -253,7 +275,25 @@ fn figures(report: &Report, name: &str, result: &SampleResult) -> Result<Vec<Fig
         widest(radii),
     );
     let heat = report.scene.observables.displacement_field.is_some();
-    response_page::figures(name, &result.response, radii, &frame, heat)
+    #[allow(unused_mut)]
+    let mut figures = response_page::figures(name, &result.response, radii, &frame, heat)?;
+    #[cfg(feature = "linear")]
+    figures.extend(drive_figure(name, result));
+    Ok(figures)
+}
+
+/// The modes of another drive than an inflation, with those of the continuum.
+#[cfg(feature = "linear")]
+fn drive_figure(name: &str, result: &SampleResult) -> Option<Figure> {
+    let drive = result.drive.as_ref()?.measured()?;
+    let highest = drive.modes.iter().map(|ring| ring.mode).max()?;
+    let curve = |mode: usize, radius: f64| {
+        let exact = drive.exact_radial(mode, radius)?;
+        Some(if mode == 0 { exact } else { exact.abs() })
+    };
+    let name = format!("{name}, dashed the continuum");
+    multipole_figure(&name, result.response.multipoles.as_ref()?.measured()?, Component::Radial, highest, Some(&curve))
+        .ok()
 }
 
 /// All rows of all samples with a result.

@@ -30,6 +30,7 @@ use crate::fit::angular::{CrossoverFit, CrossoverOutcome, SlopeFit, SlopeOutcome
 use crate::fit::modes::{ElasticModesFit, fit_elastic_modes};
 #[cfg(feature = "fit")]
 use crate::fit::profile::{Decision, ProfileFit, fit_radial_profile};
+use crate::inflation::Drive;
 use crate::observe::angular::{
     AngularCorrelation, AngularError, PowerSpectrum, RingAnalysis, RingSample, radial_dependence,
 };
@@ -58,6 +59,8 @@ pub struct Subject<'a, const D: usize> {
     pub deflated: Option<State<'a, D>>,
     /// Index of the inflated disk in all of them.
     pub centre: usize,
+    /// What was done.
+    pub drive: Drive,
     /// Δp \[force / length\].
     pub pressure_change: f64,
 }
@@ -140,9 +143,9 @@ pub struct RingResponse {
 impl Response {
     /// Computes the requested observables; the settings must have been [checked](Observables::check).
     pub fn of<const D: usize>(subject: Subject<'_, D>, observables: &Observables) -> Self {
-        let Subject { verdict, field, before, after, deflated, centre, pressure_change } = subject;
+        let Subject { verdict, field, before, after, deflated, centre, drive, pressure_change } = subject;
         let increase = after.packing.radii()[centre] - before.packing.radii()[centre];
-        let no_fit = no_fit(&verdict, increase);
+        let no_fit = no_fit(&verdict, increase, &drive);
         let radial_profile = observables.radial_profile.map(|settings| RadialProfile::of(&field, settings.ring_width));
         let plane = field.in_plane();
         let multipoles: Option<Measurement<Multipoles>> =
@@ -159,6 +162,9 @@ impl Response {
             profile_fit: observables.profile_fit.zip(radial_profile.as_ref()).map(|(settings, profile)| {
                 if let Some(reason) = &no_fit {
                     return Measurement::Refused(reason.clone());
+                }
+                if !drive.is_inflation() {
+                    return Measurement::Refused("the profiles fitted are those of an inflation".into());
                 }
                 match Annulus::new(field.inner_radius, field.outer_radius) {
                     Ok(annulus) => match field.spreading_dimension() {
@@ -207,7 +213,7 @@ impl Response {
             labels: before.packing.labels().to_vec(),
             detail: Detail::of(DetailOf { field, bond_changes, contact_changes }),
         };
-        response.phase = response.phase(pressure_change, increase);
+        response.phase = response.phase(pressure_change, increase, &drive);
         response
     }
 
@@ -229,10 +235,14 @@ impl Response {
     }
 
     /// The phase by all evidence; `increase` is d_0.
-    fn phase(&self, pressure_change: f64, increase: f64) -> PhaseDecision {
+    fn phase(&self, pressure_change: f64, increase: f64, drive: &Drive) -> PhaseDecision {
         let Some(permit) = self.verdict.permit() else { return PhaseDecision::not_at_rest() };
         if self.measured_on == MeasuredOn::AllDisks {
             return PhaseDecision { outcome: PhaseOutcome::Unjammed, ..PhaseDecision::default() };
+        }
+        // The evidence of a phase is known for inflations only.
+        if !drive.is_inflation() {
+            return PhaseDecision::from_evidence(permit, Evidence::default());
         }
         // A row between walls compresses the packing in either phase and changes many contacts.
         let around_a_disk = self.detail.spreading_dimension() != 1;
@@ -251,8 +261,8 @@ impl Response {
 }
 
 /// Why fits are refused, if they are.
-fn no_fit(verdict: &RestVerdict, increase: f64) -> Option<String> {
-    if increase == 0.0 {
+fn no_fit(verdict: &RestVerdict, increase: f64, drive: &Drive) -> Option<String> {
+    if increase == 0.0 && drive.is_inflation() {
         return Some("the radius of the inflated disk did not change: there is no response".into());
     }
     verdict.refusal()

@@ -1,5 +1,7 @@
 //! [`run`]: from a [`Scene`] to a [`Report`], one line per stage. The only file that uses all stages.
 
+#[cfg(feature = "linear")]
+mod drive_summary;
 mod error;
 #[cfg(feature = "linear")]
 mod plastic_summary;
@@ -30,6 +32,8 @@ use crate::scene::reduced_pressure::reduction;
 use crate::scene::{Sample, Scene, SceneError, Source};
 use crate::verdict::{Place, RestVerdict};
 
+#[cfg(feature = "linear")]
+pub use drive_summary::{DriveError, DriveMode, DriveSummary};
 pub use error::RunError;
 pub use progress::{Progress, Watch};
 #[cfg(feature = "linear")]
@@ -171,6 +175,8 @@ pub(crate) fn measure<const D: usize>(
         let compared = protocol_of(scene, sample, (&inflated, &response.verdict), law, &settings, trace);
         compared.map(Box::new).into()
     });
+    #[cfg(feature = "linear")]
+    let drive = drive_of(scene, &inflated, &prepared, law);
     let phase_frequency = phase_frequency(scene, sample, &packing, &response);
     Ok(SampleResult {
         packing,
@@ -181,6 +187,8 @@ pub(crate) fn measure<const D: usize>(
         plastic_part,
         #[cfg(feature = "linear")]
         protocol,
+        #[cfg(feature = "linear")]
+        drive,
         states: States::of(StatesOf {
             cycle_field: DisplacementField::of_cycle(&inflated),
             #[cfg(feature = "linear")]
@@ -198,8 +206,9 @@ fn phase_frequency(
     packing: &PackingSummary,
     response: &Response,
 ) -> Option<PhaseFrequency> {
-    // The ensembles are of disks around a held one.
-    if scene.dimension != 2 || scene.inflation.boundary.is_strip() || !scene.inflation.centre_held {
+    // The ensembles are of disks around a held one that is inflated.
+    let Inflation { boundary, centre_held, drive, .. } = scene.inflation;
+    if scene.dimension != 2 || boundary.is_strip() || !centre_held || !drive.is_inflation() {
         return None;
     }
     let relaxer = sample.relaxer.description();
@@ -211,6 +220,21 @@ fn phase_frequency(
         reduced_pressure: packing.pressure * reduction(scene),
     };
     Calibration::built_in().frequency(&conditions, response.phase.outcome)
+}
+
+/// Another drive than an inflation beside its exact solution, in the plane.
+#[cfg(feature = "linear")]
+fn drive_of<const D: usize>(
+    scene: &Scene,
+    inflated: &Inflated<D>,
+    prepared: &Packing<D>,
+    law: &dyn PairLaw,
+) -> Option<Measurement<DriveSummary>> {
+    use std::any::Any;
+    let inflated = (inflated as &dyn Any).downcast_ref::<Inflated<2>>()?;
+    let prepared = (prepared as &dyn Any).downcast_ref::<Packing<2>>()?;
+    let law = (law, scene.inflation.on_site_coupling);
+    Some(drive_summary::of(inflated, prepared, law, scene.observables.multipoles)?.into())
 }
 
 /// An inflation as the input of the observables.
@@ -227,6 +251,7 @@ fn subject<'a, const D: usize>(
         after: state(&inflated.after)?,
         deflated: inflated.deflated.as_ref().map(state).transpose()?,
         centre: inflated.centre,
+        drive: inflated.drive,
         pressure_change: inflated.after.pressure - inflated.before.pressure,
     })
 }

@@ -15,6 +15,8 @@ use crate::relax::{Cost, Criterion};
 #[cfg(feature = "linear")]
 use crate::response::Measurement;
 use crate::response::{PhaseFrequency, Response, in_dimension};
+#[cfg(feature = "linear")]
+use crate::run::drive_summary::DriveSummary;
 use crate::scene::Scene;
 use crate::vector::{larger, norm};
 use crate::verdict::RestVerdict;
@@ -79,6 +81,10 @@ pub struct SampleResult {
     #[cfg(feature = "linear")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub protocol: Option<Measurement<Box<ProtocolSensitivity>>>,
+    /// Another drive than an inflation beside its exact solution.
+    #[cfg(feature = "linear")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drive: Option<Measurement<DriveSummary>>,
     /// The states.
     #[serde(skip)]
     pub states: States,

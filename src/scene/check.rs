@@ -1,6 +1,6 @@
 //! [`SceneError`]: checks of all numbers of a scene.
 
-use crate::inflation::Boundary;
+use crate::inflation::{Boundary, InflationError};
 use crate::law::choice::LawError;
 use crate::memory::TooLarge;
 use crate::packing::PackingError;
@@ -122,6 +122,9 @@ pub enum SceneError {
         /// The observable.
         observable: &'static str,
     },
+    /// The drive is not possible.
+    #[error("inflation.{0}")]
+    Drive(#[from] InflationError),
     /// An observable needs another one.
     #[error("observables.{observable} needs observables.{needed}")]
     ObservableMissing {
@@ -164,6 +167,7 @@ impl Scene {
         check_relaxer("preparation.relaxer", &self.preparation.relaxer)?;
         let increase = self.inflation.increase;
         within("inflation.increase", increase, "a finite number", increase.is_finite())?;
+        self.inflation.check_drive()?;
         if let Some(coupling) = self.inflation.on_site_coupling {
             within("inflation.on_site_coupling", coupling, "a finite number", coupling.is_finite())?;
         }

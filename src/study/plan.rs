@@ -126,12 +126,12 @@ impl Task {
     /// One scene with one sample per inflation; they differ in increase, relaxer and whether the centre is held.
     pub fn scenes(&self) -> Vec<Scene> {
         let scene = |drive| self.study.scene_of(self.law, self.disk_count, self.target, drive, self.seed);
-        self.study.drives(self.target).into_iter().map(scene).collect()
+        self.study.inflations(self.target).into_iter().map(scene).collect()
     }
 
     /// Number of scenes.
     pub fn scene_count(&self) -> usize {
-        self.study.drives(self.target).len()
+        self.study.inflations(self.target).len()
     }
 
     /// Dimension of space.

@@ -92,7 +92,7 @@ impl Target {
 
 /// One inflation of a packing.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Drive {
+pub(super) struct CellInflation {
     pub increase: f64,
     pub centre_held: bool,
     pub relaxer: RelaxerChoice,
@@ -304,7 +304,7 @@ impl Study {
         for law in self.laws() {
             for disk_count in self.disk_counts() {
                 for target in &self.targets {
-                    for drive in self.drives(*target) {
+                    for drive in self.inflations(*target) {
                         self.scene_of(law, disk_count, *target, drive, first).check()?;
                     }
                 }
@@ -329,20 +329,20 @@ impl Study {
     }
 
     /// The inflations of a packing: every increase, centre held or free, and relaxer.
-    pub(super) fn drives(&self, target: Target) -> Vec<Drive> {
+    pub(super) fn inflations(&self, target: Target) -> Vec<CellInflation> {
         let held = if self.centres_held.is_empty() {
             vec![self.scene.inflation.centre_held]
         } else {
             self.centres_held.clone()
         };
         let relaxers = self.relaxers(target);
-        let mut drives = Vec::new();
+        let mut inflations = Vec::new();
         for increase in self.increases() {
             for &centre_held in &held {
-                drives.extend(relaxers.iter().map(|&relaxer| Drive { increase, centre_held, relaxer }));
+                inflations.extend(relaxers.iter().map(|&relaxer| CellInflation { increase, centre_held, relaxer }));
             }
         }
-        drives
+        inflations
     }
 
     /// The relaxers of a target.
@@ -365,7 +365,7 @@ impl Study {
         law: LawChoice,
         disk_count: usize,
         target: Target,
-        Drive { increase, centre_held, relaxer }: Drive,
+        CellInflation { increase, centre_held, relaxer }: CellInflation,
         seed: u64,
     ) -> Scene {
         let mut scene = Scene { law, disk_count, ..self.scene.clone() };

@@ -77,7 +77,7 @@ pub(super) fn causes<const D: usize>(
     {
         causes.push(Cause::FewDigits { digits, residual_bound });
     }
-    if state.packing.sites().is_some() && !law.has_sites() {
+    if state.packing.sites().is_some() && state.packing.loads().is_none() && !law.has_sites() {
         causes.push(Cause::Sites);
     }
     if causes.is_empty() {

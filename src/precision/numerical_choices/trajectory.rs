@@ -3,9 +3,10 @@
 use std::time::Instant;
 
 use crate::forces::assembly::{Assembly, SKIN};
-use crate::inflation::{Grown, displacement};
+use crate::inflation::Grown;
 use crate::law::damping::ContactDamping;
 use crate::law::pair_law::PairLaw;
+use crate::packing::displacement;
 use crate::packing::{Packing, PackingError};
 use crate::precision::numerical_choices::{ChoiceRow, ChoiceTable};
 use crate::relax::Motion;

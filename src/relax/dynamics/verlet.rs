@@ -161,8 +161,8 @@ impl<const D: usize> Motion<D> {
     /// Computes the net forces, with damping by the predicted velocities. Returns the power of damping.
     fn accelerate(&mut self) -> f64 {
         let Motion { assembly, damping, damping_coefficient, predicted, accelerations, .. } = self;
-        if assembly.law().has_sites() {
-            // Contacts and sites first, then damping.
+        if assembly.has_on_site_forces() {
+            // Contacts, sites and loads first, then damping.
             assembly.evaluate();
             accelerations.copy_from_slice(&assembly.forces);
             return add_damping(

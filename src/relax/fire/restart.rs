@@ -66,7 +66,7 @@ impl Run<'_> {
     /// Whether the energy is above that at the last restart.
     fn is_higher<const D: usize>(&self, assembly: &Assembly<D>, totals: &Totals<D>) -> bool {
         let energy = totals.energy;
-        if assembly.law().has_sites() {
+        if assembly.has_on_site_forces() {
             // Energies have either sign, so the rounding is relative to the sum of their absolute values.
             energy - self.rest_energy > ENERGY_ROUNDING * (totals.energy_scale() + self.rest_scale)
         } else {

@@ -159,6 +159,41 @@ pub fn angular_profiles(profiles: &[AngularProfile]) -> String {
     table.text()
 }
 
+/// The angular modes that a drive excites, measured and of the continuum.
+///
+/// # Shape
+/// One row per mode and ring: d_r = U cos n(θ − θ_0), d_θ = w sin n(θ − θ_0).
+#[cfg(feature = "linear")]
+pub fn drive_modes(drive: &crate::run::DriveSummary) -> String {
+    let mut table = Table::new(&[
+        ("mode", "1"),
+        ("radius", "length"),
+        ("disk_count", "1"),
+        ("radial", "length"),
+        ("radial_error", "length"),
+        ("transverse", "length"),
+        ("transverse_error", "length"),
+        ("continuum_radial", "length"),
+        ("continuum_transverse", "length"),
+    ]);
+    for ring in &drive.modes {
+        let ([radial, radial_error], [transverse, transverse_error]) = (ring.radial, ring.transverse);
+        let [exact, exact_transverse] = ring.exact;
+        table.row([
+            ring.mode as f64,
+            ring.radius,
+            ring.disk_count as f64,
+            radial,
+            radial_error,
+            transverse,
+            transverse_error,
+            exact,
+            exact_transverse,
+        ]);
+    }
+    table.text()
+}
+
 /// The radial profile of a plastic part.
 ///
 /// # Shape

@@ -1,6 +1,8 @@
 //! The numbers of each sample, row by row, for the terminal table and for the page.
 
 pub(crate) mod analysis;
+#[cfg(feature = "linear")]
+mod drive;
 pub(crate) mod estimators;
 mod phase_frequency;
 pub(crate) mod response;
@@ -44,6 +46,8 @@ pub(crate) fn refusals(samples: &[SampleReport]) -> Vec<(&str, &'static str, &st
         #[cfg(feature = "linear")]
         refused.extend(refused_of(&result.plastic_part).map(|reason| (name, "no linear response", reason)));
         #[cfg(feature = "linear")]
+        refused.extend(refused_of(&result.drive).map(|reason| (name, "no continuum beside the drive", reason)));
+        #[cfg(feature = "linear")]
         refused.extend(refused_of(&result.protocol).map(|reason| (name, "no protocols compared", reason)));
     }
     refused
@@ -66,7 +70,11 @@ pub(crate) fn sections(report: &Report, samples: &[SampleReport], times: Times) 
     all.extend(response::sections(responses));
     all.push(phase_frequency::section(samples));
     #[cfg(feature = "linear")]
-    all.extend([states::plastic(report, samples), crate::report::protocol::section(report, samples)]);
+    all.extend([
+        drive::section(samples),
+        states::plastic(report, samples),
+        crate::report::protocol::section(report, samples),
+    ]);
     all.retain(|section| !section.rows.is_empty());
     all
 }

@@ -156,7 +156,9 @@ pub(super) fn plastic(report: &Report, samples: &[SampleReport]) -> Section {
         }),
         Measurement::Refused(_) => Some("none".into()),
     })
-    .add("linear: contact opens at d_0 [length]", |it| measured(it)?.first_opening.map(|at| significant(at, 3)))
+    .add("linear: contact opens at d_0 [length], or share of the drive [1]", |it| {
+        measured(it)?.first_opening.map(|at| significant(at, 3))
+    })
     .add(format!("linear: Δp [{}]", pressure_unit(report.scene.dimension)), |it| {
         Some(significant(measured(it)?.linear_pressure_change, 4))
     })

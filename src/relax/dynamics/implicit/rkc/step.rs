@@ -12,7 +12,7 @@ use crate::vector::{Vector, larger};
 
 impl<const D: usize> ImplicitMotion<D> {
     /// Stability requirement of stabilised steps, valid while no contact with a gap above [`ImplicitMotion::margin`]
-    /// closes. None for gradient flow, and if stiff forces are undamped: an undamped contact, or sites.
+    /// closes. None for gradient flow, and if stiff forces are undamped: an undamped contact, sites, or loads.
     ///
     /// ```text
     /// λ ≤ 2 max_i μ_i        μ_i the largest eigenvalue of Σ_j c_ij n n, half for a contact with a held disk
@@ -22,7 +22,7 @@ impl<const D: usize> ImplicitMotion<D> {
     /// This follows from (x_i − x_j)² ≤ 2 x_i² + 2 x_j². With six contacts per disk it is about half of Gershgorin's
     /// bound, which adds the c_ij as if all n were parallel.
     pub(crate) fn stiffness(&mut self) -> Option<Stiffness> {
-        if self.assembly.law().has_sites() || self.inertia != Inertia::Massive {
+        if self.assembly.has_on_site_forces() || self.inertia != Inertia::Massive {
             return None;
         }
         let assembly = &self.assembly;
