@@ -156,7 +156,7 @@ impl<const D: usize> ContactNetwork<D> {
         })
     }
 
-    /// Net elastic force on each disk, plus the on-site force if the law has sites \[force\].
+    /// Net elastic force on each disk, plus the force of its site and its load \[force\].
     pub fn forces(&self) -> &[Vector<D>] {
         &self.forces
     }
@@ -172,7 +172,7 @@ impl<const D: usize> ContactNetwork<D> {
         total(self.contacts.iter().map(|contact| contact.energy))
     }
 
-    /// Site energy −(Γ/2) Σ u²; 0 for a law without sites \[energy\].
+    /// Energy of sites and loads, −Σ (Γ u²/2 + f·u); 0 without them \[energy\].
     pub fn on_site_energy(&self) -> f64 {
         self.on_site_energy
     }

@@ -237,7 +237,7 @@ impl Task {
 
 /// Refuses packings that the commands would change in a way that their file does not mean.
 fn check<const D: usize>(packing: &Packing<D>) -> Result<(), &'static str> {
-    if packing.sites().is_some() {
+    if packing.sites().is_some() && packing.loads().is_none() {
         return Err(
             "the disks have sites, and their on-site forces are known only to a scene; leave out the columns site and site_correction to go on without them",
         );

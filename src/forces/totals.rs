@@ -11,9 +11,9 @@ use crate::simd::lanes;
 /// The sums of the loop beside the forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Totals<const D: usize> {
-    /// Energy Σ u(δ), plus the site energy if the law has sites \[energy\].
+    /// Energy Σ u(δ), plus the energy of sites and loads \[energy\].
     pub energy: f64,
-    /// Site energy, −(Γ/2) Σ u²; 0 without sites \[energy\].
+    /// Energy of sites and loads, −Σ (Γ u²/2 + f·u); 0 without them \[energy\].
     pub on_site_energy: f64,
     /// Virial tensor Σ F r_a r_b / |r| \[energy\]; its trace over D V is the pressure.
     pub virial: [[f64; D]; D],
@@ -52,7 +52,7 @@ impl<const D: usize> Totals<D> {
         if self.contact_count == 0 { 0.0 } else { self.force_sum / self.contact_count as f64 }
     }
 
-    /// Contact energy plus the absolute site energy \[energy\]. The rounding of the energy is relative to it.
+    /// Contact energy plus the absolute energy of sites and loads \[energy\]. The rounding of the energy is relative to it.
     pub fn energy_scale(&self) -> f64 {
         (self.energy - self.on_site_energy).abs() + self.on_site_energy.abs()
     }

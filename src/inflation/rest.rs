@@ -34,7 +34,7 @@ pub struct Rest<const D: usize> {
     pub packing: Relaxed<Packing<D>>,
     /// Pressure of the circle or the box \[force / length^(D−1)\].
     pub pressure: f64,
-    /// Elastic energy, including that of the sites if there are any \[energy\].
+    /// Elastic energy, including that of sites and loads \[energy\].
     pub energy: f64,
     /// Number of contacts, without those between held disks.
     pub contact_count: usize,

@@ -17,6 +17,7 @@
 //! | `correction:R:D` | low part of the centre, below the spacing of numbers there \[length\], [`corrections`](crate::packing::Packing::corrections) | no |
 //! | `site:R:D` | site of the disk \[length\], [`sites`](crate::packing::Packing::sites) | no |
 //! | `site_correction:R:D` | low part of the site \[length\]; requires `site` | no |
+//! | `load:R:D` | constant force on the disk \[force\], [`loads`](crate::packing::Packing::loads) | no |
 //!
 //! Names are compared without case, `_`, `-` and `.`. Other names of the first three, as programs of the field write
 //! them: `Position`, `coordinates`; `radii`; `Identifier`, `particle_identifier`, `particle_id`, `atom_id`. Two
@@ -63,6 +64,7 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Con
     let mut disks = Vec::with_capacity(count);
     let mut extras = Vec::with_capacity(count);
     let mut sites = Vec::with_capacity(if columns.has_sites() { count } else { 0 });
+    let mut loads = Vec::with_capacity(if columns.has_loads() { count } else { 0 });
     let mut plane = Plane::new();
     for row_line in line + 1..line + 1 + count {
         let row = source.row(row_line);
@@ -72,6 +74,9 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Con
         let correction = columns.correction(source, &row, &disk)?;
         extras.push((columns.held(source, &row, row_line)?, turned(&axes, correction)));
         disks.push(disk);
+        if columns.has_loads() {
+            loads.push(turned(&axes, columns.load(&row)?));
+        }
         let site = columns.site(source, &row, row_line)?;
         sites.extend(site.map(|(site, rest)| (turned(&axes, site), turned(&axes, rest))));
     }
@@ -97,6 +102,11 @@ pub(super) fn parse<const D: usize>(source: &Source, frame: Frame) -> Result<Con
         }
         packing = packing
             .with_sites(sites)
+            .map_err(|error| ReadError::Packing { path: source.path.into(), source: error })?;
+    }
+    if columns.has_loads() {
+        packing = packing
+            .with_loads(loads)
             .map_err(|error| ReadError::Packing { path: source.path.into(), source: error })?;
     }
     let warnings = axes.map(|_| ReadWarning::Turned { line: line + 1 }).into_iter().collect();

@@ -49,6 +49,9 @@ pub fn write_lammps_data<const D: usize>(path: impl AsRef<Path>, packing: &Packi
     if packing.sites().is_some() {
         return refused("sites");
     }
+    if packing.loads().is_some() {
+        return refused("loads");
+    }
     let ends = |axis: usize| if axis < D { (corner[axis], corner[axis] + edges[axis][axis]) } else { (-0.5, 0.5) };
     if (0..D).any(|axis| !ends(axis).1.is_finite() || ends(axis).1 <= ends(axis).0) {
         return refused("a box whose end is not a number, or its corner");

@@ -8,8 +8,8 @@ use crate::io::atomic::{WriteError, write_atomically};
 use crate::packing::{Domain, Packing};
 
 /// Columns that [`write_packing`] itself writes, or that have a meaning in other programs (Z: atomic number).
-const RESERVED_COLUMNS: [&str; 10] =
-    ["species", "pos", "radius", "id", "label", "held", "correction", "site", "site_correction", "Z"];
+const RESERVED_COLUMNS: [&str; 11] =
+    ["species", "pos", "radius", "id", "label", "held", "correction", "site", "site_correction", "load", "Z"];
 
 /// Keys that [`write_packing`] itself writes.
 const RESERVED_KEYS: [&str; 5] = ["Lattice", "Origin", "pbc", "Properties", "dimension"];
@@ -30,7 +30,7 @@ pub struct Column<'a> {
 ///
 /// Numbers are the shortest decimals that reproduce the `f64`. The columns are `species pos radius id`, then `held` if
 /// a disk is held, `correction` if a centre has one, `site` if disks have sites (`site_correction` if one of those has
-/// a low part), then `columns`. Labels that repeat (the periodic images of a rim) are written as `label`, since
+/// a low part), `load` if there are loads, then `columns`. Labels that repeat (the periodic images of a rim) are written as `label`, since
 /// programs expect a unique `id`. For D = 2 a coordinate z = 0 and a lattice of height 1 are added. In the open plane
 /// there is no lattice and `pbc="F F F"`.
 ///
@@ -115,6 +115,9 @@ fn write<const D: usize>(
     if split {
         layout += &format!(":site_correction:R:{D}");
     }
+    if packing.loads().is_some() {
+        layout += &format!(":load:R:{D}");
+    }
     for column in columns {
         layout += &format!(":{}:R:{}", column.name, column.width);
     }
@@ -147,6 +150,9 @@ fn write<const D: usize>(
             if split {
                 numbers(&mut line, &sites[disk].1);
             }
+        }
+        if let Some(loads) = packing.loads() {
+            numbers(&mut line, &loads[disk]);
         }
         for column in columns {
             numbers(&mut line, &column.values[disk * column.width..(disk + 1) * column.width]);

@@ -45,6 +45,7 @@ pub(super) struct Columns<const D: usize> {
     correction: Option<usize>,
     site: Option<usize>,
     site_correction: Option<usize>,
+    load: Option<usize>,
     pub total: usize,
 }
 
@@ -169,6 +170,7 @@ impl<const D: usize> Columns<D> {
             correction: start("correction", "R", D, "correction:R with D values")?,
             site,
             site_correction,
+            load: start("load", "R", D, "load:R with D values")?,
             total: layout.total,
         })
     }
@@ -236,6 +238,16 @@ impl<const D: usize> Columns<D> {
         let low = self.vector(row, self.site_correction, "site_correction")?;
         self.check_low(source, row, (self.site_correction, "site_correction"), (line, &site, &low))?;
         Ok(Some((site, low)))
+    }
+
+    /// Whether disks have loads.
+    pub fn has_loads(&self) -> bool {
+        self.load.is_some()
+    }
+
+    /// The load of a disk; 0 without such a column.
+    pub fn load(&self, row: &Row) -> Result<Vector<D>, ReadError> {
+        self.vector(row, self.load, "load")
     }
 
     /// Refuses a low part that is not below the spacing of numbers at its coordinate; a written low part is at most

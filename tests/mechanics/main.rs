@@ -6,6 +6,7 @@ mod claims;
 mod scenes;
 mod twins;
 
+mod applied;
 mod certificate;
 mod contact;
 #[cfg(feature = "linear")]

@@ -22,10 +22,11 @@ pub(super) const HELD: Meaning = Meaning { what: "held disks", names: &["held"] 
 pub(super) const CORRECTIONS: Meaning = Meaning { what: "corrections", names: &["corrections"] };
 pub(super) const SITES: Meaning = Meaning { what: "sites", names: &["sites"] };
 pub(super) const SITE_CORRECTIONS: Meaning = Meaning { what: "corrections of sites", names: &["site_corrections"] };
+pub(super) const LOADS: Meaning = Meaning { what: "loads", names: &["loads"] };
 pub(super) const DIMENSION: Meaning = Meaning { what: "the dimension", names: &["dimension"] };
 
 /// All meanings: their names are no key-value pairs.
-const MEANINGS: [&Meaning; 12] = [
+const MEANINGS: [&Meaning; 13] = [
     &CENTRES,
     &RADII,
     &DIAMETERS,
@@ -37,6 +38,7 @@ const MEANINGS: [&Meaning; 12] = [
     &CORRECTIONS,
     &SITES,
     &SITE_CORRECTIONS,
+    &LOADS,
     &DIMENSION,
 ];
 

@@ -12,6 +12,7 @@
 //! | held disks | (N,) | `held` | `held` |
 //! | low parts of the centres, [`corrections`](crate::packing::Packing::corrections) \[length\] | (N, D) | `corrections` | if there are any |
 //! | sites and their low parts \[length\] | (N, D) | `sites`, `site_corrections` | if there are any |
+//! | constant forces on the disks \[force\] | (N, D) | `loads` | if there are any |
 //!
 //! Other arrays without an axis, of shape (), are the key-value pairs of the packing: `law`, `stiffness`. All others are ignored. Values are little-endian
 //! floats, integers or booleans in C or Fortran order, stored or compressed; arrays of Python objects are refused.
@@ -38,7 +39,7 @@ use crate::packing::{Domain, LARGEST_RADIUS, Packing, SMALLEST_RADIUS};
 use crate::vector::{Vector, larger};
 use array::{Array, Values};
 use contents::{
-    Arrays, BOX, CENTRES, CORRECTIONS, DIAMETERS, DIMENSION, HELD, LABELS, Meaning, ORIGIN, PERIODIC, RADII,
+    Arrays, BOX, CENTRES, CORRECTIONS, DIAMETERS, DIMENSION, HELD, LABELS, LOADS, Meaning, ORIGIN, PERIODIC, RADII,
     SITE_CORRECTIONS, SITES,
 };
 
@@ -69,6 +70,9 @@ pub(super) fn parse<const D: usize>(path: &Path, bytes: &[u8], frame: Frame) -> 
     }
     if let Some(sites) = parts.sites {
         packing = packing.with_sites(sites).map_err(of_packing)?;
+    }
+    if let Some(loads) = parts.loads {
+        packing = packing.with_loads(loads).map_err(of_packing)?;
     }
     Ok(Contents { packing, properties: arrays.properties(), warnings: parts.warnings })
 }
@@ -105,6 +109,7 @@ struct Parts<const D: usize> {
     labels: Option<Vec<u64>>,
     held: Vec<bool>,
     sites: Option<Vec<(Vector<D>, Vector<D>)>>,
+    loads: Option<Vec<Vector<D>>>,
     warnings: Vec<ReadWarning>,
 }
 
@@ -155,9 +160,10 @@ impl Reader<'_> {
             }
             None => None,
         };
+        let loads = self.find(&LOADS, 2)?.map(|array| vectors::<D>(&array, count)).transpose()?;
         let is_single = centres.is_single;
         let warnings = is_single.then_some(ReadWarning::SinglePrecision { array: centres.name }).into_iter().collect();
-        Ok(Parts { domain, positions, corrections, radii, labels, held, sites, warnings })
+        Ok(Parts { domain, positions, corrections, radii, labels, held, sites, loads, warnings })
     }
 
     /// The radii, or half the diameters.

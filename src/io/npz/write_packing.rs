@@ -14,7 +14,7 @@ use crate::packing::{Domain, Packing};
 /// bits.
 ///
 /// The arrays are `positions` (N, D), `radii`, `labels`, `held` (N,), `box` and `origin` (D,) for a periodic box, `pbc` (D,), `corrections`
-/// (N, D) if a centre has one, `sites` and `site_corrections` (N, D) if disks have sites. Then follow `columns`, of shape (N,) or
+/// (N, D) if a centre has one, `sites` and `site_corrections` (N, D) if disks have sites, `loads` (N, D) if there are any. Then follow `columns`, of shape (N,) or
 /// (N, width), and `properties` as arrays without an axis: numbers as numbers, others as texts.
 ///
 /// # Shape
@@ -84,6 +84,9 @@ fn write<const D: usize>(
         let (sites, low): (Vec<_>, Vec<_>) = sites.iter().copied().unzip();
         add("sites", &[count, D], &vectors(&sites))?;
         add("site_corrections", &[count, D], &vectors(&low))?;
+    }
+    if let Some(loads) = packing.loads() {
+        add("loads", &[count, D], &vectors(loads))?;
     }
     for column in columns {
         let shape = [count, column.width];

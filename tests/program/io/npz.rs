@@ -118,6 +118,7 @@ fn full<const D: usize>() -> Packing<D> {
     .and_then(|packing| packing.with_held(vec![true, false]))
     .and_then(|packing| packing.with_labels(vec![u64::MAX, 7]))
     .and_then(|packing| packing.with_sites(sites))
+    .and_then(|packing| packing.with_loads(vec![[-0.0; D], [1e-3; D]]))
     .expect("valid packing")
 }
 
@@ -279,8 +280,20 @@ fn a_damaged_archive_is_refused_and_never_a_panic() {
 /// Every name with every type and shape, checksums right: a packing or a message, never a panic.
 #[test]
 fn odd_headers_are_refused_and_never_a_panic() {
-    let names =
-        ["positions", "radii", "diameters", "box", "origin", "pbc", "ids", "held", "corrections", "sites", "dimension"];
+    let names = [
+        "positions",
+        "radii",
+        "diameters",
+        "box",
+        "origin",
+        "pbc",
+        "ids",
+        "held",
+        "corrections",
+        "sites",
+        "loads",
+        "dimension",
+    ];
     let dtypes = ["<f8", "<f4", "<i8", "|u1", "|b1", "<U2", "<U0", "|O", "|S4", "<c16", "[('a', '<f8')]"];
     let shapes = [
         "",

@@ -55,10 +55,10 @@ fn row<const D: usize>() -> impl Strategy<Value = Row<D>> {
 }
 
 fn packing<const D: usize>() -> impl Strategy<Value = Packing<D>> {
-    let flags = (any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>());
+    let flags = (any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>());
     let unit = prop_oneof![(-128.0..149.0f64).prop_map(|power| 10f64.powf(power)), 0.1..1.0];
     (domain(), prop::collection::vec(row::<D>(), 1..12), unit, flags).prop_map(
-        |(domain, mut rows, unit, (corrected, held, labelled, tied))| {
+        |(domain, mut rows, unit, (corrected, held, labelled, tied, loaded))| {
             let largest = rows.iter().map(|row| row.2).fold(0.0, f64::max);
             for row in &mut rows {
                 row.2 *= unit;
@@ -84,6 +84,9 @@ fn packing<const D: usize>() -> impl Strategy<Value = Packing<D>> {
                 let site = |row: &Row<D>| (row.0.map(|x| -0.5 * x), std::array::from_fn(|d| low(d, row)));
                 packing = packing.with_sites(rows.iter().map(site).collect()).expect("a finite site a disk");
             }
+            if loaded {
+                packing = packing.with_loads(rows.iter().map(|row| row.1).collect()).expect("a finite load a disk");
+            }
             packing
         },
     )
@@ -100,7 +103,8 @@ fn bits<const D: usize>(packing: &Packing<D>) -> Vec<u64> {
     let flags = packing.held().iter().map(|&held| held.into());
     let sites = packing.sites().into_iter().flatten().flat_map(|site| site.0.into_iter().chain(site.1));
     let sites = sites.map(f64::to_bits);
-    numbers.chain(flags).chain(packing.labels().iter().copied()).chain(sites).collect()
+    let loads = packing.loads().into_iter().flatten().flatten().map(|value| value.to_bits());
+    numbers.chain(flags).chain(packing.labels().iter().copied()).chain(sites).chain(loads).collect()
 }
 
 fn assert_round_trip<const D: usize>(packing: &Packing<D>) -> Result<(), TestCaseError> {

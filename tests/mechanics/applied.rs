@@ -1,0 +1,383 @@
+//! Drives that inflate nothing: a point force, a force dipole, a displaced disk, shear and compression of the rim.
+
+use jamscope::displacement::DisplacementField;
+use jamscope::forces::assembly::Assembly;
+use jamscope::inflation::{Applied, Boundary, Circle, Drive, Inflated, Inflation, InflationError, inflate_with};
+use jamscope::lattice::Lattice;
+use jamscope::law::{Hookean, OnSite, PairLaw};
+use jamscope::linear::{LinearResponse, Prestress};
+use jamscope::network::ContactNetwork;
+use jamscope::packing::{Packing, PackingError};
+use jamscope::plastic::{PlasticPart, linear_response};
+use jamscope::preparation::{Preparation, Target, prepare_with};
+use jamscope::reference::Annulus;
+use jamscope::reference::angular_modes::AngularSolution;
+use jamscope::reference::angular_modes::force_dipole::ForceDipole;
+use jamscope::reference::angular_modes::point_force::PointForce;
+use jamscope::reference::angular_modes::screened_source::ScreenedSource;
+use jamscope::relax::{DampedDynamics, Fire, ForceLimit, Newton, Relaxer};
+use jamscope::vector::{difference, dot, larger, norm, scaled, sum};
+
+use crate::scenes::laws::hertzian;
+
+fn fire(limit: f64) -> Fire {
+    Fire { limit: ForceLimit::Relative(limit), step_limit: 1_000_000, ..Fire::default() }
+}
+
+/// A packing of 400 disks at p = 1000.
+fn packing() -> Packing<2> {
+    let preparation = Preparation { disk_count: 400, target: Target::Pressure(1000.0), ..Preparation::default() };
+    prepare_with::<2>(&preparation, &hertzian(), &fire(1e-12), &mut ()).expect("a packing").packing.into_inner()
+}
+
+const DRIVES: [Drive; 5] = [
+    Drive::PointForce { force_over_mean: 0.1 },
+    Drive::ForceDipole { force_over_mean: 0.1 },
+    Drive::Displacement { distance: 0.01 },
+    Drive::Shear { strain: 0.001 },
+    Drive::Compression { strain: 0.001 },
+];
+
+/// The drive with its amplitude times a factor.
+fn times(drive: Drive, factor: f64) -> Drive {
+    match drive {
+        Drive::PointForce { force_over_mean } => Drive::PointForce { force_over_mean: force_over_mean * factor },
+        Drive::ForceDipole { force_over_mean } => Drive::ForceDipole { force_over_mean: force_over_mean * factor },
+        Drive::Displacement { distance } => Drive::Displacement { distance: distance * factor },
+        Drive::Shear { strain } => Drive::Shear { strain: strain * factor },
+        Drive::Compression { strain } => Drive::Compression { strain: strain * factor },
+        Drive::Inflation => Drive::Inflation,
+    }
+}
+
+fn rim(drive: Drive) -> Inflation {
+    Inflation { drive, boundary: Boundary::HeldRim { outer_radius_over_side: 0.48 }, ..Inflation::default() }
+}
+
+fn driven(drive: Drive, packing: &Packing<2>) -> Inflated<2> {
+    inflate_with(&rim(drive), packing, &hertzian(), &fire(1e-12), 1, &mut ()).expect("at rest")
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+#[test]
+fn each_drive_does_what_it_says_before_any_disk_moves() {
+    let packing = packing();
+    for drive in DRIVES {
+        let run = driven(drive, &packing);
+        let (before, start, centre) = (run.before.packing.get(), &run.start, run.centre);
+        assert_eq!(before.held()[centre], matches!(drive, Drive::Displacement { .. }), "{drive:?}");
+        assert!((centre + 1..before.len()).all(|disk| before.held()[disk]), "the rim is held");
+        assert_eq!(before.radii(), start.radii());
+        let network = ContactNetwork::new(before, &hertzian()).expect("apart");
+        let forces: Vec<f64> = network.backbone_contacts().map(|contact| contact.force).collect();
+        let mean = forces.iter().sum::<f64>() / forces.len() as f64;
+        let applied = Applied::of(before, start, centre);
+        let moved = |disk: usize| -> [f64; 2] { difference(start.positions()[disk], before.positions()[disk]) };
+        match drive {
+            Drive::PointForce { .. } => {
+                assert!((applied.force[0] - 0.1 * mean).abs() < 1e-12 * mean && applied.force[1] == 0.0);
+                assert_eq!((applied.arm, applied.displacement), (None, [0.0; 2]));
+            }
+            Drive::ForceDipole { .. } => {
+                let loads = start.loads().expect("loads");
+                let pushed: Vec<usize> = (0..loads.len()).filter(|&disk| loads[disk] != [0.0; 2]).collect();
+                assert_eq!(pushed.len(), 2);
+                let arm = applied.arm.expect("two disks");
+                assert!((norm(applied.force) - 0.1 * mean).abs() < 1e-12 * mean);
+                assert_eq!(loads.iter().fold([0.0; 2], |total, &load| sum(total, load)), [0.0; 2]);
+                assert!(dot(applied.force, arm) < 0.0, "apart");
+                assert!(cross(applied.force, arm).abs() < 1e-15 * mean, "no torque");
+                // The neighbour in contact whose direction is nearest to x.
+                let along = |other: usize| {
+                    let apart = before.separation(other, centre);
+                    apart[0] / norm(apart)
+                };
+                let touching = network.backbone_contacts().filter_map(|contact| match centre as u32 {
+                    it if it == contact.first => Some(contact.second as usize),
+                    it if it == contact.second => Some(contact.first as usize),
+                    _ => None,
+                });
+                let best = touching.map(along).fold(f64::NEG_INFINITY, f64::max);
+                assert!((arm[0] / norm(arm) - best).abs() < 1e-15);
+            }
+            Drive::Displacement { distance } => {
+                assert_eq!(applied.displacement, [distance, 0.0]);
+                assert!((0..before.len()).filter(|&disk| disk != centre).all(|disk| moved(disk) == [0.0; 2]));
+            }
+            Drive::Shear { .. } | Drive::Compression { .. } => {
+                let strain = drive.strain::<2>();
+                for disk in 0..before.len() {
+                    let affine = strain.of(before.positions()[disk]);
+                    assert!(norm(difference(moved(disk), affine)) < 1e-14, "{drive:?}");
+                }
+                let area = (1.0 + strain.first) * (1.0 + strain.others);
+                assert_eq!(strain.volume_ratio::<2>(), area);
+                // Pure shear keeps the area to first order.
+                assert!(matches!(drive, Drive::Compression { .. }) || (area - 1.0).abs() < 1e-6);
+            }
+            Drive::Inflation => unreachable!("not among the drives"),
+        }
+    }
+}
+
+/// Newton's third law and the balance of torques: the rim and a held disk carry exactly the loads.
+#[test]
+fn forces_and_torques_of_every_drive_are_balanced() {
+    let packing = packing();
+    for drive in DRIVES {
+        let run = driven(drive, &packing);
+        let after = run.after.packing.get();
+        let network = ContactNetwork::new(after, &hertzian()).expect("apart");
+        let (mut force, mut torque, mut mean) = ([0.0; 2], 0.0, 0.0);
+        for contact in &network.contacts {
+            let push = scaled(contact.force / norm(contact.separation), contact.separation);
+            mean += contact.force / network.contacts.len() as f64;
+            for (disk, sign) in [(contact.first as usize, 1.0), (contact.second as usize, -1.0)] {
+                if after.held()[disk] {
+                    force = sum(force, scaled(sign, push));
+                    torque += sign * cross(after.positions()[disk], push);
+                }
+            }
+        }
+        for (disk, &load) in run.start.loads().unwrap_or_default().iter().enumerate() {
+            force = difference(force, load);
+            torque -= cross(after.positions()[disk], load);
+        }
+        // 300 mobile disks with a residual of 10⁻¹² of the mean force each, at distances up to 10.
+        assert!(norm(force) < 3e-10 * mean, "{drive:?}: {force:?} of {mean}");
+        assert!(torque.abs() < 3e-9 * mean, "{drive:?}: {torque} of {mean}");
+    }
+}
+
+/// As the amplitude falls the relaxed response tends to the linear one, with a deviation of second order while no contact
+/// changes.
+#[test]
+fn small_drives_have_their_linear_response() {
+    let (packing, law) = (packing(), hertzian());
+    for drive in DRIVES {
+        let share = |factor: f64| {
+            let run = inflate_with(&rim(times(drive, factor)), &packing, &law, &fire(1e-13), 1, &mut ());
+            let run = run.expect("at rest");
+            let response = linear_response(&run, &law).expect("a response");
+            let part = PlasticPart::of(&run, &response);
+            assert!(part.norm > 0.0 && run.before.contact_count > 500);
+            part.share
+        };
+        let [large, small] = [share(1e-2), share(1e-3)];
+        println!("{drive:?}: {large:e}, {small:e}");
+        // The share is of first order in the amplitude, up to the next order, 10⁻², and the residual of 10⁻¹³.
+        assert!((large / small / 10.0 - 1.0).abs() < 0.05 && large < 0.02, "{drive:?}: {large:e}, {small:e}");
+    }
+}
+
+/// Without a plastic event a drive that is taken back leaves the disks where they were.
+#[test]
+fn a_drive_that_is_taken_back_leaves_nothing() {
+    let packing = packing();
+    for drive in DRIVES {
+        let inflation = Inflation { deflate: true, ..rim(times(drive, 1e-4)) };
+        let run = inflate_with(&inflation, &packing, &hertzian(), &fire(1e-13), 1, &mut ()).expect("at rest");
+        let (before, again) = (run.before.packing.get(), run.deflated.as_ref().expect("taken back").packing.get());
+        assert_eq!((again.loads(), again.sites(), before.radii()), (None, None, again.radii()));
+        let most = |field: &DisplacementField<2>| field.counted().map(|disk| norm(disk.displacement)).fold(0.0, larger);
+        let (out, left) =
+            (most(&DisplacementField::of_inflation(&run)), most(&DisplacementField::of_cycle(&run).expect("both")));
+        assert!(left < 1e-6 * out, "{drive:?}: {left:e} of {out:e}");
+        let held = (0..before.len()).filter(|&disk| before.held()[disk]);
+        held.for_each(|disk| assert_eq!(before.centre(disk), again.centre(disk), "{drive:?}: disk {disk} is held"));
+    }
+}
+
+/// A load is minus the derivative of its energy, with and without Γ, and the relaxers agree on the state.
+#[test]
+fn loads_are_the_gradient_of_their_energy_and_all_relaxers_find_their_state() {
+    let circle = Circle::cut(&packing(), 7, 8.0).expect("a circle").with_free_centre().expect("one a disk").packing;
+    let loads: Vec<[f64; 2]> = (0..circle.len()).map(|disk| [(disk as f64).sin(), (3.0 * disk as f64).cos()]).collect();
+    let loaded = circle.clone().with_sites_here().with_loads(loads.clone()).expect("finite");
+    for law in [&hertzian() as &dyn PairLaw, &OnSite { law: hertzian(), coupling: -40.0 }] {
+        let energy = |packing: &Packing<2>| {
+            Assembly::new(packing, law).map(|mut assembly| assembly.evaluate_totals()).expect("apart")
+        };
+        for disk in [0, 11, 40] {
+            let (step, mut slope) = (1e-6, [0.0; 2]);
+            for axis in 0..2 {
+                let at = |by: f64| {
+                    let mut positions = loaded.positions().to_vec();
+                    positions[disk][axis] += by;
+                    let moved = Packing::new(*loaded.domain(), positions, loaded.radii().to_vec()).expect("valid");
+                    let moved = moved
+                        .with_held(loaded.held().to_vec())
+                        .and_then(|it| it.with_corrections(loaded.corrections().to_vec()));
+                    let sites = loaded.sites().expect("sites").to_vec();
+                    energy(
+                        &moved
+                            .and_then(|it| it.with_sites(sites))
+                            .and_then(|it| it.with_loads(loads.clone()))
+                            .expect("valid"),
+                    )
+                    .energy
+                };
+                slope[axis] = -(at(step) - at(-step)) / (2.0 * step);
+            }
+            let force = ContactNetwork::new(&loaded, law).expect("apart").forces()[disk];
+            // An energy of 10³ with 10⁻¹⁶ over a step of 10⁻⁶, and the third derivative, 10⁶, times its square.
+            assert!(norm(difference(force, slope)) < 1e-5, "{disk}: {force:?} and {slope:?}");
+        }
+    }
+    let law = hertzian();
+    let strong: Vec<[f64; 2]> = loads.iter().map(|&load| scaled(3.0, load)).collect();
+    let start = circle.with_loads(strong).expect("finite");
+    let state = |relaxer: &dyn Fn(Packing<2>) -> Packing<2>| relaxer(start.clone());
+    let by_fire =
+        state(&|it| fire(1e-11).relax(it, &law, &mut ()).expect("apart").converged().expect("at rest").into_inner());
+    let newton = Newton { limit: ForceLimit::Relative(1e-11), ..Newton::default() };
+    let by_newton =
+        state(&|it| newton.relax(it, &law, &mut ()).expect("apart").converged().expect("at rest").into_inner());
+    let damped = DampedDynamics { limit: ForceLimit::Relative(1e-9), ..DampedDynamics::default() };
+    let by_motion =
+        state(&|it| damped.relax(it, &law, &mut ()).expect("apart").converged().expect("at rest").into_inner());
+    let network = ContactNetwork::new(&by_fire, &law).expect("apart");
+    for (name, other, limit) in [("Newton", &by_newton, 1e-9), ("damped dynamics", &by_motion, 1e-6)] {
+        let counted = (0..by_fire.len()).filter(|&disk| network.backbone[disk] && !by_fire.held()[disk]);
+        let apart =
+            counted.map(|disk| norm(difference(by_fire.positions()[disk], other.positions()[disk]))).fold(0.0, larger);
+        // Residuals over the softest stiffness, 10⁻³ of that of a contact.
+        assert!(apart < limit, "{name}: {apart:e}");
+    }
+    let moved = norm(difference(by_fire.positions()[0], start.positions()[0]));
+    assert!(moved > 1e-5, "the loads move the disks: {moved:e}");
+}
+
+#[test]
+fn drives_without_a_meaning_are_refused() {
+    let packing = packing();
+    let run = |inflation: &Inflation| inflate_with(inflation, &packing, &hertzian(), &fire(1e-8), 1, &mut ());
+    let strip = Boundary::HeldWalls { distance_over_side: 0.35, length_over_side: 1.0 };
+    for drive in DRIVES {
+        let refused = run(&Inflation { boundary: strip, ..rim(drive) });
+        assert!(matches!(refused, Err(InflationError::DriveNeedsRim { .. })), "{drive:?}");
+        let periodic = run(&Inflation { boundary: Boundary::Periodic, ..rim(drive) });
+        match drive {
+            Drive::ForceDipole { .. } => assert!(periodic.is_ok()),
+            _ => assert!(matches!(periodic, Err(InflationError::DriveNeedsRim { .. })), "{drive:?}"),
+        }
+        let refused = run(&rim(times(drive, f64::NAN)));
+        assert!(matches!(refused, Err(InflationError::DriveOutOfRange { .. })), "{drive:?}");
+    }
+    assert!(matches!(run(&rim(Drive::Shear { strain: 0.2 })), Err(InflationError::DriveOutOfRange { .. })));
+    let far = run(&rim(Drive::Displacement { distance: 0.6 }));
+    assert!(matches!(far, Err(InflationError::DisplacementTooLong { .. })));
+    assert!(matches!(
+        packing.clone().with_loads(vec![[f64::NAN, 0.0]; packing.len()]),
+        Err(PackingError::LoadNotFinite { disk: 0, axis: 0, .. })
+    ));
+    assert!(packing.clone().with_loads(vec![[0.0; 2]]).is_err());
+}
+
+/// Every Bravais lattice deforms affinely, so a triangular circle has no non-affine displacement at all.
+#[test]
+fn a_lattice_follows_a_strain_of_its_rim_exactly() {
+    let lattice = Lattice::triangular(0.5, 0.05).expect("valid");
+    let circle = lattice.circle(20.0).expect("a circle").with_free_centre().expect("one a disk");
+    for law in [&hertzian() as &dyn PairLaw, &Hookean { stiffness: 1.0 }] {
+        for drive in &DRIVES[3..] {
+            let strain = drive.strain::<2>();
+            let affine = |disk: usize| strain.of(circle.packing.positions()[disk]);
+            let moved: Vec<_> =
+                (0..circle.packing.len()).filter(|&it| circle.packing.held()[it]).map(|it| (it, affine(it))).collect();
+            let response = LinearResponse::of_displacements(&circle.packing, &moved, law, Prestress::Included);
+            let response = response.expect("a response");
+            let off = |disk: usize| norm(difference(response.displacements[disk], affine(disk)));
+            let worst = (0..circle.packing.len()).map(off).fold(0.0, larger);
+            // A backward error of 10⁻¹⁵ times a condition number of (R/b)², of displacements of 0.02.
+            assert!(worst < 1e-14, "{worst:e}");
+        }
+    }
+}
+
+/// The response of triangular lattices, whose rim is where the displacement vanishes, tends to Kelvin's solution and to that
+/// of the dipole as (b/r)²: at fixed r/R the deviation falls by four when R doubles. The displaced disk is a point force
+/// of the reaction on it. With sites the medium is screened; κR is far from the first pole, near which errors grow.
+#[test]
+fn lattices_tend_to_the_exact_solutions_of_their_drives() {
+    let (lattice, law) = (Lattice::triangular(0.5, 0.05).expect("valid"), hertzian());
+    let moduli = lattice.moduli(&law).expect("isotropic");
+    let (poisson_ratio, spacing) = (1.0 - 2.0 * moduli.shear / moduli.longitudinal, lattice.spacing());
+    for (name, reduced) in [("force", 0.0), ("dipole", 0.0), ("displaced", 0.0), ("force", 1.0), ("dipole", 1.0)] {
+        let deviation = |outer_radius: f64| {
+            let circle = lattice.circle(outer_radius).expect("a circle");
+            let circle = if name == "displaced" { circle } else { circle.with_free_centre().expect("one a disk") };
+            let (packing, centre) = (&circle.packing, circle.centre);
+            let effective = lattice.effective_radius(&circle).expect("triangular");
+            let annulus = Annulus::new(0.5, effective).expect("in order");
+            let wavenumber = reduced / effective;
+            let coupling = lattice.coupling(&law, wavenumber * wavenumber).expect("isotropic");
+            let screening = coupling / (lattice.cell_area() * moduli.shear);
+            let law = OnSite { law, coupling };
+            let law: &dyn PairLaw = if reduced > 0.0 { &law } else { &law.law };
+            let prestress = Prestress::Included;
+            let neighbour =
+                (0..centre).find(|&disk| norm(difference(packing.positions()[disk], [spacing, 0.0])) < 1e-9);
+            let mut forces = vec![[0.0; 2]; packing.len()];
+            let response = match name {
+                "force" => {
+                    forces[centre] = [moduli.shear, 0.0];
+                    LinearResponse::of_forces(packing, &forces, law, prestress)
+                }
+                "dipole" => {
+                    // Between the centre and its two neighbours along x, so that the middle of the dipole is the origin.
+                    let other = (0..centre).find(|&disk| norm(sum(packing.positions()[disk], [spacing, 0.0])) < 1e-9);
+                    forces[neighbour.expect("a neighbour")] = [moduli.shear, 0.0];
+                    forces[other.expect("a neighbour")] = [-moduli.shear, 0.0];
+                    LinearResponse::of_forces(packing, &forces, law, prestress)
+                }
+                _ => LinearResponse::of_displacements(packing, &[(centre, [1.0, 0.0])], law, prestress),
+            };
+            let response = response.expect("a response");
+            let strength = match name {
+                "dipole" => 2.0 * spacing,
+                "displaced" => -response.force_change(packing, law, centre).expect("apart")[0] / moduli.shear,
+                _ => 1.0,
+            };
+            let solution = |radius: f64, angle: f64| -> [f64; 2] {
+                match (name, reduced > 0.0) {
+                    ("dipole", false) => {
+                        ForceDipole::new(annulus, poisson_ratio, strength).expect("valid").displacement(radius, angle)
+                    }
+                    ("dipole", true) => {
+                        let [flat, long] =
+                            ScreenedSource::dipole(annulus, poisson_ratio, screening, strength).expect("no pole");
+                        sum(flat.displacement(radius, angle), long.displacement(radius, angle))
+                    }
+                    (_, true) => ScreenedSource::force(annulus, poisson_ratio, screening, strength)
+                        .expect("no pole")
+                        .displacement(radius, angle),
+                    _ => PointForce::new(annulus, poisson_ratio, strength).expect("valid").displacement(radius, angle),
+                }
+            };
+            let (mut worst, mut scale) = (0.0f64, 0.0f64);
+            for disk in 0..centre {
+                let [x, y] = packing.positions()[disk];
+                let radius = x.hypot(y) / effective;
+                if !(0.3..0.7).contains(&radius) {
+                    continue;
+                }
+                let angle = y.atan2(x);
+                let [along, across] = solution(x.hypot(y), angle);
+                let (sine, cosine) = angle.sin_cos();
+                let expected = [along * cosine - across * sine, along * sine + across * cosine];
+                worst = larger(worst, norm(difference(response.displacements[disk], expected)));
+                scale = larger(scale, norm(expected));
+            }
+            worst / scale
+        };
+        let [small, middle, large] = [12.0, 24.0, 48.0].map(deviation);
+        let order = (small / large).log2() / 2.0;
+        println!("{name}, κR = {reduced}: {small:.1e} {middle:.1e} {large:.1e}, order {order:.2}");
+        // Corrections of the lattice are (b/r)² with r ≥ 0.3 R, and so are those of the rim.
+        assert!(order > 1.8 && large < (spacing / (0.3 * 48.0)).powi(2), "{name}: {small:e} {middle:e} {large:e}");
+    }
+}
