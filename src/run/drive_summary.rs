@@ -37,9 +37,6 @@ pub enum DriveError {
     /// The medium has no such solution.
     #[error(transparent)]
     Mode(#[from] AngularModeError),
-    /// The modes were not requested.
-    #[error("the angular modes are not measured: observables.multipoles is absent")]
-    NoMultipoles,
     /// The modes cannot be measured.
     #[error(transparent)]
     Multipoles(#[from] MultipoleError),
@@ -87,6 +84,61 @@ pub struct DriveMode {
 }
 
 impl DriveSummary {
+    /// The summary of a drive in the plane. `prepared` is the periodic packing that was driven, `coupling` the Γ of the
+    /// inflation. None for an inflation, and for strains of the rim, whose exact non-affine displacement is zero.
+    ///
+    /// # Errors
+    /// [`DriveError`].
+    pub fn of(
+        inflated: &Inflated<2>,
+        prepared: &Packing<2>,
+        law: &dyn PairLaw,
+        coupling: Option<f64>,
+        settings: &MultipoleSettings,
+    ) -> Result<Option<Self>, DriveError> {
+        if matches!(inflated.drive, Drive::Inflation | Drive::Shear { .. } | Drive::Compression { .. }) {
+            return Ok(None);
+        }
+        if inflated.before.packing.get().domain().edges().is_some() {
+            return Err(DriveError::NoRim);
+        }
+        let elastic = ElasticModuli::of(prepared, law, Prestress::Included)?.relaxed;
+        let (bulk, shear) = (elastic.bulk(), elastic.shear().mean);
+        let poisson_ratio = (bulk - shear) / (bulk + shear);
+        let applied = Applied::of(inflated.before.packing.get(), &inflated.start, inflated.centre);
+        let moved = norm(applied.displacement) > 0.0;
+        let force = if moved { reaction(inflated, law)? } else { applied.force };
+        let along = applied.arm.unwrap_or(force);
+        let moment = applied.arm.map(|arm| -(force[0] * arm[0] + force[1] * arm[1]));
+        let annulus = Annulus::new(inflated.inner_radius, inflated.outer_radius)?;
+        // Γ/(A μ), A the area per disk, so that the force Γ u on a disk is that on its area.
+        let screening = coupling.map(|coupling| {
+            coupling * prepared.len() as f64 / (prepared.domain().volume().unwrap_or(f64::INFINITY) * shear)
+        });
+        let solutions: Vec<Box<dyn AngularSolution>> = match (moment, screening) {
+            (None, None) => vec![Box::new(PointForce::new(annulus, poisson_ratio, norm(force) / shear)?)],
+            (None, Some(screening)) => {
+                vec![Box::new(ScreenedSource::force(annulus, poisson_ratio, screening, norm(force) / shear)?)]
+            }
+            (Some(moment), None) => boxed(*ForceDipole::new(annulus, poisson_ratio, moment / shear)?.modes()),
+            (Some(moment), Some(screening)) => {
+                boxed(ScreenedSource::dipole(annulus, poisson_ratio, screening, moment / shear)?)
+            }
+        };
+        let angle = libm::atan2(along[1], along[0]);
+        let measured = Multipoles::of(&DisplacementField::of_inflation(inflated), settings)?;
+        let modes = solutions.iter().flat_map(|solution| modes(&measured, solution.as_ref(), angle, annulus)).collect();
+        Ok(Some(DriveSummary {
+            force: norm(force),
+            moment,
+            distance: moved.then(|| applied.displacement[0]),
+            angle,
+            shear_modulus: shear,
+            poisson_ratio,
+            modes,
+        }))
+    }
+
     /// U of the continuum at a distance between the rings, by linear interpolation; none outside \[length\].
     pub fn exact_radial(&self, mode: usize, radius: f64) -> Option<f64> {
         let rings: Vec<&DriveMode> = self.modes.iter().filter(|ring| ring.mode == mode).collect();
@@ -109,72 +161,6 @@ impl DriveSummary {
         });
         (exact > 0.0).then(|| (apart / exact).sqrt())
     }
-}
-
-/// The summary of a drive in the plane; none for an inflation and for strains of the rim, whose exact non-affine
-/// displacement is zero.
-///
-/// # Errors
-/// [`DriveError`].
-pub(super) fn of(
-    inflated: &Inflated<2>,
-    prepared: &Packing<2>,
-    (law, coupling): (&dyn PairLaw, Option<f64>),
-    settings: Option<MultipoleSettings>,
-) -> Option<Result<DriveSummary, DriveError>> {
-    match inflated.drive {
-        Drive::Inflation | Drive::Shear { .. } | Drive::Compression { .. } => None,
-        Drive::PointForce { .. } | Drive::ForceDipole { .. } | Drive::Displacement { .. } => {
-            Some(summary(inflated, prepared, (law, coupling), settings))
-        }
-    }
-}
-
-fn summary(
-    inflated: &Inflated<2>,
-    prepared: &Packing<2>,
-    (law, coupling): (&dyn PairLaw, Option<f64>),
-    settings: Option<MultipoleSettings>,
-) -> Result<DriveSummary, DriveError> {
-    let settings = settings.ok_or(DriveError::NoMultipoles)?;
-    if inflated.before.packing.get().domain().edges().is_some() {
-        return Err(DriveError::NoRim);
-    }
-    let elastic = ElasticModuli::of(prepared, law, Prestress::Included)?.relaxed;
-    let (bulk, shear) = (elastic.bulk(), elastic.shear().mean);
-    let poisson_ratio = (bulk - shear) / (bulk + shear);
-    let applied = Applied::of(inflated.before.packing.get(), &inflated.start, inflated.centre);
-    let moved = norm(applied.displacement) > 0.0;
-    let force = if moved { reaction(inflated, law)? } else { applied.force };
-    let along = applied.arm.unwrap_or(force);
-    let moment = applied.arm.map(|arm| -(force[0] * arm[0] + force[1] * arm[1]));
-    let annulus = Annulus::new(inflated.inner_radius, inflated.outer_radius)?;
-    // Γ/(A μ), A the area per disk, so that the force Γ u on a disk is that on its area.
-    let screening = coupling.map(|coupling| {
-        coupling * prepared.len() as f64 / (prepared.domain().volume().unwrap_or(f64::INFINITY) * shear)
-    });
-    let solutions: Vec<Box<dyn AngularSolution>> = match (moment, screening) {
-        (None, None) => vec![Box::new(PointForce::new(annulus, poisson_ratio, norm(force) / shear)?)],
-        (None, Some(screening)) => {
-            vec![Box::new(ScreenedSource::force(annulus, poisson_ratio, screening, norm(force) / shear)?)]
-        }
-        (Some(moment), None) => boxed(*ForceDipole::new(annulus, poisson_ratio, moment / shear)?.modes()),
-        (Some(moment), Some(screening)) => {
-            boxed(ScreenedSource::dipole(annulus, poisson_ratio, screening, moment / shear)?)
-        }
-    };
-    let angle = libm::atan2(along[1], along[0]);
-    let measured = Multipoles::of(&DisplacementField::of_inflation(inflated), &settings)?;
-    let modes = solutions.iter().flat_map(|solution| modes(&measured, solution.as_ref(), angle, annulus)).collect();
-    Ok(DriveSummary {
-        force: norm(force),
-        moment,
-        distance: moved.then(|| applied.displacement[0]),
-        angle,
-        shear_modulus: shear,
-        poisson_ratio,
-        modes,
-    })
 }
 
 fn boxed(solutions: [impl AngularSolution + 'static; 2]) -> Vec<Box<dyn AngularSolution>> {

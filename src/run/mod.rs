@@ -233,8 +233,8 @@ fn drive_of<const D: usize>(
     use std::any::Any;
     let inflated = (inflated as &dyn Any).downcast_ref::<Inflated<2>>()?;
     let prepared = (prepared as &dyn Any).downcast_ref::<Packing<2>>()?;
-    let law = (law, scene.inflation.on_site_coupling);
-    Some(drive_summary::of(inflated, prepared, law, scene.observables.multipoles)?.into())
+    let (coupling, modes) = (scene.inflation.on_site_coupling, scene.observables.multipoles?);
+    DriveSummary::of(inflated, prepared, law, coupling, &modes).transpose().map(Measurement::from)
 }
 
 /// An inflation as the input of the observables.

@@ -391,7 +391,7 @@ fn examples_are_short_and_named_by_the_crate() {
         names.push(path.file_stem().expect("a name").to_string_lossy().into_owned());
     }
     let book = std::fs::read_to_string(root.join("book/src/library.md")).expect("the chapter");
-    assert_eq!(names.len(), 8);
+    assert_eq!(names.len(), 13);
     for name in names {
         assert!(book.contains(&format!("`{name}`")), "the chapter As a library names {name}");
     }
