@@ -1,14 +1,18 @@
-"""Takes pictures of the book out of a page: python3 book/pictures.py run|study report.html FOLDER
+"""Makes pictures of the book: python3 book/pictures.py run|study report.html FOLDER, or hand|exact SOURCE FOLDER
 
 run     of the built-in scene: FOLDER/three_phases.svg, map, radial profile and angular profiles of three samples side by side, and
         FOLDER/first_run/NAME.svg, the other pictures of the sample in the middle
 study   of `order-parameters`, scale medium: FOLDER/transition/NAME.svg
+hand    of the runs of the chapter *One packing by hand*, SOURCE/NAME/report.html: FOLDER/by_hand/NAME_map.svg and NAME_profile.svg
+exact   from the tables of `jamscope exact`, SOURCE the program: FOLDER/exact_profiles.svg, r d_r of four wavenumbers
 
 Needs Python and nothing else. A file is written under another name and then renamed.
 """
 
+import csv
 import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -19,7 +23,6 @@ OF_STUDY = {
     "G* against p̂": "order_parameter",
     "θ* against p̂": "correlation_angle",
     "S(f), 5548": "spectrum_5548",
-    "G(θ), 5548": "correlation_5548",
     "Mean radial profiles, 22184 disks, d_0 = 0.1": "profiles_22184",
     "κ of the best screened solution against p̂": "wavenumber",
 }
@@ -91,10 +94,46 @@ def of_study(report, folder):
         write(folder / "transition" / f"{file}.svg", alone(found[name]))
 
 
+def of_hand(runs, folder):
+    for name in ("fire", "study", "dense"):
+        _, figures = next(sections((runs / name / "report.html").read_text(encoding="utf-8")))
+        for svg, kind in zip(figures, ("map", "profile")):
+            write(folder / "by_hand" / f"{name}_{kind}.svg", alone(svg))
+
+
+def of_exact(jamscope, folder):
+    """r d_r against r in a disk of R = 42, from elastic to between the first two poles."""
+    def table(*arguments):
+        text = subprocess.run([jamscope, "exact", *arguments], check=True, capture_output=True, text=True).stdout
+        return [list(map(float, row)) for row in list(csv.reader(text.splitlines()))[2:]]
+
+    outer, first = 42.0, table("poles", "--outer", "42")[0][1]
+    left, top, width, height, largest = 64.0, 16.0, 520.0, 300.0, 0.18
+    across = lambda r: left + width * r / outer
+    down = lambda y: top + height * (0.5 - 0.5 * y / largest)
+    out = ['<svg xmlns="http://www.w3.org/2000/svg" width="720" height="364" viewBox="0 0 720 364" font-family="sans-serif" font-size="13">',
+           "<title>r d_r of the elastic and three screened solutions</title>", '<rect width="720" height="364" fill="white"/>',
+           f'<rect x="{left}" y="{top}" width="{width}" height="{height}" fill="none" stroke="black"/>',
+           f'<line x1="{left}" x2="{left + width}" y1="{down(0)}" y2="{down(0)}" stroke="gray"/>']
+    for r in (0, 10, 20, 30, 40):
+        out.append(f'<text x="{across(r):.1f}" y="{top + height + 18}" text-anchor="middle">{r}</text>')
+    for y in (-0.15, -0.1, -0.05, 0, 0.05, 0.1, 0.15):
+        out.append(f'<text x="{left - 6}" y="{down(y) + 4:.1f}" text-anchor="end">{str(y).replace("-", "−")}</text>')
+    out.append(f'<text x="{left + width / 2}" y="{top + height + 38}" text-anchor="middle">r [diameters of a small disk]</text>')
+    out.append(f'<text x="14" y="{top + height / 2}" transform="rotate(-90 14 {top + height / 2})" text-anchor="middle">r d_r</text>')
+    for k, (share, colour) in enumerate([(0.0, "black"), (0.6, "#0072b2"), (1.3, "#d55e00"), (1.5, "#009e73")]):
+        rows = table("profile", "--outer", "42", "--wavenumber", repr(share * first), "--count", "160")
+        points = " ".join(f"{across(r):.1f},{down(r * d):.1f}" for r, d, *_ in rows)
+        out.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2"/>')
+        out.append(f'<text x="{left + width + 12}" y="{top + 20 + 22 * k}" fill="{colour}">{f"κ = {share} κ₁" if share else "elastic, κ = 0"}</text>')
+    write(folder / "exact_profiles.svg", "\n".join([*out, "</svg>", ""]))
+
+
 def main():
-    if len(sys.argv) != 4 or sys.argv[1] not in ("run", "study"):
+    makers = {"run": of_run, "study": of_study, "hand": of_hand, "exact": of_exact}
+    if len(sys.argv) != 4 or sys.argv[1] not in makers:
         sys.exit(__doc__)
-    {"run": of_run, "study": of_study}[sys.argv[1]](Path(sys.argv[2]), Path(sys.argv[3]))
+    makers[sys.argv[1]](Path(sys.argv[2]), Path(sys.argv[3]))
 
 
 if __name__ == "__main__":

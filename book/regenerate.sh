@@ -18,6 +18,8 @@ jamscope=target/release/jamscope
 list() {
     cat <<'LIST'
 first_run            quick  jamscope --out DIR (the built-in scene)
+by_hand              quick  the commands of the chapter One packing by hand
+exact_profiles       quick  jamscope exact profile --outer 42 --wavenumber KAPPA
 angular_5548         long   angular_study --out DIR --disks 5548 --samples 100 --reduced 1e6,1e7,3e7,1e8,3e8,1e9,3e9
 angular_22184        long   angular_study --out DIR --disks 22184 --samples 10 --reduced 1e7,1e8,1e9
 angular_88776        long   angular_study --out DIR --disks 88776 --samples 24 --reduced 1e8
@@ -69,6 +71,26 @@ first_run() {
     "$jamscope" run --out "$work/first_run"
     python3 book/pictures.py run "$work/first_run/report.html" "$images"
     record "three_phases.svg, first_run/*.svg" "jamscope run && python3 book/pictures.py run jamscope-report/report.html $images" "3, 326, 11"
+}
+
+by_hand() {
+    local runs="$work/by_hand" protocol
+    mkdir -p "$runs"
+    printf 'disk_count = 5548\n[[sample]]\nname = "one"\nseed = 1\nsource = { pressure = 10.0 }\n' > "$runs/one.toml"
+    "$jamscope" run "$runs/one.toml" --out "$runs/one"
+    for protocol in fire study; do
+        echo "protocol = \"$protocol\"" > "$runs/$protocol.toml"
+        "$jamscope" run "$runs/$protocol.toml" --packing "$runs/one/one.packing.xyz" --seed 1 --out "$runs/$protocol"
+    done
+    "$jamscope" compress "$runs/one/one.packing.xyz" --pressure 1000 --out "$runs/dense.xyz"
+    "$jamscope" run --packing "$runs/dense.xyz" --seed 1 --out "$runs/dense"
+    python3 book/pictures.py hand "$runs" "$images"
+    record "by_hand/*.svg" "book/regenerate.sh by_hand" "1"
+}
+
+exact_profiles() {
+    python3 book/pictures.py exact "$jamscope" "$images"
+    record "exact_profiles.svg" "python3 book/pictures.py exact target/release/jamscope $images" "none"
 }
 
 angular() {

@@ -174,6 +174,12 @@ mod book {
     mod first_run {}
     #[doc = include_str!("../book/src/experiment.md")]
     mod experiment {}
+    #[doc = include_str!("../book/src/by_hand.md")]
+    mod by_hand {}
+    #[doc = include_str!("../book/src/screening.md")]
+    mod screening {}
+    #[doc = include_str!("../book/src/measuring.md")]
+    mod measuring {}
     #[doc = include_str!("../book/src/units.md")]
     mod units {}
     #[doc = include_str!("../book/src/packing.md")]
@@ -296,6 +302,8 @@ mod book {
     #[cfg(feature = "fit")]
     #[doc = include_str!("../book/src/transition.md")]
     mod transition {}
+    #[doc = include_str!("../book/src/spheres.md")]
+    mod spheres {}
     #[doc = include_str!("../book/src/study.md")]
     mod study {}
     #[doc = include_str!("../book/src/cluster.md")]
@@ -315,8 +323,6 @@ mod book {
     mod performance {}
     #[doc = include_str!("../book/src/processor.md")]
     mod processor {}
-    #[doc = include_str!("../book/src/figures.md")]
-    mod figures {}
     #[doc = include_str!("../book/src/glossary.md")]
     mod glossary {}
     #[doc = include_str!("../book/src/references.md")]

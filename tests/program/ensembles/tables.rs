@@ -1,4 +1,4 @@
-//! The tables of the chapter *Which dynamics make the plastic phase*, from the records in `fixtures/ensembles`.
+//! The tables of the ensembles in the book, from the records in `fixtures/ensembles`.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -22,7 +22,7 @@ pub struct Ensemble {
 type Quantity<'a> = &'a dyn Fn(&Series, &CellSamples) -> String;
 
 /// Where the tables stand.
-pub const CHAPTERS: [&str; 3] = ["ensembles.md", "plastic_phase.md", "response.md"];
+pub const CHAPTERS: [&str; 4] = ["ensembles.md", "plastic_phase.md", "response.md", "transition.md"];
 
 /// First zero of J_1: κ_1 R.
 const FIRST_ZERO: f64 = 3.831_705_970_207_512;
