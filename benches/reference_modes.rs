@@ -1,4 +1,4 @@
-//! Angular modes: setting one up, and one radius, elastic and screened.
+//! Angular modes, sources at the centre and waves in a strip: setting one up, and one radius, elastic and screened.
 //!
 //! Times are per call. `cargo bench --features measurements --bench reference_modes`.
 
@@ -7,8 +7,12 @@ use std::hint::black_box;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use jamscope::reference::Annulus;
 use jamscope::reference::angular_modes::elastic::ElasticMode;
+use jamscope::reference::angular_modes::force_dipole::ForceDipole;
+use jamscope::reference::angular_modes::point_force::PointForce;
 use jamscope::reference::angular_modes::screened::{ScreenedMode, Screening};
+use jamscope::reference::angular_modes::screened_source::ScreenedSource;
 use jamscope::reference::angular_modes::{AngularSolution, ModeAmplitudes};
+use jamscope::reference::strip_modes::{StripAmplitudes, StripMode};
 
 const POISSON_RATIO: f64 = 0.3;
 
@@ -48,5 +52,27 @@ fn screened(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, elastic, screened);
+/// Sources at the centre, and waves along a strip.
+fn sources_and_strips(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("angular_modes/sources");
+    let (force, screening) = (0.1, (5.0f64 / 170.0).powi(2));
+    let kelvin = PointForce::new(annulus(), POISSON_RATIO, force).expect("valid");
+    group.bench_function("force", |bencher| bencher.iter(|| kelvin.at(black_box(40.0))));
+    let dipole = ForceDipole::new(annulus(), POISSON_RATIO, force).expect("valid");
+    group.bench_function("dipole", |bencher| bencher.iter(|| dipole.displacement(black_box(40.0), 0.3)));
+    let set_up = || ScreenedSource::force(annulus(), POISSON_RATIO, screening, force).expect("no pole");
+    group.bench_function("screened_force/set_up", |bencher| bencher.iter(set_up));
+    let screened = set_up();
+    group.bench_function("screened_force", |bencher| bencher.iter(|| screened.at(black_box(40.0))));
+    let wave = StripAmplitudes { normal: 0.1, tangential: 0.0 };
+    for (name, screening) in [("strip", 0.0), ("screened_strip", screening)] {
+        let set_up = || StripMode::new(annulus(), POISSON_RATIO, screening, 0.1, wave).expect("no pole");
+        group.bench_function(BenchmarkId::new(name, "set_up"), |bencher| bencher.iter(set_up));
+        let mode = set_up();
+        group.bench_function(BenchmarkId::new(name, "place"), |bencher| bencher.iter(|| mode.at(black_box(40.0))));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, elastic, screened, sources_and_strips);
 criterion_main!(benches);

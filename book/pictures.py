@@ -1,9 +1,10 @@
-"""Makes pictures of the book: python3 book/pictures.py run|study report.html FOLDER, or hand|exact SOURCE FOLDER
+"""Makes pictures of the book: python3 book/pictures.py run|study report.html FOLDER, or hand|drives|exact SOURCE FOLDER
 
 run     of the built-in scene: FOLDER/three_phases.svg, map, radial profile and angular profiles of three samples side by side, and
         FOLDER/first_run/NAME.svg, the other pictures of the sample in the middle
 study   of `order-parameters`, scale medium: FOLDER/transition/NAME.svg
 hand    of the runs of the chapter *One packing by hand*, SOURCE/NAME/report.html: FOLDER/by_hand/NAME_map.svg and NAME_profile.svg
+drives  of the runs of the chapter *Forces, displacements and strains*: FOLDER/drives/NAME_map.svg and push_modes.svg
 exact   from the tables of `jamscope exact`, SOURCE the program: FOLDER/exact_profiles.svg, r d_r of four wavenumbers
 
 Needs Python and nothing else. A file is written under another name and then renamed.
@@ -101,6 +102,15 @@ def of_hand(runs, folder):
             write(folder / "by_hand" / f"{name}_{kind}.svg", alone(svg))
 
 
+def of_drives(runs, folder):
+    for name in ("push", "shear"):
+        _, figures = next(sections((runs / name / "report.html").read_text(encoding="utf-8")))
+        write(folder / "drives" / f"{name}_map.svg", alone(figures[0]))
+        for svg in figures:
+            if "dashed the continuum" in svg:
+                write(folder / "drives" / f"{name}_modes.svg", alone(svg))
+
+
 def of_exact(jamscope, folder):
     """r d_r against r in a disk of R = 42, from elastic to between the first two poles."""
     def table(*arguments):
@@ -130,7 +140,7 @@ def of_exact(jamscope, folder):
 
 
 def main():
-    makers = {"run": of_run, "study": of_study, "hand": of_hand, "exact": of_exact}
+    makers = {"run": of_run, "study": of_study, "hand": of_hand, "drives": of_drives, "exact": of_exact}
     if len(sys.argv) != 4 or sys.argv[1] not in makers:
         sys.exit(__doc__)
     makers[sys.argv[1]](Path(sys.argv[2]), Path(sys.argv[3]))

@@ -19,6 +19,7 @@ list() {
     cat <<'LIST'
 first_run            quick  jamscope --out DIR (the built-in scene)
 by_hand              quick  the commands of the chapter One packing by hand
+drives               quick  jamscope run of two scenes of the chapter Forces, displacements and strains
 exact_profiles       quick  jamscope exact profile --outer 42 --wavenumber KAPPA
 angular_5548         long   angular_study --out DIR --disks 5548 --samples 100 --reduced 1e6,1e7,3e7,1e8,3e8,1e9,3e9
 angular_22184        long   angular_study --out DIR --disks 22184 --samples 10 --reduced 1e7,1e8,1e9
@@ -86,6 +87,16 @@ by_hand() {
     "$jamscope" run --packing "$runs/dense.xyz" --seed 1 --out "$runs/dense"
     python3 book/pictures.py hand "$runs" "$images"
     record "by_hand/*.svg" "book/regenerate.sh by_hand" "1"
+}
+
+drives() {
+    local runs="$work/drives" name
+    mkdir -p "$runs" "$images/drives"
+    printf 'disk_count = 1387\nprotocol = "fire"\n[inflation]\ndrive = { point_force = { force_over_mean = 0.1 } }\n[[sample]]\nname = "push"\nsource = { pressure = 1000.0 }\n' > "$runs/push.toml"
+    printf 'disk_count = 1387\nprotocol = "fire"\n[inflation]\ndrive = { shear = { strain = 0.002 } }\n[[sample]]\nname = "shear"\nsource = { pressure = 1000.0 }\n' > "$runs/shear.toml"
+    for name in push shear; do "$jamscope" run "$runs/$name.toml" --out "$runs/$name"; done
+    python3 book/pictures.py drives "$runs" "$images"
+    record "drives/*.svg" "book/regenerate.sh drives" "1"
 }
 
 exact_profiles() {

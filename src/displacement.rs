@@ -21,7 +21,7 @@ use crate::inflation::{Inflated, Rest};
 use crate::linear::LinearResponse;
 use crate::packing::{Packing, displacement};
 use crate::relax::Criterion;
-use crate::vector::{Vector, difference, norm, scaled};
+use crate::vector::{Vector, difference, norm};
 
 pub use crate::inflation::region::Shape;
 
@@ -106,7 +106,7 @@ impl<const D: usize> DisplacementField<D> {
     ) -> Self {
         assert_eq!(packing.len(), response.displacements.len(), "a response belongs to the packing it was made from");
         let &[centre] = response.growing.as_slice() else { panic!("a field has one disk that grows in its middle") };
-        let displacement = |disk: usize| scaled(increase, response.displacements[disk]);
+        let displacement = |disk: usize| crate::vector::scaled(increase, response.displacements[disk]);
         let (inner_radius, shape) = (packing.radii()[centre], Shape::Round);
         let strain = DiagonalStrain::default();
         let region = Region { centre, grown: &[centre], inner_radius, outer_radius, shape, strain };
@@ -185,7 +185,7 @@ fn moved<const D: usize>(
         .map(|disk| {
             let position = before.separation(disk, region.centre);
             let displacement = difference(displacement(disk), region.strain.of(position));
-            let distance = norm(region.shape.from_middle(position));
+            let distance = norm(region.shape.offset(position));
             let radial = region.shape.radial_part(position, displacement);
             Moved { disk, position, distance, displacement, radial, counted: counted[disk] }
         })

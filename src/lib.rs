@@ -230,6 +230,9 @@ mod book {
     mod relax_stopping {}
     #[doc = include_str!("../book/src/preparation.md")]
     mod preparation {}
+    #[cfg(feature = "linear")]
+    #[doc = include_str!("../book/src/drives.md")]
+    mod drives {}
     #[doc = include_str!("../book/src/inflation.md")]
     mod inflation {}
     #[cfg(all(feature = "linear", feature = "fit"))]

@@ -23,12 +23,12 @@ pub enum Shape {
 impl Shape {
     /// The part of a vector at this position along the radius, or in a strip across it: d·r̂.
     pub fn radial_part<const D: usize>(self, position: Vector<D>, vector: Vector<D>) -> f64 {
-        let from = self.from_middle(position);
+        let from = self.offset(position);
         dot(vector, scaled(1.0 / norm(from), from))
     }
 
     /// The vector to a position from the centre, or in a strip from the line \[length\].
-    pub(crate) fn from_middle<const D: usize>(self, position: Vector<D>) -> Vector<D> {
+    pub(crate) fn offset<const D: usize>(self, position: Vector<D>) -> Vector<D> {
         match self {
             Shape::Round => position,
             Shape::Strip { .. } => std::array::from_fn(|d| if d == ACROSS { position[d] } else { 0.0 }),

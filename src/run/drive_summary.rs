@@ -3,6 +3,8 @@
 //! The medium has the bulk and shear modulus of the prepared packing, B and μ: ν = (B − μ)/(B + μ). With sites it is
 //! screened. Nothing is fitted. The solution is that of a source at a point, so it holds from some diameters on.
 
+use std::any::Any;
+
 use serde::Serialize;
 
 use crate::displacement::DisplacementField;
@@ -19,6 +21,8 @@ use crate::reference::angular_modes::point_force::PointForce;
 use crate::reference::angular_modes::screened_source::ScreenedSource;
 use crate::reference::angular_modes::{AngularModeError, AngularSolution, ModeAmplitudes};
 use crate::reference::{Annulus, ReferenceError};
+use crate::response::Measurement;
+use crate::scene::Scene;
 use crate::vector::{Vector, difference, norm};
 
 /// Why a drive has no exact solution here.
@@ -161,6 +165,19 @@ impl DriveSummary {
         });
         (exact > 0.0).then(|| (apart / exact).sqrt())
     }
+}
+
+/// Another drive than an inflation beside its exact solution, in the plane.
+pub(super) fn of<const D: usize>(
+    scene: &Scene,
+    inflated: &Inflated<D>,
+    prepared: &Packing<D>,
+    law: &dyn PairLaw,
+) -> Option<Measurement<DriveSummary>> {
+    let inflated = (inflated as &dyn Any).downcast_ref::<Inflated<2>>()?;
+    let prepared = (prepared as &dyn Any).downcast_ref::<Packing<2>>()?;
+    let (coupling, modes) = (scene.inflation.on_site_coupling, scene.observables.multipoles?);
+    DriveSummary::of(inflated, prepared, law, coupling, &modes).transpose().map(Measurement::from)
 }
 
 fn boxed(solutions: [impl AngularSolution + 'static; 2]) -> Vec<Box<dyn AngularSolution>> {

@@ -176,7 +176,7 @@ pub(crate) fn measure<const D: usize>(
         compared.map(Box::new).into()
     });
     #[cfg(feature = "linear")]
-    let drive = drive_of(scene, &inflated, &prepared, law);
+    let drive = drive_summary::of(scene, &inflated, &prepared, law);
     let phase_frequency = phase_frequency(scene, sample, &packing, &response);
     Ok(SampleResult {
         packing,
@@ -220,21 +220,6 @@ fn phase_frequency(
         reduced_pressure: packing.pressure * reduction(scene),
     };
     Calibration::built_in().frequency(&conditions, response.phase.outcome)
-}
-
-/// Another drive than an inflation beside its exact solution, in the plane.
-#[cfg(feature = "linear")]
-fn drive_of<const D: usize>(
-    scene: &Scene,
-    inflated: &Inflated<D>,
-    prepared: &Packing<D>,
-    law: &dyn PairLaw,
-) -> Option<Measurement<DriveSummary>> {
-    use std::any::Any;
-    let inflated = (inflated as &dyn Any).downcast_ref::<Inflated<2>>()?;
-    let prepared = (prepared as &dyn Any).downcast_ref::<Packing<2>>()?;
-    let (coupling, modes) = (scene.inflation.on_site_coupling, scene.observables.multipoles?);
-    DriveSummary::of(inflated, prepared, law, coupling, &modes).transpose().map(Measurement::from)
 }
 
 /// An inflation as the input of the observables.

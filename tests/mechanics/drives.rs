@@ -14,6 +14,8 @@ use jamscope::observe::AngularProfile;
 use jamscope::packing::{Mixture, Packing};
 use jamscope::plastic::PlasticPart;
 use jamscope::preparation::{Preparation, Target, prepare_with, random_points_in};
+use jamscope::reference::Annulus;
+use jamscope::reference::strip_modes::{StripAmplitudes, StripMode};
 use jamscope::relax::{Fire, ForceLimit, Relaxer};
 use jamscope::vector::{difference, larger, norm};
 
@@ -358,4 +360,47 @@ fn a_strip_is_of_the_plane() {
     let spheres = prepare_with::<3>(&preparation, &hertzian(), &fire(1e-8), &mut ()).expect("a packing");
     let run = inflate_with(&strip_of(0.3), spheres.packing.get(), &hertzian(), &fire(1e-8), 1, &mut ());
     assert!(matches!(run, Err(InflationError::StripNotInPlane)));
+}
+
+/// A held row of a lattice displaced by cos qx across the strip: the rows above tend to the wave in a strip as (qb)². The last
+/// row that moves ends one row before the wall, where the displacement vanishes.
+#[test]
+fn a_modulated_row_of_a_lattice_tends_to_the_wave_in_a_strip() {
+    let (lattice, law) = (Lattice::triangular(0.5, 0.05).expect("valid"), hertzian());
+    let (height, moduli) = (0.5 * 3f64.sqrt() * lattice.spacing(), lattice.moduli(&law).expect("isotropic"));
+    let poisson_ratio = 1.0 - 2.0 * moduli.shear / moduli.longitudinal;
+    for reduced in [0.0, 1.0] {
+        // One wave along the strip, qH about 2.7; all lengths double from one lattice to the next.
+        let deviation = |columns: usize| {
+            let rows = columns / 2;
+            let periodic = lattice.periodic([columns, 2 * rows + 10]).expect("a lattice");
+            let centre = columns * (rows + 5) + columns / 2;
+            let strip = Strip::cut(&periodic, centre, (rows as f64 - 0.5) * height, true).expect("a strip");
+            let (length, wall) = (strip.length(), rows as f64 * height);
+            let q = 2.0 * PI / length;
+            let along = |disk: usize| periodic.separation(disk, centre);
+            let moved: Vec<_> = strip.row.iter().map(|&disk| (disk, [0.0, (q * along(disk)[0]).cos()])).collect();
+            let coupling = lattice.coupling(&law, (reduced / wall).powi(2)).expect("isotropic");
+            let law = OnSite { law, coupling };
+            let law: &dyn PairLaw = if reduced > 0.0 { &law } else { &law.law };
+            let response = LinearResponse::of_displacements(&strip.packing, &moved, law, Prestress::Included);
+            let response = response.expect("a response");
+            let interval = Annulus::new(1e-12, wall).expect("in order");
+            let screening = coupling / (lattice.cell_area() * moduli.shear);
+            let wave = StripAmplitudes { normal: 1.0, tangential: 0.0 };
+            let mode = StripMode::new(interval, poisson_ratio, screening, q, wave).expect("no pole");
+            let above =
+                (0..periodic.len()).filter(|&disk| !strip.packing.held()[disk] && along(disk)[1] > 0.5 * height);
+            let off = above.map(|disk| {
+                let [x, y] = along(disk);
+                norm(difference(response.displacements[disk], mode.displacement(x, y)))
+            });
+            off.fold(0.0, larger)
+        };
+        let [coarse, middle, fine] = [16, 32, 64].map(deviation);
+        let order = (coarse / fine).log2() / 2.0;
+        println!("κH = {reduced}: {coarse:.1e} {middle:.1e} {fine:.1e}, order {order:.2}");
+        // The dispersion of a triangular lattice deviates by (qb)²/24 or less, over a distance of H.
+        assert!(order > 1.8 && fine < (2.0 * PI / 64.0).powi(2), "{coarse:e} {middle:e} {fine:e}");
+    }
 }

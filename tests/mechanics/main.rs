@@ -6,6 +6,7 @@ mod claims;
 mod scenes;
 mod twins;
 
+#[cfg(feature = "linear")]
 mod applied;
 mod certificate;
 mod contact;

@@ -257,6 +257,7 @@ fn every_column_of_a_table_is_in_the_book_and_the_reverse() {
     let sample = "disk_count = 600\n[[sample]]\nname = \"dense\"\nseed = 1\nsource = { pressure = 3000.0 }\n";
     write("all.toml", sample);
     write("protocol.toml", &format!("{sample}[observables.protocol]\n"));
+    write("drive.toml", &format!("{sample}[inflation]\ndrive = {{ point_force = {{ force_over_mean = 0.1 }} }}\n"));
     std::fs::create_dir(folder.path().join("shear")).expect("a folder");
     write("small.toml", &sample.replace("600", "100"));
     let study = "targets = [{ pressure = 500.0 }]\nincreases = [0.1]\nseeds = { first = 1, count = 3 }\n";
@@ -264,6 +265,7 @@ fn every_column_of_a_table_is_in_the_book_and_the_reverse() {
     for arguments in [
         "run all.toml --out all",
         "run protocol.toml --out protocol",
+        "run drive.toml --out drive",
         "precision small.toml --out precision",
         "study study.toml --out study",
         "merge study",
@@ -273,7 +275,7 @@ fn every_column_of_a_table_is_in_the_book_and_the_reverse() {
     }
     let mut found = BTreeSet::new();
     for (place, has_units) in
-        [("all", true), ("protocol", true), ("precision", true), ("study", false), ("shear", true)]
+        [("all", true), ("protocol", true), ("drive", true), ("precision", true), ("study", false), ("shear", true)]
     {
         for entry in std::fs::read_dir(folder.path().join(place)).expect("a folder") {
             let path = entry.expect("an entry").path();

@@ -8,6 +8,7 @@ mod columns;
 #[cfg(feature = "cli")]
 mod command_line;
 #[cfg(all(feature = "fit", feature = "linear"))]
+mod drives;
 mod ensembles;
 #[cfg(feature = "cli")]
 mod exact_command;

@@ -70,7 +70,10 @@ pub fn multipole_figure(
     let farthest = rings.last().map_or(f64::NAN, |ring| ring.0);
     let values =
         modes.iter().flat_map(|&mode| points(mode).flat_map(|(_, value, error)| [value - error, value + error]));
-    let y_range = with_margin(values);
+    let at_rings = |mode: usize| {
+        rings.iter().filter_map(move |(radius, _)| Some(radius * curve.and_then(|curve| curve(mode, *radius))?))
+    };
+    let y_range = with_margin(values.chain(modes.iter().flat_map(|&mode| at_rings(mode))));
     let part = match component {
         Component::Radial => "radial",
         Component::Transverse => "transverse",

@@ -11,7 +11,7 @@
 use std::collections::BTreeSet;
 
 use jamscope::displacement::{DisplacementField, Shape};
-use jamscope::inflation::{Inflated, Rest};
+use jamscope::inflation::{Drive, Inflated, Rest};
 use jamscope::law::{Hertzian, Hookean, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::observe::angular::{
@@ -53,7 +53,10 @@ fn rest(stored: &Stored, packing: Packing<2>, law: &dyn PairLaw, limit: ForceLim
 }
 
 fn inflated(stored: &Stored, before: Rest<2>, after: Rest<2>) -> Inflated<2> {
+    let start = before.packing.get().clone().with_radius(stored.mobile_count, INFLATED_RADIUS).expect("positive");
     Inflated {
+        drive: Drive::Inflation,
+        start,
         centre: stored.mobile_count,
         grown: vec![stored.mobile_count],
         shape: Shape::Round,

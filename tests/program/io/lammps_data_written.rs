@@ -60,7 +60,7 @@ fn what_the_format_has_no_place_for_is_refused_and_nothing_is_written() {
     refused(&Packing::new(Domain::Open, vec![[1.0, 1.0]], vec![0.5]).expect("valid"), "open plane");
     refused(&boxed.clone().with_held(vec![true]).expect("a flag a disk"), "held disks");
     refused(&boxed.clone().with_sites_here(), "sites");
-    refused(&boxed.clone().with_loads(vec![[1.0, 0.0]; 3]).expect("finite"), "loads");
+    refused(&boxed.clone().with_loads(vec![[1.0, 0.0]; boxed.len()]).expect("finite"), "loads");
     refused(&Packing::new(Domain::cube(9.0), vec![[1.0, 1.0]], vec![1e-120]).expect("valid"), "radius");
     let far = Domain::rectangular([1e300, 0.0], [1.0, 1.0]);
     refused(&Packing::new(far, vec![[1e300, 0.0]], vec![0.1]).expect("valid"), "box");
