@@ -7,8 +7,9 @@ mod any_field;
 mod columns;
 #[cfg(feature = "cli")]
 mod command_line;
-#[cfg(all(feature = "fit", feature = "linear"))]
+#[cfg(feature = "cli")]
 mod drives;
+#[cfg(all(feature = "fit", feature = "linear"))]
 mod ensembles;
 #[cfg(feature = "cli")]
 mod exact_command;
