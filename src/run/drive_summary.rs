@@ -186,16 +186,7 @@ fn boxed(solutions: [impl AngularSolution + 'static; 2]) -> Vec<Box<dyn AngularS
 
 /// What holds a displaced disk, more than before: minus the change of the contact forces on it \[force\].
 fn reaction(inflated: &Inflated<2>, law: &dyn PairLaw) -> Result<Vector<2>, PackingError> {
-    let on_centre = |packing: &Packing<2>| -> Result<Vector<2>, PackingError> {
-        let mut total = [0.0; 2];
-        for contact in ContactNetwork::new(packing, law)?.contacts {
-            let ends = [contact.first, contact.second].map(|disk| disk as usize == inflated.centre);
-            let sign = f64::from(u8::from(ends[0])) - f64::from(u8::from(ends[1]));
-            let distance = norm(contact.separation);
-            (0..2).for_each(|d| total[d] += sign * contact.force * contact.separation[d] / distance);
-        }
-        Ok(total)
-    };
+    let on_centre = |packing: &Packing<2>| ContactNetwork::new(packing, law).map(|it| it.forces()[inflated.centre]);
     Ok(difference(on_centre(inflated.before.packing.get())?, on_centre(inflated.after.packing.get())?))
 }
 

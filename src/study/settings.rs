@@ -142,6 +142,11 @@ pub enum StudyError {
     /// The scene of the study contains samples.
     #[error("scene.sample: must be absent in a study, whose samples come from its lists")]
     SamplesNamed,
+    /// The statistics of a study are those of inflations.
+    #[error(
+        "scene.inflation.drive: a study inflates, and compares with the published transition of inflations; several packings under another drive are the samples of one scene"
+    )]
+    OfInflations,
     /// A list is empty.
     #[error("{list}: must not be empty")]
     Empty {
@@ -207,6 +212,9 @@ impl Study {
     pub fn check(&self) -> Result<(), StudyError> {
         if !self.scene.sample.is_empty() {
             return Err(StudyError::SamplesNamed);
+        }
+        if !self.scene.inflation.drive.is_inflation() {
+            return Err(StudyError::OfInflations);
         }
         if let Some(value) = self.time_limit.filter(|value| value.is_nan() || *value <= 0.0) {
             return Err(StudyError::NotPositive { field: "time_limit", value });

@@ -2,11 +2,14 @@
 
 use jamscope::displacement::DisplacementField;
 use jamscope::forces::assembly::Assembly;
-use jamscope::inflation::{Applied, Boundary, Circle, Drive, Inflated, Inflation, InflationError, inflate_with};
+use jamscope::inflation::{
+    Applied, Boundary, Centre, Circle, Drive, Inflated, Inflation, InflationError, inflate_with,
+};
 use jamscope::lattice::Lattice;
 use jamscope::law::{Hookean, OnSite, PairLaw};
 use jamscope::linear::{LinearResponse, Prestress};
 use jamscope::network::ContactNetwork;
+use jamscope::observe::multipoles::MultipoleSettings;
 use jamscope::packing::{Packing, PackingError};
 use jamscope::plastic::{PlasticPart, linear_response};
 use jamscope::preparation::{Preparation, Target, prepare_with};
@@ -16,6 +19,7 @@ use jamscope::reference::angular_modes::force_dipole::ForceDipole;
 use jamscope::reference::angular_modes::point_force::PointForce;
 use jamscope::reference::angular_modes::screened_source::ScreenedSource;
 use jamscope::relax::{DampedDynamics, Fire, ForceLimit, Newton, Relaxer};
+use jamscope::run::DriveSummary;
 use jamscope::vector::{difference, dot, larger, norm, scaled, sum};
 
 use crate::scenes::laws::hertzian;
@@ -380,4 +384,33 @@ fn lattices_tend_to_the_exact_solutions_of_their_drives() {
         // Corrections of the lattice are (b/r)² with r ≥ 0.3 R, and so are those of the rim.
         assert!(order > 1.8 && large < (spacing / (0.3 * 48.0)).powi(2), "{name}: {small:e} {middle:e} {large:e}");
     }
+}
+
+/// The whole chain on a lattice, moduli included: modes of the relaxed response against those of the continuum. The rim is the
+/// nominal one, off by up to a spacing b: b/R of ln(R/r), which is 0.7 at R/2. The dipole acts half a spacing from the origin.
+#[test]
+fn the_summary_of_a_drive_in_a_lattice_is_its_continuum() {
+    let (lattice, law) = (Lattice::triangular(0.5, 0.05).expect("valid"), hertzian());
+    let periodic = lattice.periodic([64, 74]).expect("a lattice");
+    let outer_radius = 0.48 * periodic.domain().lengths().expect("a box").into_iter().fold(f64::INFINITY, f64::min);
+    let (drives, share) = (&DRIVES[..3], lattice.spacing() / outer_radius);
+    for (&drive, reduced) in drives.iter().flat_map(|drive| [(drive, 0.0), (drive, 1.0)]) {
+        let coupling = lattice.coupling(&law, f64::powi(reduced / outer_radius, 2)).expect("isotropic");
+        let coupling = (reduced > 0.0).then_some(coupling);
+        let inflation =
+            Inflation { centre: Centre::Label(2000), on_site_coupling: coupling, ..rim(times(drive, 1e-3)) };
+        let run = inflate_with(&inflation, &periodic, &law, &fire(1e-12), 1, &mut ()).expect("at rest");
+        let settings = MultipoleSettings::default();
+        let summary = DriveSummary::of(&run, &periodic, &law, coupling, &settings).expect("moduli").expect("a source");
+        let deviation = summary.deviation(0.25 * outer_radius).expect("rings");
+        println!("{drive:?}, κR = {reduced}: {deviation:.3}");
+        let limit = if matches!(drive, Drive::ForceDipole { .. }) { 4.0 * share } else { 1.5 * share };
+        assert!(deviation < limit, "{drive:?}, κR = {reduced}: {deviation}");
+        if let Drive::Displacement { .. } = drive {
+            assert!(summary.angle.abs() < 1e-6 && summary.distance == Some(1e-5), "{}", summary.angle);
+        }
+    }
+    let strained = inflate_with(&rim(DRIVES[3]), &periodic, &law, &fire(1e-10), 1, &mut ()).expect("at rest");
+    let none = DriveSummary::of(&strained, &periodic, &law, None, &MultipoleSettings::default());
+    assert!(none.expect("no error").is_none());
 }

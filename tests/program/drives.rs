@@ -52,7 +52,7 @@ fn a_run_of_every_drive_has_its_numbers_its_page_and_the_same_bytes_on_two_threa
                 assert_eq!(found, excited);
                 assert!(modes.iter().all(|mode| excited.iter().any(|&n| mode["mode"] == n)));
                 assert!(
-                    drive["force"].as_f64().expect("F") > 0.0 && printed.contains("Poisson's ratio of the packing")
+                    drive["force"].as_f64().expect("F") > 0.0 && printed.contains("Poisson's ratio from the moduli")
                 );
                 assert_eq!(drive["moment"].is_number(), name == "force_dipole");
                 assert_eq!(drive["distance"].as_f64(), (name == "displacement").then_some(0.005));
@@ -104,5 +104,37 @@ fn a_drive_without_a_meaning_is_refused_by_its_field() {
             refused(drive, "boundary = \"periodic\"", &format!("drive.{name} needs boundary = {{ held_rim"));
         }
     }
+    let study = "targets = [{ pressure = 100.0 }]\nseeds = { first = 1, count = 2 }\n[scene.inflation]\ndrive = { shear = { strain = 0.001 } }\n";
+    std::fs::write(folder.path().join("study.toml"), study).expect("written");
+    let output = jamscope(folder.path(), "study study.toml --out study");
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        output.status.code() == Some(1) && message.contains("scene.inflation.drive: a study inflates"),
+        "{message}"
+    );
     refused("{ displacement = { distance = 0.7 } }", "", "displacement.distance is 0.7: must be below 0.5");
+}
+
+/// The relaxers of the comparison start from the drive, not from an inflation: at p = 2000 all end in one minimum, that of the run.
+#[cfg(feature = "linear")]
+#[test]
+fn protocols_and_precision_start_from_the_drive() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, drive) in DRIVES {
+        let scene = scene(drive, "").replace("600", "200") + "[observables.protocol]\n[observables.contact_changes]\n";
+        std::fs::write(folder.path().join("scene.toml"), scene).expect("written");
+        done(folder.path(), &format!("run scene.toml --out {name}"));
+        let report: Value = serde_json::from_str(&text(&folder.path().join(name).join("report.json"))).expect("JSON");
+        let sample = &report["samples"][0]["done"];
+        let compared = &sample["protocol"]["measured"];
+        let endings = compared["endings"].as_array().expect("endings");
+        let run = sample["inflation"]["pressure_change"].as_f64().expect("Δp");
+        let scale = sample["inflation"]["before"]["pressure"].as_f64().expect("p");
+        for ending in endings {
+            let change = ending["pressure_change"].as_f64().expect("Δp");
+            // Both at rest to 10⁻⁸ of the mean contact force.
+            assert!((change - run).abs() < 1e-6 * scale, "{name}: {change} and {run}");
+        }
+        assert!(endings.len() > 4, "{name}");
+    }
 }

@@ -148,6 +148,10 @@ pub(super) fn plastic(report: &Report, samples: &[SampleReport]) -> Section {
     fn measured(it: &SampleResult) -> Option<&PlasticSummary> {
         it.plastic_part.as_ref()?.measured()
     }
+    let opening = match report.scene.inflation.drive.is_inflation() {
+        true => "linear: contact opens at d_0 [length]",
+        false => "linear: contact opens at share of drive",
+    };
     let mut rows = Rows::of_samples(samples);
     rows.add("linear response", |it| match it.plastic_part.as_ref()? {
         Measurement::Measured(plastic) => Some(match plastic.negative_eigenvalue_count {
@@ -156,9 +160,7 @@ pub(super) fn plastic(report: &Report, samples: &[SampleReport]) -> Section {
         }),
         Measurement::Refused(_) => Some("none".into()),
     })
-    .add("linear: contact opens at d_0 [length], or share of the drive [1]", |it| {
-        measured(it)?.first_opening.map(|at| significant(at, 3))
-    })
+    .add(opening, |it| measured(it)?.first_opening.map(|at| significant(at, 3)))
     .add(format!("linear: Δp [{}]", pressure_unit(report.scene.dimension)), |it| {
         Some(significant(measured(it)?.linear_pressure_change, 4))
     })
