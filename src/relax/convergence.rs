@@ -11,7 +11,7 @@ use crate::relax::force_limit::{ForceLimit, RUNAWAY, UNJAMMED_FORCE};
 use crate::relax::outcome::{Cost, Criterion, Outcome, Residual, Stop};
 use crate::relax::rounding::{floor_of, mean_force};
 use crate::relax::trace::{Check, Trace};
-use crate::vector::{Vector, dot, larger};
+use crate::vector::{Vector, dot, larger, norm};
 
 /// Evaluations between two checks of the residual. A check adds half the cost of an evaluation.
 pub const CHECK_INTERVAL: usize = 20;
@@ -52,7 +52,8 @@ pub struct Monitor {
     unjammed_force: f64,
     /// Whether the smallest relevant forces of the law are below [`SMALLEST_FORCE`].
     weak: bool,
-    /// Distance from a site that ends the relaxation; infinite unless the law pushes disks away from their sites.
+    /// Distance from a site that ends the relaxation: [`RUNAWAY`] radii if the law pushes disks away from their sites, the extent
+    /// of the packing if disks have loads, otherwise infinite.
     farthest: f64,
     backbone: Vec<bool>,
     links: Links,
@@ -70,6 +71,17 @@ pub struct Monitor {
     first_scale: f64,
 }
 
+/// Diagonal of the smallest box around all centres \[length\].
+fn extent<const D: usize>(assembly: &Assembly<D>) -> f64 {
+    let mut sides = [0.0; D];
+    for (axis, side) in sides.iter_mut().enumerate() {
+        let places = (0..assembly.len()).map(|disk| assembly.place(disk)[axis]);
+        let ends = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)]);
+        *side = ends[1] - ends[0];
+    }
+    norm(sides)
+}
+
 impl Monitor {
     /// A monitor with this limit.
     pub fn new<const D: usize>(limit: ForceLimit, assembly: &Assembly<D>) -> Self {
@@ -80,9 +92,13 @@ impl Monitor {
     pub fn with<const D: usize>(limit: ForceLimit, schedule: CheckSchedule, assembly: &Assembly<D>) -> Self {
         let radius = assembly.radii().iter().copied().fold(f64::INFINITY, f64::min);
         let unjammed_force = UNJAMMED_FORCE * assembly.law().force_scale(radius);
-        let pushed = assembly.law().on_site_coupling() > 0.0;
-        let farthest =
-            if pushed { RUNAWAY * assembly.radii().iter().copied().fold(0.0, f64::max) } else { f64::INFINITY };
+        let farthest = if assembly.law().on_site_coupling() > 0.0 {
+            RUNAWAY * assembly.radii().iter().copied().fold(0.0, f64::max)
+        } else if assembly.law().on_site_coupling() == 0.0 && assembly.has_on_site_forces() {
+            extent(assembly)
+        } else {
+            f64::INFINITY
+        };
         Monitor {
             limit,
             schedule,
@@ -168,7 +184,7 @@ impl Monitor {
     /// Whether a disk pushed from its site is too far from it. Callers also call this after every rebuild of the list,
     /// since a disk may move far between two checks.
     pub fn ran_away<const D: usize>(&self, assembly: &Assembly<D>) -> bool {
-        assembly.law().has_sites() && assembly.longest_displacement_from_site() >= self.farthest
+        assembly.has_on_site_forces() && assembly.longest_displacement_from_site() >= self.farthest
     }
 
     /// Determines the backbone and its residual. Without a backbone, all disks count if there are forces. Returns the

@@ -37,7 +37,7 @@ pub enum Stop {
     /// At rest, but with more energy than at the start. A relaxation cannot lead there.
     EnergyGained,
     /// Disks that the law pushes from their sites (Γ > 0) ran away: one is [`RUNAWAY`](crate::relax::RUNAWAY) from
-    /// where it began. The stiffness matrix is or became indefinite, and there is no minimum. The final state and its
+    /// where it began; or a disk with a load, and no site that ties it, has left the packing. The stiffness matrix is or became indefinite, and there is no minimum. The final state and its
     /// residual have no meaning. Forces alone do not distinguish a saddle from a minimum: disks at a saddle count as at
     /// rest. The number of negative eigenvalues distinguishes the two, see `linear`.
     NoMinimum,

@@ -18,7 +18,7 @@ use jamscope::reference::angular_modes::AngularSolution;
 use jamscope::reference::angular_modes::force_dipole::ForceDipole;
 use jamscope::reference::angular_modes::point_force::PointForce;
 use jamscope::reference::angular_modes::screened_source::ScreenedSource;
-use jamscope::relax::{DampedDynamics, Fire, ForceLimit, Newton, Relaxer};
+use jamscope::relax::{DampedDynamics, Fire, ForceLimit, Newton, Relaxer, Stop};
 use jamscope::run::DriveSummary;
 use jamscope::vector::{difference, dot, larger, norm, scaled, sum};
 
@@ -271,6 +271,9 @@ fn drives_without_a_meaning_are_refused() {
         let refused = run(&rim(times(drive, f64::NAN)));
         assert!(matches!(refused, Err(InflationError::DriveOutOfRange { .. })), "{drive:?}");
     }
+    // A force that no packing holds pushes the disk through the rim and away.
+    let away = run(&rim(Drive::PointForce { force_over_mean: 1e6 }));
+    assert!(matches!(away, Err(InflationError::NotAtRest { stop: Stop::NoMinimum, .. })), "{away:?}");
     assert!(matches!(run(&rim(Drive::Shear { strain: 0.2 })), Err(InflationError::DriveOutOfRange { .. })));
     let far = run(&rim(Drive::Displacement { distance: 0.6 }));
     assert!(matches!(far, Err(InflationError::DisplacementTooLong { .. })));

@@ -161,7 +161,7 @@ impl Descent {
                 let forces = [&before[..], assembly.forces[..mobile].as_flattened()];
                 rule.learn(&Step { direction: &direction, length: reached.length, slopes, forces });
                 cost.step_count += 1;
-                if assembly.law().has_sites() && monitor.ran_away(assembly) {
+                if assembly.has_on_site_forces() && monitor.ran_away(assembly) {
                     return Ok((Stop::NoMinimum, cost));
                 }
             } else {
