@@ -17,34 +17,31 @@ from pictures import write
 
 HERE = Path(__file__).resolve().parent
 PACKING = HERE.parent / "fixtures/packings/hertz_N1000_p100.xyz"
-BLUE, ORANGE, GREEN, PINK, GREY = "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#888888"
+BLUE, ORANGE, GREY = "#0072b2", "#d55e00", "#888888"
 
 
-def picture(width, height, title, parts, size=13):
-    head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" '
-    head += f'font-family="sans-serif" font-size="{size}">'
-    marker = "".join(
-        f'<marker id="{name}" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="8" markerHeight="8" orient="auto-start-reverse">'
-        f'<path d="M0 1L10 5L0 9z" fill="{colour}"/></marker>'
-        for name, colour in (("tip", "black"), ("tip-orange", ORANGE))
-    )
+def picture(width, height, title, parts):
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="sans-serif" font-size="13">'
+    tip = '<marker id="tip" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="8" markerHeight="8" orient="auto"><path d="M0 1L10 5L0 9z"/></marker>'
     back = f'<rect width="{width}" height="{height}" fill="white"/>'
-    return "\n".join([head, f"<title>{title}</title>", f"<defs>{marker}</defs>", back, *parts, "</svg>", ""])
+    return "\n".join([head, f"<title>{title}</title>", f"<defs>{tip}</defs>", back, *parts, "</svg>", ""])
+
+
+def look(style):
+    """Attributes of an element: `stroke_width=2` is stroke-width="2"."""
+    return "".join(f' {key.replace("_", "-")}="{value}"' for key, value in style.items())
 
 
 def text(x, y, words, anchor="start", **style):
-    look = "".join(f' {key.replace("_", "-")}="{value}"' for key, value in style.items())
-    return f'<text x="{x:g}" y="{y:g}" text-anchor="{anchor}"{look}>{words}</text>'
+    return f'<text x="{x:g}" y="{y:g}" text-anchor="{anchor}"{look(style)}>{words}</text>'
 
 
 def circle(x, y, radius, **style):
-    look = "".join(f' {key.replace("_", "-")}="{value}"' for key, value in style.items())
-    return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius:.1f}"{look}/>'
+    return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius:.1f}"{look(style)}/>'
 
 
 def line(x1, y1, x2, y2, **style):
-    look = "".join(f' {key.replace("_", "-")}="{value}"' for key, value in style.items())
-    return f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}"{look}/>'
+    return f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}"{look(style)}/>'
 
 
 def disks_of(path):
@@ -137,8 +134,8 @@ def verlet_list():
     parts.append(circle(210, 230, scale * centre[2], fill="#f7efd0", stroke="black", stroke_width=1.5))
     for kind, j in pairs:
         if kind != "far":
-            look = {"stroke": ORANGE, "stroke_width": 2.5} if kind == "contact" else {"stroke": BLUE, "stroke_width": 2, "stroke_dasharray": "5 4"}
-            parts.append(line(210, 230, to(j)[0], to(j)[1] + 20, **look))
+            style = {"stroke": ORANGE, "stroke_width": 2.5} if kind == "contact" else {"stroke": BLUE, "stroke_width": 2, "stroke_dasharray": "5 4"}
+            parts.append(line(210, 230, to(j)[0], to(j)[1] + 20, **style))
     parts += [circle(210, 230, 3), "</g>", '<rect x="10" y="30" width="400" height="400" fill="none" stroke="#999999"/>']
     parts.append(text(202, 252, "i", "end", font_style="italic", font_size=16))
     parts.append(text(10, 20, "The pairs of disk i", font_weight="bold"))
@@ -186,7 +183,6 @@ def tiles():
     order = sorted(range(len(disks)), key=key)
     size, skin, scale, left, top = 250, 0.25, 16.0, 12, 12
     tile_of = {disk: place // size for place, disk in enumerate(order)}
-    place_of = {disk: place for place, disk in enumerate(order)}
     spot = lambda k: (left + scale * disks[k][0], top + scale * (side - disks[k][1]))
     colours = ["#dcebf5", "#fdf1d6", "#dff1ea", "#f6e3ee"]
     border, touched = [], set()
@@ -241,7 +237,7 @@ def tiles():
         if tile == 0:
             parts.append(text(x, middle + 4, "the box is periodic: tiles 0 and 3"))
             parts.append(text(x, middle + 21, "share a border, too"))
-    return picture(round(left + width + 22 + 236), round(2 * top + width), "Four tiles of a list and their border pairs", parts)
+    return picture(round(left + width + 22 + 262), round(2 * top + width), "Four tiles of a list and their border pairs", parts)
 
 
 def annulus():
