@@ -4,8 +4,8 @@
     python3 benches/measurements/cost_of_a_scene.py sizes FOLDER                           size of the program by its features
 
 scenes  One packing of 5548 disks at p = 1000 is prepared. It is then inflated with all observables, with the radial profile alone and with none,
-        by the protocols `study` (damped dynamics) and `fire`: five runs each, in turn, on one thread. The table has medians, with the range in
-        brackets. FOLDER is for the packing and the reports.
+        by each of PROTOCOLS: five runs each, in turn, on one thread. The table has medians, with the range in brackets. FOLDER is for the
+        packing and the reports.
 sizes   Builds the program with `cli` and each other feature alone, with `cli` alone and with all features, in release mode into FOLDER.
 
 Needs Python and nothing else, and Linux for the peak memory.
@@ -25,7 +25,7 @@ SCENES = {
     "radial profile": "[observables.radial_profile]\n",
     "none": "[observables]\n",
 }
-PROTOCOLS = ("study", "fire")
+PROTOCOLS = ("study",)
 FEATURES = ("fit", "linear", "parallel", "plot")
 
 
