@@ -1,4 +1,4 @@
-"""Makes pictures of the book: python3 book/pictures.py run|study report.html FOLDER, or hand|drives|exact SOURCE FOLDER
+"""Makes pictures of the book: python3 book/pictures.py run|study report.html FOLDER, or hand|drives|exact|precision SOURCE FOLDER
 
 run     of the built-in scene: FOLDER/three_phases.svg, map, radial profile and angular profiles of three samples side by side, and
         FOLDER/first_run/NAME.svg, the other pictures of the sample in the middle
@@ -6,6 +6,7 @@ study   of `order-parameters`, scale medium: FOLDER/transition/NAME.svg
 hand    of the runs of the chapter *One packing by hand*, SOURCE/NAME/report.html: FOLDER/by_hand/NAME_map.svg and NAME_profile.svg
 drives  of the runs of the chapter *Forces, displacements and strains*: FOLDER/drives/NAME_map.svg and push_modes.svg
 exact   from the tables of `jamscope exact`, SOURCE the program: FOLDER/exact_profiles.svg, r d_r of four wavenumbers
+precision  of SOURCE/quasielastic and SOURCE/plastic, written by `jamscope precision`: FOLDER/precision/NAME.svg; prints the table of the chapter
 
 Needs Python and nothing else. A file is written under another name and then renamed.
 """
@@ -139,8 +140,37 @@ def of_exact(jamscope, folder):
     write(folder / "exact_profiles.svg", "\n".join([*out, "</svg>", ""]))
 
 
+def power(value):
+    if value == 0:
+        return "0"
+    digit, exponent = f"{value:.0e}".split("e")
+    return f"{digit}·10" + str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+
+
+def of_precision(measured, folder):
+    """Error against work, and the row of each relaxer at its default: force limit 10⁻⁸, or tolerance 0.1."""
+    tables = {}
+    for sample in ("quasielastic", "plastic"):
+        for work in ("force_evaluations", "seconds"):
+            svg = (measured / sample / f"{sample}.displacement_{work}.svg").read_text(encoding="utf-8")
+            write(folder / "precision" / f"{sample}_{work}.svg", svg)
+        with open(measured / sample / "precision.csv", encoding="utf-8") as file:
+            rows = [row for row in csv.DictReader(file) if row["sample"]]
+        for row in rows:
+            if (row["varied"], float(row["value"])) in (("force limit", 1e-8), ("tolerance", 0.1)):
+                # Implicit dynamics has both: the force limit comes first.
+                tables.setdefault(row["method"], {}).setdefault(sample, row)
+    print("| relaxer |" + " in | error | evaluations | factorisations | s |" * 2 + "\n|---|" + "---|" * 10)
+    for method, samples in tables.items():
+        cells = [method]
+        for row in samples.values():
+            limit = "*" if row["stop"] == "step limit" else ""
+            cells += [row["minimum"] + limit, power(float(row["displacement_error"])), row["force_evaluations"], row["factorisations"], f"{float(row['seconds']):.2g}"]
+        print("| " + " | ".join(cells) + " |")
+
+
 def main():
-    makers = {"run": of_run, "study": of_study, "hand": of_hand, "drives": of_drives, "exact": of_exact}
+    makers = {"run": of_run, "study": of_study, "hand": of_hand, "drives": of_drives, "exact": of_exact, "precision": of_precision}
     if len(sys.argv) != 4 or sys.argv[1] not in makers:
         sys.exit(__doc__)
     makers[sys.argv[1]](Path(sys.argv[2]), Path(sys.argv[3]))

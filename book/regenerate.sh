@@ -21,6 +21,8 @@ first_run            quick  jamscope --out DIR (the built-in scene)
 by_hand              quick  the commands of the chapter One packing by hand
 drives               quick  jamscope run of two scenes of the chapter Forces, displacements and strains
 exact_profiles       quick  jamscope exact profile --outer 42 --wavenumber KAPPA
+diagrams             quick  python3 book/diagrams.py
+precision            quick  jamscope precision --sample quasielastic|plastic --out DIR
 angular_5548         long   angular_study --out DIR --disks 5548 --samples 100 --reduced 1e6,1e7,3e7,1e8,3e8,1e9,3e9
 angular_22184        long   angular_study --out DIR --disks 22184 --samples 10 --reduced 1e7,1e8,1e9
 angular_88776        long   angular_study --out DIR --disks 88776 --samples 24 --reduced 1e8
@@ -102,6 +104,18 @@ drives() {
 exact_profiles() {
     python3 book/pictures.py exact "$jamscope" "$images"
     record "exact_profiles.svg" "python3 book/pictures.py exact target/release/jamscope $images" "none"
+}
+
+diagrams() {
+    python3 book/diagrams.py "$images"
+    record "diagrams/*.svg" "python3 book/diagrams.py $images" "none"
+}
+
+precision() {
+    local sample
+    for sample in quasielastic plastic; do "$jamscope" precision --sample "$sample" --out "$work/precision/$sample"; done
+    python3 book/pictures.py precision "$work/precision" "$images" > "$work/precision/table.md"
+    record "precision/*.svg" "book/regenerate.sh precision" "11, 1"
 }
 
 angular() {
