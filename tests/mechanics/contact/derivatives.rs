@@ -27,7 +27,7 @@ fn difference_error(law: &dyn PairLaw, coefficient: f64, overlap: f64, distance:
 
 /// What a central difference of the energy may be off by: truncation of each pair; over h, the rounding of the energy and
 /// that of the separations, `blur`.
-fn slope_error<const D: usize>(
+pub(super) fn slope_error<const D: usize>(
     packing: &Packing<D>,
     law: &dyn PairLaw,
     h: f64,
@@ -50,7 +50,7 @@ fn slope_error<const D: usize>(
 }
 
 /// Step of the differences: rounding ε/h and truncation h^1.5 to h² are both near 1e-9 of what is differentiated.
-const STEP: f64 = 1.0 / 65536.0;
+pub(super) const STEP: f64 = 1.0 / 65536.0;
 
 fn check_gradient<const D: usize>(law: &dyn PairLaw, seed: u64, count: usize, domain: Domain<D>) {
     let packing = disks(seed, count, domain, 0.2);

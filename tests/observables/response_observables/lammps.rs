@@ -11,7 +11,7 @@
 use std::collections::BTreeSet;
 
 use jamscope::displacement::{DisplacementField, Shape};
-use jamscope::inflation::{Inflated, Rest};
+use jamscope::inflation::{Drive, Inflated, Rest};
 use jamscope::law::{Hertzian, Hookean, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::observe::angular::{
@@ -60,6 +60,8 @@ fn inflated(stored: &Stored, before: Rest<2>, after: Rest<2>) -> Inflated<2> {
         inner_radius: 0.5,
         outer_radius: stored.outer_radius,
         mobile_count: stored.mobile_count,
+        drive: Drive::Inflation,
+        start: stored.before(INFLATED_RADIUS),
         before,
         after,
         deflated: None,
