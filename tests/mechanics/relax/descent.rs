@@ -32,6 +32,12 @@ fn law(hookean: bool, stiffness: f64) -> Box<dyn PairLaw> {
     if hookean { Box::new(Hookean { stiffness }) } else { Box::new(Hertzian { stiffness }) }
 }
 
+/// Where 300 steps of the default lead: the energy has little left to fall.
+fn nearly_at_rest<const D: usize>(packing: Packing<D>, law: &dyn PairLaw) -> Packing<D> {
+    let fire = Fire { limit: ForceLimit::Relative(1e-4), step_limit: 300, ..Fire::default() };
+    fire.relax(packing, law, &mut ()).expect("no coincidence").state
+}
+
 /// Energies at the restarts of FIRE, from the start to the end, do not rise by more than the rounding of a sum over contacts, 10⁻¹³.
 fn restarts_do_not_rise<const D: usize>(fire: &Fire, packing: Packing<D>, law: &dyn PairLaw) {
     let energy = |packing: &Packing<D>| ContactNetwork::new(packing, law).expect("no coincidence").energy();
@@ -47,8 +53,8 @@ fn restarts_do_not_rise<const D: usize>(fire: &Fire, packing: Packing<D>, law: &
     let outcome = fire.relax(packing, law, &mut trace).expect("no coincidence");
     let rounding = 1.0 + 1e-13;
     assert!(energies.is_sorted_by(|&before, &after| after <= before * rounding), "{fire:?}: {energies:?}");
-    // 1500 steps from random points are more than 3 restarts, or the end.
-    assert!(energies.len() > 3 || matches!(outcome.stop, Stop::Converged(_)), "{:?}, {energies:?}", outcome.stop);
+    // 1500 steps are several restarts, or the end.
+    assert!(energies.len() > 2 || matches!(outcome.stop, Stop::Converged(_)), "{:?}, {energies:?}", outcome.stop);
     if matches!(outcome.stop, Stop::Converged(_)) {
         // Downhill from the last restart on; summed by contacts here, by blocks there. An unjammed packing ends near 0.
         let end = energy(&outcome.state);
@@ -65,7 +71,9 @@ proptest! {
         count in 20usize..120,
         fraction in 0.8..1.3f64,
         held_share in prop_oneof![Just(0.0), Just(0.2)],
-        time_step_fraction in 0.3..2.5f64,
+        // 1 is the limit of stability by Gershgorin's bound; far beyond it FIRE climbs, and must come back.
+        time_step_fraction in prop_oneof![0.3..2.5f64, 2.5..40.0f64],
+        near_rest in any::<bool>(),
         back in any::<bool>(),
         mixed in any::<bool>(),
         space in any::<bool>(),
@@ -81,9 +89,11 @@ proptest! {
         };
         let law = law(hookean, 2e5);
         if space {
-            restarts_do_not_rise(&fire, start::<3>(seed, count + 20, 0.75 * fraction, held_share), &*law);
+            let packing = start::<3>(seed, count + 20, 0.75 * fraction, held_share);
+            restarts_do_not_rise(&fire, if near_rest { nearly_at_rest(packing, &*law) } else { packing }, &*law);
         } else {
-            restarts_do_not_rise(&fire, start::<2>(seed, count, fraction, held_share), &*law);
+            let packing = start::<2>(seed, count, fraction, held_share);
+            restarts_do_not_rise(&fire, if near_rest { nearly_at_rest(packing, &*law) } else { packing }, &*law);
         }
     }
 }
