@@ -154,3 +154,22 @@ proptest! {
         prop_assert!(forces[1][0] > 0.0 && forces[1][1] > 0.0 && forces[1][2] > 0.0);
     }
 }
+
+/// ζ = c/(2 √(k m)) of the oscillator that a contact is, with stiffness and damping from the laws.
+#[test]
+fn the_damping_ratio_is_that_of_an_oscillator_with_the_stiffness_and_damping_of_the_contact() {
+    use jamscope::law::damping::{ConstantDamping, DampingChoice, REDUCED_MASS, ViscoelasticDamping, effective_radius};
+    let (law, radii, overlap) = (Hertzian { stiffness: 3e4 }, (0.5, 0.7), 4e-3);
+    for damping in [
+        DampingChoice::Constant(ConstantDamping { rate: 70.0 }),
+        DampingChoice::Viscoelastic(ViscoelasticDamping { rate: 70.0 }),
+    ] {
+        let contact = law.contact_damping(&damping);
+        let resistance = contact.damping(contact.coefficient(radii.0, radii.1), overlap);
+        let stiffness = law.stiffness(law.force(law.coefficient(radii.0, radii.1), overlap), overlap);
+        let expected = resistance / (2.0 * (stiffness * REDUCED_MASS).sqrt());
+        let found = damping.hertzian_damping_ratio(3e4, effective_radius(radii.0, radii.1), overlap);
+        // A dozen products and roots.
+        assert!((found / expected - 1.0).abs() < 1e-14, "{found} {expected}");
+    }
+}

@@ -153,3 +153,9 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn without_sites_no_disk_is_away_from_one() {
+    let assembly = Assembly::new(&disks::<2>(1, 10, Domain::Open, 0.0), &Hertzian::default()).expect("no coincidence");
+    assert!((0..10).all(|index| assembly.displacement_from_site(index) == [0.0; 2]));
+}

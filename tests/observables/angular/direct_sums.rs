@@ -199,6 +199,18 @@ proptest! {
             prop_assert!((value / farthest - 1.0).abs() < 1e-9);
             return Ok(());
         }
+        // θ* on the line through the two points of the table on either side of the threshold.
+        for crossing in &found.crossings {
+            let next = found.values.iter().position(|&value| value <= crossing.threshold);
+            let expected = next.map(|next| {
+                let [(a, x), (b, y)] = [next - 1, next].map(|at| (found.values[at], found.angles[at]));
+                x + (a - crossing.threshold) * (y - x) / (a - b)
+            });
+            match (expected, crossing.outcome.angle()) {
+                (Some(expected), Some(angle)) => prop_assert!((angle - expected).abs() <= 16.0 * ROUNDING * PI, "{angle} {expected}"),
+                (expected, angle) => prop_assert_eq!(expected, angle),
+            }
+        }
         for (bin, expected) in means.iter().enumerate() {
             prop_assert!((found.angles[bin + 1] - PI * (bin as f64 + 0.5) / bin_count as f64).abs() <= 8.0 * ROUNDING);
             // Sums over the pairs of a bin, and n roundings of the mean in every value.
