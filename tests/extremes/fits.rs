@@ -1,11 +1,11 @@
 //! Profiles that no packing has: a handful of rings, numbers from one end of the range to the other, no errors at all.
 
+use crate::seeds::config;
 use jamscope::fit::profile::{ProfileFit, ProfileFitSettings, fit_radial_profile};
 use jamscope::observe::RadialProfile;
 use jamscope::observe::radial_profile::Ring;
 use jamscope::reference::Annulus;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 /// Numbers of any size and sign, with a taste for zero and for the ends of the range.
 fn any_size() -> impl Strategy<Value = f64> {
@@ -24,7 +24,7 @@ fn numbers(fit: &ProfileFit) -> Vec<f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, rng_seed: RngSeed::Fixed(1), failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(config(200, 1))]
 
     #[test]
     fn any_profile_is_fitted_or_refused(

@@ -10,6 +10,9 @@ mod geometry;
 mod inflations;
 mod preparations;
 mod scales;
+#[cfg(feature = "fit")]
+#[path = "../scenes/seeds.rs"]
+mod seeds;
 mod small_systems;
 #[path = "../scenes/square_lattice.rs"]
 mod square_lattice;

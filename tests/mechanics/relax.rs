@@ -1,5 +1,6 @@
 //! Relaxers: closed forms, energies on the way, agreement with each other, outcomes, units, and work.
 
+mod descent;
 mod outcomes;
 
 use jamscope::forces::Assembly;

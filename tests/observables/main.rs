@@ -12,3 +12,5 @@ mod shell;
 
 #[path = "../scenes/lammps_inflated.rs"]
 mod lammps_inflated;
+#[path = "../scenes/seeds.rs"]
+mod seeds;

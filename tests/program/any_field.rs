@@ -3,6 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::LazyLock;
 
+use crate::seeds::config;
 use jamscope::law::{Hertzian, LawChoice, PowerLaw};
 use jamscope::observe::angular::{CorrelationEstimator, FrequencyLimit, SpectrumEstimator};
 use jamscope::observe::isostatic::{IsostaticRule, Normalisation};
@@ -238,7 +239,7 @@ fn any_number() -> impl Strategy<Value = f64> {
 
 proptest! {
     // Debug builds check in a third of a millisecond.
-    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(config(2000, 20))]
 
     #[test]
     fn a_scene_that_passes_is_written_and_read_back(changes in prop::collection::vec((any::<prop::sample::Index>(), any_number()), 1..4)) {

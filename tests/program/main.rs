@@ -23,6 +23,8 @@ mod packing_commands;
 #[cfg(feature = "linear")]
 mod precision;
 mod report;
+#[path = "../scenes/seeds.rs"]
+mod seeds;
 #[cfg(feature = "cli")]
 mod sizes;
 mod spheres;

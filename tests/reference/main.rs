@@ -13,6 +13,8 @@ mod bessel_functions;
 mod pole_count;
 mod precise_poles;
 mod random_annuli;
+#[path = "../scenes/seeds.rs"]
+mod seeds;
 mod strip_modes;
 mod wavenumber_derivative;
 

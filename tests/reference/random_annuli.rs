@@ -5,11 +5,12 @@ use std::cell::RefCell;
 use jamscope::reference::Annulus;
 use jamscope::reference::poles::{pole, pole_count_below};
 use proptest::prelude::*;
-use proptest::test_runner::{RngSeed, TestRunner};
+use proptest::test_runner::TestRunner;
 
 use crate::Worst;
 use crate::precise_bessel::rounded;
 use crate::precise_profile::Point;
+use crate::seeds::config;
 
 /// An annulus with a = 1/2, κ, and radii inside it.
 #[derive(Debug, Clone)]
@@ -68,12 +69,7 @@ pub fn cases(count: usize) -> impl Strategy<Value = Case> {
 /// Runs `check` on `count` random cases from a fixed seed; it returns, for every quantity it looks at, its error in units of
 /// what is allowed. A failure prints the smallest case found; the worst one is printed in any case.
 pub fn holds<S: Strategy>(name: &str, count: u32, strategy: S, check: impl Fn(&S::Value) -> Vec<f64>) {
-    let config = ProptestConfig {
-        cases: count,
-        rng_seed: RngSeed::Fixed(20),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    };
+    let config = ProptestConfig { source_file: Some(file!()), ..config(count, 20) };
     let worst = RefCell::new(Worst::default());
     let compared = RefCell::new(0);
     let result = TestRunner::new(config).run(&strategy, |case| {

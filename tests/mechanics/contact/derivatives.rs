@@ -27,7 +27,7 @@ fn difference_error(law: &dyn PairLaw, coefficient: f64, overlap: f64, distance:
 
 /// What a central difference of the energy may be off by: truncation of each pair; over h, the rounding of the energy and
 /// that of the separations, `blur`.
-fn slope_error<const D: usize>(
+pub(super) fn slope_error<const D: usize>(
     packing: &Packing<D>,
     law: &dyn PairLaw,
     h: f64,
@@ -50,7 +50,7 @@ fn slope_error<const D: usize>(
 }
 
 /// Step of the differences: rounding ε/h and truncation h^1.5 to h² are both near 1e-9 of what is differentiated.
-const STEP: f64 = 1.0 / 65536.0;
+pub(super) const STEP: f64 = 1.0 / 65536.0;
 
 fn check_gradient<const D: usize>(law: &dyn PairLaw, seed: u64, count: usize, domain: Domain<D>) {
     let packing = disks(seed, count, domain, 0.2);
@@ -152,5 +152,24 @@ proptest! {
         prop_assert_eq!(forces[0], forces[1].map(|component| -component));
         // Along the line of centres, pushing apart.
         prop_assert!(forces[1][0] > 0.0 && forces[1][1] > 0.0 && forces[1][2] > 0.0);
+    }
+}
+
+/// ζ = c/(2 √(k m)) of the oscillator that a contact is, with stiffness and damping from the laws.
+#[test]
+fn the_damping_ratio_is_that_of_an_oscillator_with_the_stiffness_and_damping_of_the_contact() {
+    use jamscope::law::damping::{ConstantDamping, DampingChoice, REDUCED_MASS, ViscoelasticDamping, effective_radius};
+    let (law, radii, overlap) = (Hertzian { stiffness: 3e4 }, (0.5, 0.7), 4e-3);
+    for damping in [
+        DampingChoice::Constant(ConstantDamping { rate: 70.0 }),
+        DampingChoice::Viscoelastic(ViscoelasticDamping { rate: 70.0 }),
+    ] {
+        let contact = law.contact_damping(&damping);
+        let resistance = contact.damping(contact.coefficient(radii.0, radii.1), overlap);
+        let stiffness = law.stiffness(law.force(law.coefficient(radii.0, radii.1), overlap), overlap);
+        let expected = resistance / (2.0 * (stiffness * REDUCED_MASS).sqrt());
+        let found = damping.hertzian_damping_ratio(3e4, effective_radius(radii.0, radii.1), overlap);
+        // A dozen products and roots.
+        assert!((found / expected - 1.0).abs() < 1e-14, "{found} {expected}");
     }
 }

@@ -1,12 +1,13 @@
 //! Contacts: the neighbour list and the hot loop against their slow twins, forces against energies, invariances,
 //! rounding, and what is refused.
 //!
-//! Random cases come from proptest with a fixed seed, so every run sees the same ones; a failure prints its case.
+//! Random cases come from proptest, with the seeds of `scenes::seeds`.
 
 use std::collections::BTreeSet;
 use std::f64::consts::SQRT_2;
 
 use crate::scenes::random_disks::{disks, on_grid, periodic, tilted};
+use crate::scenes::seeds::config;
 use crate::twins::all_pairs::{mechanics, pairs_within};
 use crate::twins::naive_backbone::contacts_within;
 use crate::twins::{all_pairs, naive_backbone};
@@ -19,7 +20,6 @@ use jamscope::network::backbone;
 use jamscope::packing::{Domain, Packing, PackingError};
 use jamscope::vector::{Vector, difference, norm, sum};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
@@ -27,12 +27,7 @@ use rand_pcg::Pcg64;
 const EPSILON: f64 = f64::EPSILON;
 
 fn cases(count: u32) -> ProptestConfig {
-    ProptestConfig {
-        cases: count,
-        rng_seed: RngSeed::Fixed(20),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
+    config(count, 20)
 }
 
 /// Boxes from the smallest allowed (one to three cells a side) to elongated ones, rectangular and tilted, and the open
@@ -181,7 +176,9 @@ mod agreement;
 mod derivatives;
 mod incremental_update;
 mod invariance;
+mod loads;
 mod network;
 mod places;
+mod rattlers;
 mod refusals;
 mod single;

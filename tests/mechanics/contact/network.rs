@@ -27,6 +27,14 @@ proptest! {
         let mobile = network.backbone_count();
         prop_assert_eq!(network.coordination(), if mobile == 0 { 0.0 } else { ends as f64 / mobile as f64 });
         prop_assert_eq!(mobile + network.rattlers().count() + packing.held().iter().filter(|&&held| held).count(), count);
+        // Each contact gives half of its virial to either disk: two sums of the same terms.
+        let volume = packing.domain().volume().expect("periodic");
+        let (stress, virials) = (network.stress(volume), network.disk_virials());
+        for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let sum: f64 = virials.iter().map(|virial| virial[a][b]).sum();
+            let scale = (virials.len() + network.contacts.len() + 16) as f64 * EPSILON * 2.0 * network.pressure(volume);
+            prop_assert!((sum / volume - stress[a][b]).abs() <= scale, "{sum} {:?}", stress);
+        }
         // Once more, within the backbone, takes nothing out.
         let kept: Vec<usize> = (0..packing.len()).filter(|&disk| network.backbone[disk]).collect();
         let index = |disk: u32| kept.iter().position(|&other| other == disk as usize).expect("on the backbone") as u32;

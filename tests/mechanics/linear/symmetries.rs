@@ -1,15 +1,15 @@
 //! What any Hessian of any packing has: symmetry, no work in a motion as a whole, no softness without prestress, and no
 //! regard for how a packing is turned or what its disks are called.
 //!
-//! Random cases come from proptest with a fixed seed, so every run sees the same ones; a failure prints its case.
+//! Random cases come from proptest, with the seeds of `scenes::seeds`.
 
+use crate::scenes::seeds::config;
 use jamscope::law::{Hertzian, Hookean, OnSite, PairLaw, PowerLaw};
 use jamscope::linear::{Hessian, Members, Prestress};
 use jamscope::packing::{Domain, Packing};
 use jamscope::sparse::SymmetricMatrix;
 use jamscope::vector::{Vector, larger};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use super::dense;
 use crate::scenes::random_disks::{disks, periodic};
@@ -155,9 +155,7 @@ fn every_law<const D: usize>(packing: &Packing<D>, members: Members, seed: u64) 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 24, rng_seed: RngSeed::Fixed(31), failure_persistence: None, ..ProptestConfig::default()
-    })]
+    #![proptest_config(config(24, 31))]
 
     #[test]
     fn a_hessian_is_symmetric_its_rows_add_up_and_turning_or_renaming_the_packing_changes_nothing(

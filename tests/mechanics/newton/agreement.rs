@@ -1,23 +1,21 @@
 //! One minimum, however it is reached: other relaxers, other places, other names.
 //!
-//! Random cases come from proptest with a fixed seed, so every run sees the same ones; a failure prints its case.
+//! Random cases come from proptest, with the seeds of `scenes::seeds`.
 
 use jamscope::law::{OnSite, PairLaw};
 use jamscope::network::ContactNetwork;
 use jamscope::relax::{DampedDynamics, ForceLimit, RelaxerChoice};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use super::{allowed, fire, newton, staged};
 use crate::claims::elsewhere::Elsewhere;
 use crate::scenes::laws::{hertzian, hookean};
 use crate::scenes::rest::{apart, at_rest, relax};
+use crate::scenes::seeds::config;
 use crate::scenes::starts::{inflated, points, shaken};
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 12, rng_seed: RngSeed::Fixed(20), failure_persistence: None, ..ProptestConfig::default()
-    })]
+    #![proptest_config(config(12, 20))]
 
     #[test]
     fn a_shaken_minimum_is_found_again_wherever_it_lies_and_whatever_its_disks_are_called(

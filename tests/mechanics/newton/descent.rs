@@ -1,6 +1,6 @@
 //! The way down: the energy only falls, the residual is squared, saddles are left, units do not matter.
 //!
-//! Random cases come from proptest with a fixed seed, so every run sees the same ones; a failure prints its case.
+//! Random cases come from proptest, with the seeds of `scenes::seeds`.
 
 use jamscope::law::PairLaw;
 use jamscope::network::ContactNetwork;
@@ -8,13 +8,13 @@ use jamscope::packing::Packing;
 use jamscope::relax::{Check, Newton, Relaxer, RelaxerChoice, Stop};
 use jamscope::vector::{Vector, difference, dot, larger, norm, scaled, sum};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use super::{fire, newton, staged};
 use crate::claims::only_falls::only_falls;
 use crate::claims::other_units::same_bits_in_other_units;
 use crate::scenes::laws::{hertzian, hookean};
 use crate::scenes::rest::{at_rest, moved, relax};
+use crate::scenes::seeds::config;
 use crate::scenes::square_lattice::square_lattice;
 use crate::scenes::starts::{inflated, points, shaken};
 
@@ -103,9 +103,7 @@ fn the_energy_falls_where_contacts_that_close_make_the_whole_step_climb() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 12, rng_seed: RngSeed::Fixed(20), failure_persistence: None, ..ProptestConfig::default()
-    })]
+    #![proptest_config(config(12, 20))]
 
     #[test]
     fn the_energy_of_newton_never_increases(seed in 0..1000u64, fraction in 0.8..1.3f64, law in 0..3usize) {

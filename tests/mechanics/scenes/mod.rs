@@ -7,6 +7,8 @@ pub mod laws;
 pub mod published;
 pub mod random_disks;
 pub mod rest;
+#[path = "../../scenes/seeds.rs"]
+pub mod seeds;
 #[cfg(feature = "linear")]
 #[path = "../../scenes/square_lattice.rs"]
 pub mod square_lattice;

@@ -1,5 +1,6 @@
 //! Angular spectra and correlation functions against what is exactly known of them.
 
+mod direct_sums;
 mod estimators;
 mod exact;
 #[cfg(feature = "fit")]

@@ -10,6 +10,7 @@ use jamscope::vector::larger;
 use proptest::prelude::*;
 
 use super::{all_estimators, direct, even_angles};
+use crate::seeds::config;
 
 /// (2/π) ∫_0^π G cos fθ dθ by the trapezoidal rule, exact for G of fewer frequencies than steps.
 fn cosine_coefficient(angles: &[f64], values: &[f64], frequency: usize) -> f64 {
@@ -29,7 +30,7 @@ fn rings() -> impl Strategy<Value = RingSample> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(config(64, 20))]
 
     #[test]
     fn spectral_correlation_and_spectrum_are_a_pair(ring in rings()) {

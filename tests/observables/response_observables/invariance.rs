@@ -1,3 +1,4 @@
+use crate::seeds::config;
 use jamscope::displacement::{DisplacementField, Moved};
 use jamscope::inflation::{Inflation, inflate_with};
 use jamscope::io::read_packing;
@@ -69,7 +70,7 @@ fn relabelled(packing: &Packing<2>, order: &[usize]) -> Packing<2> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+    #![proptest_config(config(24, 20))]
 
     #[test]
     fn turning_a_field_turns_phases_and_nothing_else(seed in 0u64..1000, turn in -3.0f64..3.0) {

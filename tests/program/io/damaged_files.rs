@@ -3,10 +3,10 @@
 use std::fs;
 use std::sync::LazyLock;
 
+use crate::seeds::config;
 use jamscope::io::{Column, Contents, Frame, ReadError, ReadWarning, read_contents, read_packing, write_packing};
 use jamscope::packing::{Domain, Packing};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use super::{Scratch, fixture};
 
@@ -167,9 +167,7 @@ fn check<const D: usize>(scratch: &Scratch) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 3000, rng_seed: RngSeed::Fixed(21), failure_persistence: None, ..Default::default()
-    })]
+    #![proptest_config(config(3000, 21))]
 
     #[test]
     fn no_damage_makes_the_reader_panic(file in 0..5usize, damages in prop::collection::vec(damage(), 1..4)) {

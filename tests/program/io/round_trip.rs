@@ -1,18 +1,13 @@
 //! A packing written is read back to the same bits.
 
+use crate::seeds::config;
 use jamscope::io::{Column, read_packing, write_packing};
 use jamscope::packing::{Domain, Packing};
 use jamscope::vector::Vector;
 use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 use super::{Scratch, fixture};
-
-/// Cases and seed of the random packings.
-fn config() -> ProptestConfig {
-    ProptestConfig { cases: 200, rng_seed: RngSeed::Fixed(20), failure_persistence: None, ..Default::default() }
-}
 
 /// Any finite number.
 fn finite() -> impl Strategy<Value = f64> {
@@ -117,7 +112,7 @@ fn assert_round_trip<const D: usize>(packing: &Packing<D>) -> Result<(), TestCas
 }
 
 proptest! {
-    #![proptest_config(config())]
+    #![proptest_config(config(200, 20))]
 
     #[test]
     fn disks_come_back_to_the_same_bits(packing in packing::<2>()) {

@@ -4,10 +4,11 @@ use std::f64::consts::PI;
 
 use jamscope::reference::lorentzian::{Lorentzian, USUAL_EXPONENT};
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use proptest::test_runner::{Config, TestRunner};
 use serde_json::Value;
 
 use super::{at, claimed, continuum, lorentzian, steepness};
+use crate::seeds::config;
 use crate::{Worst, fixture, number, rows};
 
 /// An angle of a fixture; the name `pi` stands for π.
@@ -218,10 +219,9 @@ fn direct(medium: &Lorentzian, angle: f64, last: u32) -> (f64, f64) {
 
 #[test]
 fn correlation_is_the_sum_of_its_terms() {
-    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[5; 32]);
-    let config = Config { cases: 300, failure_persistence: None, ..Config::default() };
+    let config = Config { source_file: Some(file!()), ..config(300, 5) };
     let inputs = (prop_oneof![1.01..12.0_f64, 12.0..100.0_f64], -3.0..1.3_f64, 0.02..PI);
-    TestRunner::new_with_rng(config, rng)
+    TestRunner::new(config)
         .run(&inputs, |(exponent, logarithm, angle)| {
             let medium = lorentzian(10.0_f64.powf(logarithm), exponent);
             let (sum, error) = direct(&medium, angle, 4000);

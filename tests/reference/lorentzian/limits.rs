@@ -1,5 +1,7 @@
 //! How G approaches its limits in f† and θ, and that nothing jumps where one formula hands over to another.
 
+use std::f64::consts::PI;
+
 use jamscope::reference::lorentzian::USUAL_EXPONENT;
 
 use super::{claimed, continuum, lorentzian, steepness};
@@ -95,4 +97,28 @@ fn the_cusp_takes_over_without_a_step() {
     let handover = 1e-10 / 6.0;
     let allowed = 1e-7 + 4.0 * claimed(4.5) * 6.0 / smooth.derivative(handover).abs();
     assert!((ratio - 1.0).abs() < allowed && allowed < 2e-3, "{ratio}");
+}
+
+/// Far out only the first terms of the asymptotic series are left, Γ(s+1) sin(πs/2) x^(−s−1) − Γ(2s+1) sin(πs) x^(−2s−1) over the area
+/// (π/s)/sin(π/s); at even s they vanish.
+#[test]
+fn the_algebraic_tail_of_the_continuum_is_the_first_two_terms_of_its_series() {
+    // s, Γ(s+1), Γ(2s+1).
+    for (exponent, one, two) in [
+        (1.5f64, 1.329_340_388_179_137_2, 6.0),
+        (3.0, 6.0, 720.0),
+        (1.25, 1.133_003_096_319_346_3, 3.323_350_970_447_843),
+    ] {
+        let limit = continuum(exponent);
+        let area = PI / exponent / (PI / exponent).sin();
+        for x in [5e6f64, 1e9] {
+            let first = one * (0.5 * PI * exponent).sin() * x.powf(-exponent - 1.0);
+            let second = -two * (PI * exponent).sin() * x.powf(-2.0 * exponent - 1.0);
+            let (value, slope) = (first + second, -((exponent + 1.0) * first + (2.0 * exponent + 1.0) * second) / x);
+            // The third term is x^(−2s) of the first, below 10⁻¹⁶; powers of x round (s + 1) ln x times, and the sine of 3π/2 and area.
+            assert!((limit.correlation(x) * area / value - 1.0).abs() < 1e-13, "s = {exponent}, x = {x}");
+            assert!((limit.derivative(-x) * area / slope + 1.0).abs() < 1e-13, "s = {exponent}, x = {x}");
+        }
+    }
+    assert_eq!((continuum(2.0).correlation(5e6), continuum(4.0).correlation(5e6)), (0.0, 0.0));
 }
