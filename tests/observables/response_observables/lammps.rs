@@ -63,8 +63,6 @@ fn inflated(stored: &Stored, before: Rest<2>, after: Rest<2>) -> Inflated<2> {
         inner_radius: 0.5,
         outer_radius: stored.outer_radius,
         mobile_count: stored.mobile_count,
-        drive: Drive::Inflation,
-        start: stored.before(INFLATED_RADIUS),
         before,
         after,
         deflated: None,
