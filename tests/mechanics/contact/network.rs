@@ -29,6 +29,9 @@ proptest! {
         prop_assert_eq!(mobile + network.rattlers().count() + packing.held().iter().filter(|&&held| held).count(), count);
         // Each contact gives half of its virial to either disk: two sums of the same terms.
         let volume = packing.domain().volume().expect("periodic");
+        // Contacts with the rim count half: none of them, or all.
+        prop_assert_eq!(network.cluster_pressure(volume, |_| false), network.pressure(volume));
+        prop_assert_eq!(network.cluster_pressure(volume, |_| true), 0.5 * network.pressure(volume));
         let (stress, virials) = (network.stress(volume), network.disk_virials());
         for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let sum: f64 = virials.iter().map(|virial| virial[a][b]).sum();

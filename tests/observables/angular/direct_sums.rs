@@ -318,3 +318,23 @@ fn bin_means(ring: &RingSample, count: usize) -> Vec<f64> {
     };
     (0..count).map(value).collect()
 }
+
+/// Eight even angles have pairs at multiples of π/4 only, in 4 of 10 bins. A bin without pairs takes the value of the bin before it.
+#[test]
+fn bins_without_pairs_take_the_value_before() {
+    let dipole = super::ring(&super::even_angles(8), f64::cos);
+    let settings = CorrelationSettings {
+        estimator: CorrelationEstimator::Pairs { bin_count: 10 },
+        ..CorrelationSettings::default()
+    };
+    let found = AngularCorrelation::of(&dipole, &settings).expect("in range");
+    for (bin, steps) in [0, 0, 1, 1, 1, 2, 2, 3, 3, 4].into_iter().enumerate() {
+        let expected = (0.25 * PI * f64::from(steps)).cos();
+        // Means of eight products of a few roundings.
+        assert!(
+            (found.values[bin + 1] - expected).abs() < 1e-14,
+            "bin {bin}: {} and {expected}",
+            found.values[bin + 1]
+        );
+    }
+}
