@@ -21,6 +21,8 @@ use crate::inflation::{Inflated, Rest};
 use crate::linear::LinearResponse;
 use crate::packing::{Packing, displacement};
 use crate::relax::Criterion;
+#[cfg(feature = "linear")]
+use crate::vector::scaled;
 use crate::vector::{Vector, difference, norm};
 
 pub use crate::inflation::region::Shape;
@@ -106,7 +108,7 @@ impl<const D: usize> DisplacementField<D> {
     ) -> Self {
         assert_eq!(packing.len(), response.displacements.len(), "a response belongs to the packing it was made from");
         let &[centre] = response.growing.as_slice() else { panic!("a field has one disk that grows in its middle") };
-        let displacement = |disk: usize| crate::vector::scaled(increase, response.displacements[disk]);
+        let displacement = |disk: usize| scaled(increase, response.displacements[disk]);
         let (inner_radius, shape) = (packing.radii()[centre], Shape::Round);
         let strain = DiagonalStrain::default();
         let region = Region { centre, grown: &[centre], inner_radius, outer_radius, shape, strain };

@@ -5,6 +5,7 @@
 //! contact range exceeds half a side of the box: without them the rim would have holes. So a label can occur twice in
 //! the rim.
 
+use crate::inflation::drive::DiagonalStrain;
 use crate::inflation::error::InflationError;
 use crate::network::ContactNetwork;
 use crate::packing::{Domain, Packing, PackingError, ball_volume};
@@ -93,10 +94,12 @@ impl<const D: usize> Circle<D> {
     }
 
     /// Label and distance from the centre of the outermost mobile disk, if it has left the circle through the rim. It
-    /// has if a disk of the largest radius fits between it and R.
-    pub(super) fn beyond_rim(&self, packing: &Packing<D>) -> Option<(u64, f64)> {
+    /// has if a disk of the largest radius fits between it and R. `strain` is that of the rim, which distances are
+    /// without.
+    pub(super) fn beyond_rim(&self, packing: &Packing<D>, strain: DiagonalStrain) -> Option<(u64, f64)> {
         let largest = packing.largest_radius();
-        let mobile = (0..=self.centre).map(|disk| (packing.labels()[disk], norm(packing.positions()[disk])));
+        let mobile =
+            (0..=self.centre).map(|disk| (packing.labels()[disk], norm(strain.undone(packing.positions()[disk]))));
         mobile.filter(|&(_, distance)| distance > self.outer_radius + 2.0 * largest).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 

@@ -17,7 +17,7 @@ use crate::inflation::error::InflationError;
 use crate::law::pair_law::PairLaw;
 use crate::network::ContactNetwork;
 use crate::packing::{Packing, displacement};
-use crate::vector::{Vector, difference, norm, scaled};
+use crate::vector::{Vector, norm, scaled};
 
 /// What is done to the packing.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -71,9 +71,12 @@ impl DiagonalStrain {
     pub fn of<const D: usize>(self, position: Vector<D>) -> Vector<D> {
         std::array::from_fn(|d| if d == 0 { self.first } else { self.others } * position[d])
     }
-}
 
-impl DiagonalStrain {
+    /// (1 + ε)⁻¹ r.
+    pub fn undone<const D: usize>(self, position: Vector<D>) -> Vector<D> {
+        std::array::from_fn(|d| position[d] / (1.0 + if d == 0 { self.first } else { self.others }))
+    }
+
     /// The volume after over that before \[1\].
     pub fn volume_ratio<const D: usize>(self) -> f64 {
         (1..D).fold(1.0 + self.first, |ratio, _| ratio * (1.0 + self.others))
@@ -139,7 +142,7 @@ impl Drive {
             Drive::Inflation => {}
             Drive::PointForce { force_over_mean } => {
                 let mut loads = vec![[0.0; D]; before.len()];
-                loads[centre][0] = force_over_mean * mean_force(&ContactNetwork::new(before, law)?);
+                loads[centre][0] = force_over_mean * mean_force(&ContactNetwork::new(before, law)?)?;
                 start = start.with_loads(loads)?;
             }
             Drive::ForceDipole { force_over_mean } => {
@@ -147,7 +150,7 @@ impl Drive {
                 let (neighbour, towards) = neighbour(before, &network, centre)
                     .ok_or(InflationError::NoNeighbour { label: before.labels()[centre] })?;
                 let mut loads = vec![[0.0; D]; before.len()];
-                loads[neighbour] = scaled(force_over_mean * mean_force(&network), towards);
+                loads[neighbour] = scaled(force_over_mean * mean_force(&network)?, towards);
                 loads[centre] = scaled(-1.0, loads[neighbour]);
                 start = start.with_loads(loads)?;
             }
@@ -230,10 +233,13 @@ impl<const D: usize> Applied<D> {
 }
 
 /// Mean contact force on the backbone \[force\].
-fn mean_force<const D: usize>(network: &ContactNetwork<D>) -> f64 {
+///
+/// # Errors
+/// There is no backbone, so a force has no scale.
+fn mean_force<const D: usize>(network: &ContactNetwork<D>) -> Result<f64, InflationError> {
     let (count, total) =
         network.backbone_contacts().fold((0usize, 0.0), |(count, total), contact| (count + 1, total + contact.force));
-    if count == 0 { 0.0 } else { total / count as f64 }
+    if count == 0 { Err(InflationError::NoContactForce) } else { Ok(total / count as f64) }
 }
 
 /// The mobile neighbour of a disk on the backbone whose direction is nearest to the first axis, and that direction.
@@ -249,7 +255,7 @@ fn neighbour<const D: usize>(
             _ if centre == second => first,
             _ => return None,
         };
-        let apart = difference(packing.separation(other, centre), [0.0; D]);
+        let apart = packing.separation(other, centre);
         (!packing.held()[other]).then(|| (other, scaled(1.0 / norm(apart), apart)))
     });
     others.max_by(|a, b| a.1[0].total_cmp(&b.1[0]))

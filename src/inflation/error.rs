@@ -90,6 +90,9 @@ pub enum InflationError {
         /// Radius of the disk.
         radius: f64,
     },
+    /// A force is given over the mean contact force, and there is none.
+    #[error("the packing has no backbone, so there is no mean contact force for drive.point_force or force_dipole")]
+    NoContactForce,
     /// A dipole needs a mobile neighbour on the backbone.
     #[error("disk {label} touches no mobile disk of the backbone, so there is no contact for a force dipole")]
     NoNeighbour {

@@ -2,7 +2,7 @@
 
 use crate::inflation::choose_centre::choose_centre;
 use crate::inflation::circle::Circle;
-use crate::inflation::drive::Drive;
+use crate::inflation::drive::{DiagonalStrain, Drive};
 use crate::inflation::error::InflationError;
 #[cfg(feature = "linear")]
 use crate::inflation::region::Region;
@@ -64,7 +64,7 @@ impl<const D: usize> Grown<D> {
         if drive.is_inflation() {
             grown.iter().try_for_each(|&disk| check_increase(&start, disk, inflation.increase))?;
         }
-        let before = experiment.rest(Stage::Before, start, law, relaxer, trace)?;
+        let before = experiment.rest((Stage::Before, DiagonalStrain::default()), start, law, relaxer, trace)?;
         let mut packing = drive.start(before.packing.get(), centre, law)?;
         for &disk in grown.iter().filter(|_| drive.is_inflation()) {
             let radius = packing.radii()[disk] + inflation.increase;
@@ -125,11 +125,9 @@ impl<const D: usize> Grown<D> {
         relaxer: &impl Relaxer,
         trace: &mut dyn Trace,
     ) -> Result<Rest<D>, InflationError> {
-        let mut rest = self.experiment.rest(stage, packing, law, relaxer, trace)?;
-        if stage == Stage::Inflated {
-            rest.pressure /= self.drive.strain::<D>().volume_ratio::<D>();
-        }
-        Ok(rest)
+        // Taken back, the rim is where it was.
+        let strain = if stage == Stage::Inflated { self.drive.strain::<D>() } else { DiagonalStrain::default() };
+        self.experiment.rest((stage, strain), packing, law, relaxer, trace)
     }
 }
 
@@ -241,7 +239,7 @@ impl<const D: usize> Experiment<D> {
 
     fn rest(
         &self,
-        stage: Stage,
+        (stage, strain): (Stage, DiagonalStrain),
         packing: Packing<D>,
         law: &dyn PairLaw,
         relaxer: &impl Relaxer,
@@ -254,7 +252,7 @@ impl<const D: usize> Experiment<D> {
             return Err(InflationError::NotAtRest { stage, stop, step_count: cost.step_count, residual });
         };
         if let Experiment::HeldRim(circle) = self
-            && let Some((label, distance)) = circle.beyond_rim(packing.get())
+            && let Some((label, distance)) = circle.beyond_rim(packing.get(), strain)
         {
             return Err(InflationError::BeyondRim { stage, label, distance, outer_radius: circle.outer_radius });
         }
@@ -265,7 +263,11 @@ impl<const D: usize> Experiment<D> {
         }
         let network = ContactNetwork::new(packing.get(), law)?;
         Ok(Rest {
-            pressure: if criterion == Criterion::Unjammed { 0.0 } else { self.pressure_of(&network) },
+            pressure: if criterion == Criterion::Unjammed {
+                0.0
+            } else {
+                self.pressure_of(&network) / strain.volume_ratio::<D>()
+            },
             energy: network.energy() + network.on_site_energy(),
             contact_count: network.contacts.len(),
             rattler_count: network.rattlers().count(),

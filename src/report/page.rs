@@ -275,11 +275,15 @@ fn figures(report: &Report, name: &str, result: &SampleResult) -> Result<Vec<Fig
         widest(radii),
     );
     let heat = report.scene.observables.displacement_field.is_some();
-    #[allow(unused_mut)]
     let mut figures = response_page::figures(name, &result.response, radii, &frame, heat)?;
-    #[cfg(feature = "linear")]
     figures.extend(drive_figure(name, result));
     Ok(figures)
+}
+
+/// No continuum without the moduli.
+#[cfg(not(feature = "linear"))]
+fn drive_figure(_name: &str, _result: &SampleResult) -> Option<Figure> {
+    None
 }
 
 /// The modes of another drive than an inflation, with those of the continuum.

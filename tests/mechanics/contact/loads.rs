@@ -1,6 +1,6 @@
 //! Contacts, sites and loads together: forces against the energy, forces and torques that add up to those from outside.
 
-use super::derivatives::{STEP, slope_error};
+use super::derivatives::{STEP, energy_slope, slope_error};
 use super::*;
 use jamscope::law::OnSite;
 use jamscope::vector::dot;
@@ -48,14 +48,7 @@ fn check_gradient<const D: usize>(contacts: &dyn PairLaw, coupling: f64, packing
         // The energy of sites and loads is of second degree: its central difference is exact up to rounding.
         let allowed = slope_error(packing, contacts, STEP, 4.0 * EPSILON, touches) + 2.0 * sum_rounding * scale / STEP;
         for d in 0..D {
-            let mut energy_at = |h: f64| {
-                let before = assembly.displacements[index];
-                assembly.displacements[index][d] += h;
-                let energy = assembly.evaluate_totals().energy;
-                assembly.displacements[index] = before;
-                energy
-            };
-            let slope = (energy_at(STEP) - energy_at(-STEP)) / (2.0 * STEP);
+            let slope = energy_slope(&mut assembly, index, d);
             let off = (forces[index][d] + slope).abs();
             assert!(off <= allowed, "{contacts:?}, Γ = {coupling}, disk {disk}: {} and {slope}", forces[index][d]);
         }
