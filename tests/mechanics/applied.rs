@@ -399,3 +399,23 @@ fn the_summary_of_a_drive_in_a_lattice_is_its_continuum() {
     let none = DriveSummary::of(&strained, &periodic, &law, None, &MultipoleSettings::default());
     assert!(none.expect("no error").is_none());
 }
+
+/// A compressed lattice is a lattice of smaller spacing b' = (1 − ε) b: nothing moves but affinely, and its pressure follows the
+/// law and the area, p'/p = (δ'/δ)^(3/2) (b'/b)/(1 − ε)².
+#[test]
+fn a_compressed_lattice_has_the_pressure_of_its_new_spacing() {
+    let lattice = Lattice::triangular(0.5, 0.05).expect("valid");
+    let periodic = lattice.periodic([32, 38]).expect("a lattice");
+    for strain in [0.001, -0.002, 0.01] {
+        let inflation = Inflation { centre: Centre::Label(600), ..rim(Drive::Compression { strain }) };
+        let run = inflate_with(&inflation, &periodic, &hertzian(), &fire(1e-12), 1, &mut ()).expect("at rest");
+        let most =
+            DisplacementField::of_inflation(&run).disks.iter().map(|disk| norm(disk.displacement)).fold(0.0, larger);
+        assert!(most < 1e-10, "affine to the residual: {most:e}");
+        let overlaps = [1.0 - strain, 1.0].map(|factor| 1.0 - factor * lattice.spacing());
+        let expected = (overlaps[0] / overlaps[1]).powf(1.5) / (1.0 - strain);
+        let found = run.after.pressure / run.before.pressure;
+        // Twelve digits of the forces, and an overlap of 0.05 with the rounding of positions near 20.
+        assert!((found / expected - 1.0).abs() < 1e-10, "{strain}: {found} and {expected}");
+    }
+}
